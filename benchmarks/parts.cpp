@@ -1,4 +1,4 @@
-// The costs a path is made of: rays, numbers, wavelengths, colours. Run with --benchmark_filter=… to see one.
+// The costs of the parts of a path: rays, primary samples, wavelengths, colours. Run with --benchmark_filter=… for one of them.
 
 #include <benchmark/benchmark.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 using namespace etendue;
 
-/// The Cornell box in a given scene structure, and random rays from inside it.
+/// The Cornell box in a given acceleration structure, and random rays inside it.
 struct Box {
   Ref<Job> job;
   std::vector<Ray> rays;

@@ -1,6 +1,5 @@
-// How fast each scene structure is built, and how many rays a second it answers on one thread:
-// scene/<world>/<structure>/<rays>. A table of all that ran is printed at the end. Run with --benchmark_filter=scene/… to see
-// some.
+// The time to build each acceleration structure, and its rays per second on one thread: scene/<world>/<structure>/<rays>. A
+// table of all benchmarks that ran is printed at the end. Run with --benchmark_filter=scene/… for some of them.
 
 #include <benchmark/benchmark.h>
 
@@ -28,7 +27,7 @@ Ref<T> make_part(const std::string& name) {
   return ref_cast<T>(Registry::instance().create(name));
 }
 
-/// A surface z(u, v) over a square of quads, two triangles each; `place` gives the point at (u, v) in [0, 1]^2.
+/// A triangle mesh over a grid of quads, two triangles each; `place` gives the point at (u, v) in [0, 1]^2.
 template <class Place>
 Ref<SceneObject> surface(int columns, int rows, const Place& place) {
   std::vector<double> positions, triangles;
@@ -73,7 +72,7 @@ std::vector<Ref<SceneObject>> objects_of(const std::string& world) {
   return spheres;
 }
 
-/// A world in a structure, and rays in it.
+/// A world in an acceleration structure, and rays in it.
 struct Bench {
   static constexpr size_t side = 256;
 
@@ -107,7 +106,7 @@ struct Bench {
     }
   }
 
-  /// One is kept at a time: they are large.
+  /// Only one world is kept in memory at a time: they are large.
   static const Bench& of(const std::string& world, const std::string& structure) {
     static std::unique_ptr<Bench> bench;
     static std::string made;
@@ -120,7 +119,7 @@ struct Bench {
   }
 };
 
-/// By world and structure: seconds to build, then the highest rates [1/s] by query. Printed when the program ends.
+/// For each world and structure: seconds to build, then the highest rates [1/s] by query. Printed when the program ends.
 struct Table {
   std::map<std::pair<size_t, size_t>, std::array<double, 5>> rows;
 
@@ -137,7 +136,7 @@ struct Table {
 };
 Table table;
 
-/// Time this thread has computed [s], which does not count what others take of the machine.
+/// CPU time of this thread [s], independent of other load of the machine.
 double thread_time() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

@@ -1,6 +1,6 @@
-// What shaders cost, at their defaults: nanoseconds to bind one to a point, and to evaluate, sample and ask the density of what
-// that gives. Those that need a file get a made-up one, those that need another shader a Lambertian. At the end a table of the
-// shortest times of all repetitions, and of how many times those of Lambertian that is:
+// Costs of shaders with default members: nanoseconds to bind a shader to a point, to evaluate and sample the result, and to
+// compute its pdf. Shaders that need a file get a synthetic one, those that need another shader a Lambertian. At the end a
+// table lists the shortest times of all repetitions, and their ratios to those of Lambertian:
 //     etendue_benchmarks --benchmark_filter=shader/ --benchmark_repetitions=10 --benchmark_min_time=0.01
 
 #include <benchmark/benchmark.h>
@@ -30,7 +30,7 @@ Ref<T> make(const char* name) {
   return ref_cast<T>(Registry::instance().create(name));
 }
 
-/// With all that it must have. A layer on top of others must let light through.
+/// A shader with its required members. The top layer of a LayeredShader must transmit.
 Ref<Shader> with_needs(const ClassInfo& info, const conform::Fixtures& files) {
   const Ref<Component> made = info.create();
   for (const Member& m : info.members)
@@ -43,7 +43,8 @@ Ref<Shader> with_needs(const ClassInfo& info, const conform::Fixtures& files) {
   return ref_cast<Shader>(made);
 }
 
-/// A shader, a point on a sphere that has it, and random directions: seen from outside, lit from wherever the shader can be.
+/// A shader, a point on a sphere that has it, and random directions: `out` outside, `in` on all sides that the shader scatters
+/// to.
 struct Bench {
   static constexpr size_t count = 1024;
   struct Query {
@@ -72,7 +73,7 @@ struct Bench {
     }
   }
 
-  /// Made once for each class: some read large files.
+  /// Created once for each class, as some read large files.
   static const Bench& of(const ClassInfo& info) {
     static const conform::Fixtures files;
     static std::map<std::string, std::unique_ptr<Bench>> made;
@@ -110,7 +111,7 @@ struct Table {
 };
 Table table;
 
-/// Time this thread has computed [ns], which does not count what others take of the machine.
+/// CPU time of this thread [ns], independent of other load of the machine.
 double thread_time() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -122,7 +123,7 @@ void repeat(benchmark::State& state, const ClassInfo& info, size_t operation, F&
   size_t i = 0;
   const double begin = thread_time();
   for ([[maybe_unused]] auto _ : state) f(i++ % Bench::count);
-  if (state.iterations() < 100) return;  // too short to tell
+  if (state.iterations() < 100) return;  // too short for a reliable time
   auto& shortest = table.times.try_emplace(info.name, std::array{never, never, never, never}).first->second[operation];
   shortest = std::min(shortest, (thread_time() - begin) / double(state.iterations()));
 }

@@ -24,7 +24,7 @@ void BareTriangles::add(const std::vector<Point3>& points, const std::vector<std
   triangles += corners.size();
 }
 
-/// What is no mesh, by its points at a grid of uniform numbers, faces of several apart.
+/// Triangulates an object that is no mesh, at a grid of its sample_area parameters; separate faces are not connected.
 bool BareTriangles::add_grid(const SceneObject& object) {
   constexpr std::uint32_t side = 64;
   std::vector<Point3> points;

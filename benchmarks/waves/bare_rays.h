@@ -1,5 +1,5 @@
 #pragma once
-// Rays against nothing but triangles, in Embree as it comes.
+// Rays against triangles only, in plain Embree.
 
 #include <embree3/rtcore.h>
 
@@ -9,8 +9,8 @@
 
 namespace etendue::waves {
 
-/// The triangles of a scene, flat and curved objects made of some, in Embree without its robust mode, callbacks, filters: what
-/// the same rays cost where nothing else is done.
+/// The triangles of a scene, including those of tessellated curved objects, in Embree without its robust mode, callbacks and
+/// filters: the cost of the same rays without anything else.
 class BareTriangles {
  public:
   explicit BareTriangles(const Scene&);
@@ -18,9 +18,9 @@ class BareTriangles {
   BareTriangles(const BareTriangles&) = delete;
   BareTriangles& operator=(const BareTriangles&) = delete;
 
-  /// How rays are handed over.
+  /// How rays are passed to Embree.
   enum class Manner { single, stream, eight, sixteen };
-  /// Asks all rays; returns how many met something. `coherent`: Embree is told that neighbours are alike.
+  /// Traces all rays; returns the number of hits. `coherent`: sets Embree's flag for coherent rays.
   size_t ask(const std::vector<RecordedRay>&, Manner, bool coherent) const;
 
   size_t triangles = 0;

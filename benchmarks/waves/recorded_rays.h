@@ -1,5 +1,5 @@
 #pragma once
-// The rays of a path tracer as it asks for them, in its order.
+// The rays of a path tracer, recorded in the order of its scene queries.
 
 #include <cstdint>
 #include <vector>
@@ -11,16 +11,16 @@
 
 namespace etendue::waves {
 
-/// A ray of a path, and what met it.
+/// A ray of a path, and its hit.
 struct RecordedRay {
   Ray ray;
   Hit hit;
   std::uint32_t path = 0;
-  std::uint32_t depth = 0;  ///< how many rays of its kind the path asked for before it
+  std::uint32_t depth = 0;  ///< number of earlier rays of its kind in the path
   bool shadow = false, found = false;
 };
 
-/// A scene that notes what it is asked, and asks another that is prepared already.
+/// A scene that records its queries and forwards them to another scene, which is already prepared.
 class RecordingScene final : public Scene {
  public:
   static void describe(Description<RecordingScene>& d) { d.summary("Notes the rays that another scene is asked for."); }
@@ -44,14 +44,14 @@ class RecordingScene final : public Scene {
     rays.push_back({ray, {}, path, shadows_so_far++, true, found});
     return found;
   }
-  // Probes for what lies in one place are no rays of the path.
+  // Queries for all hits along a ray, to locate a point within media, are no rays of the path.
   void all(const Ray& ray, HitList& list) const override { asked->all(ray, list); }
 
  protected:
   void build(std::span<const SceneObject* const>) override {}
 };
 
-/// The thread's time [s], which does not count what others take of the machine.
+/// CPU time of the thread [s], independent of other load of the machine.
 double thread_seconds();
 
 }  // namespace etendue::waves

@@ -1,9 +1,9 @@
-// What waves of paths could bring: the rays of a path tracer, and the shading of what they meet, in the order of paths and in
-// batches that are sorted. See docs/decisions/037-waves.md.
+// The potential of wavefront path tracing: the rays of a path tracer, and the shading at their hits, in the order of paths and
+// in sorted batches (waves). See docs/decisions/037-waves.md.
 //
 //     etendue_waves SCENE.etd [SAMPLES [REPEATS [FOLDER...]]]
 //
-// FOLDER: whose files the scene may name. All times are of one thread, in the processor's time, the shortest of the repeats.
+// FOLDER: folders with files that the scene may refer to. All times are CPU times of one thread, the shortest of the repeats.
 
 #include <fmt/format.h>
 
@@ -32,14 +32,14 @@ namespace {
 
 const Register<RecordingScene> registered;
 
-/// Spreads ten bits of a number, so that three of them interleave.
+/// Spreads the lowest ten bits of a number, for a Morton code of three numbers.
 std::uint64_t spread_bits(std::uint64_t x) {
   std::uint64_t all = 0;
   for (int i = 0; i < 10; ++i) all |= ((x >> i) & 1) << (3 * i);
   return all;
 }
 
-/// What waves sort rays by: their kind and depth, the octant of their direction, and where they begin.
+/// The key by which waves sort rays: depth, kind, octant of the direction, and Morton code of the origin.
 std::uint64_t key_of(const RecordedRay& r, const Scene& scene) {
   const Vector3 from = (r.ray.origin - scene.centre()) / scene.radius();
   std::uint64_t place = 0, octant = 0;
@@ -52,7 +52,7 @@ std::uint64_t key_of(const RecordedRay& r, const Scene& scene) {
 
 struct Measured {
   int repeats = 3;
-  /// The shortest time of a run [s].
+  /// The shortest CPU time of a run [s].
   double shortest(const std::function<void()>& run) const {
     double best = 1e30;
     for (int i = 0; i < repeats; ++i) {
@@ -64,9 +64,9 @@ struct Measured {
   }
 };
 
-volatile float kept = 0;  ///< what nobody may leave out
+volatile float kept = 0;  ///< a sink that prevents the compiler from removing computations
 
-/// All that is computed at a vertex, but for the path's own bookkeeping.
+/// All computations at a vertex except the path's bookkeeping.
 class Shading {
  public:
   Shading(const Scene& scene, const LightSampler& lights, const RenderProcess& process)
@@ -100,12 +100,12 @@ class Shading {
   float sum_ = 0;
 };
 
-/// The part of a path's state that waits in memory while others go on: copied out and in again for each segment.
+/// The part of a path's state that stays in memory while other paths are processed: copied out and in again for each segment.
 struct PathState {
   std::byte bytes[384];
 };
 
-/// A scene's paths, and what their parts cost.
+/// Records a scene's paths, and measures the costs of their parts.
 class Prototype {
  public:
   Prototype(const Ref<Job>& job, int samples, int repeats) : job_(job), samples_(samples), measured_{repeats} {}
@@ -128,7 +128,7 @@ class Prototype {
   double per_ray(double seconds) const { return seconds * 1e9 / double(rays_.size()); }
   double per_vertex(double seconds) const { return seconds * 1e9 / double(std::max<size_t>(hits_.size(), 1)); }
 
-  /// All paths, watched or not [s].
+  /// Traces all paths, recorded or not; returns the CPU time [s].
   double follow(const Scene& in, const RecordingScene* recording) const {
     const std::unique_ptr<RenderProcess> process = process_in(in);
     Arena arena;
@@ -162,7 +162,7 @@ class Prototype {
     sort();
   }
 
-  /// In memory they lie in the order in which they are asked.
+  /// Rays are copied in sorted order, so that they are traced in the order of memory.
   void sort() {
     in_waves_ = rays_;
     std::stable_sort(in_waves_.begin(), in_waves_.end(), [](const RecordedRay& a, const RecordedRay& b) {
@@ -276,12 +276,13 @@ class Prototype {
   Ref<Job> job_;
   int samples_;
   Measured measured_;
-  std::vector<RecordedRay> rays_, in_waves_, in_sorted_waves_, hits_;  ///< rays_: as paths go; hits_: those that met something
-  // Seconds, of all of them.
-  double whole_ = 0;  ///< the paths
-  double own_ = 0;    ///< the rays in our structure, as paths go
-  double bare_ = 0;   ///< among bare triangles, one by one
-  double best_ = 0;   ///< in the best manner
+  std::vector<RecordedRay> rays_, in_waves_, in_sorted_waves_,
+      hits_;  ///< rays_: in the order of paths; hits_: those with a hit
+  // Total CPU times [s].
+  double whole_ = 0;  ///< of tracing the paths
+  double own_ = 0;    ///< of the rays in our acceleration structure, in the order of paths
+  double bare_ = 0;   ///< of the rays among bare triangles, one by one
+  double best_ = 0;   ///< of the rays in the fastest way
   double shaded_ = 0, shaded_sorted_ = 0, sorting_ = 0, traffic_ = 0;
 };
 

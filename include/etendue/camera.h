@@ -1,6 +1,10 @@
 #pragma once
-// Camera (a sensor): from film points to rays and back. Film coordinates are pixels: x to the right, y down, (0, 0) the
-// upper left corner of the picture.
+// Camera (Camera in pbrt, Sensor in Mitsuba): maps film points to rays and back. Film coordinates are in pixels: x to the
+// right, y down, (0, 0) the upper left corner of the image.
+//
+// A new camera must implement `set_film`, `ray`, `film_point`, `sample_lens`, `importance` and `pdf`; the last four serve light
+// tracing and bidirectional algorithms. Optional: `place` for precision far from the origin, `sample_ray` and `lens_weight` for
+// vignetting and dispersion of lenses, `has_lens`, `parallel` for orthographic cameras, `reach` for clipping planes.
 
 #include <optional>
 
@@ -17,25 +21,26 @@ struct LensSample {
   Point3 lens;           ///< where on the lens
   Vector3 direction;     ///< unit, from the scene point to the lens
   float distance = 0;    ///< [m]
-  float pdf = 0;         ///< [1/sr] at the scene point; a pinhole: distance^2 / cos (a delta in area, converted)
+  float pdf = 0;         ///< [1/sr] at the scene point; for a pinhole distance^2 / cos (a delta in area, converted)
   float importance = 0;  ///< W_e [1/(m^2 sr)] of the connection, normalized as `Camera::importance`
-  Point2 film;           ///< where on the film light from the point arrives
-  float nearest = 0;     ///< [m] from the lens: what is nearer does not stand in the way (Camera::Reach)
+  Point2 film;           ///< the film point that light from the scene point arrives at
+  float nearest = 0;     ///< distance from the lens [m]; surfaces nearer than this do not occlude (Camera::Reach)
 };
 
-/// A ray that a camera sends, and what its light counts.
+/// A sampled camera ray with its weight.
 struct CameraRay {
   Ray ray;
-  Spectrum weight{
-      1.0f};  ///< of the radiance that arrives along it: what glass and the lens's rim leave of it, over its density
+  /// The factor for the radiance that arrives along the ray: transmittance of the glass and vignetting, over the ray's pdf.
+  Spectrum weight{1.0f};
 };
 
-/// Densities with which a camera ray is drawn when film points are uniform over the whole film.
+/// The pdfs of a camera ray when film points are uniform over the whole film.
 struct CameraPdf {
   float position = 0;   ///< [1/m^2] on the lens; 1 for a pinhole
   float direction = 0;  ///< [1/sr]
 };
 
+/// See the beginning of the file for what subclasses implement.
 class Camera : public Component {
  public:
   using Interface = Camera;
@@ -43,66 +48,68 @@ class Camera : public Component {
   static void describe(Description<Camera>&);
 
   float shutter_open = 0, shutter_close = 0;  ///< [s]
-  /// How long the shutter takes to open all the way and to close [s]: its opening grows and shrinks linearly.
+  /// The durations of opening and closing the shutter [s]; the open fraction changes linearly.
   float shutter_opening = 0, shutter_closing = 0;
 
-  /// A time for a uniform number, as likely as the shutter is open.
+  /// Samples a time [s] by a uniform number, with a pdf proportional to shutter_efficiency.
   float shutter_time(float u) const;
-  /// How far open the shutter is at a time, from 0 to 1.
+  /// The open fraction of the shutter at a time, from 0 to 1.
   float shutter_efficiency(float time) const;
 
-  /// Where a camera is, in the coordinates of the world, and about how far from it what it looks at [m]; 0: unknown.
+  /// The camera's position in world space, and the approximate distance of the objects in view [m]; 0: unknown.
   struct Place {
     DoublePoint3 position;
     double distance = 0;
   };
-  /// Where it is when the shutter opens: asked before it is prepared. The renderer counts from near there, or from the middle
-  /// of what is seen, so that floats are fine where they have to be. A camera that does not say has everything counted from the
-  /// origin.
+  /// The place when the shutter opens; called before `prepare`. The origin of rendering space (pbrt's term: the space of all
+  /// float coordinates while rendering) is chosen near this position, or at the centre of a scene that is far away, so that
+  /// floats are precise in view. Without a place it is the world's origin.
   virtual std::optional<Place> place() const { return std::nullopt; }
-  /// The point of the world that the renderer counts from: for a camera that says its place, rays, lens points and points it is
-  /// asked about are relative to it. Set by the Job before the camera is prepared.
+  /// The origin of rendering space, in world space. For a camera that implements `place`, all rays, lens points and scene
+  /// points are relative to it. Set by the Job before the camera is prepared.
   DoublePoint3 world_centre;
 
-  /// What is seen along a ray lies so far from its lens point [m]. A camera may leave out what is nearer than a plane across
-  /// its axis, or farther than another: for its own rays, and light on its way to the lens, such things are not there. All
-  /// other light knows of them: they cast shadows, and mirrors show them.
+  /// The interval of distances from the lens point in which a ray sees surfaces [m]. A camera may have near and far clipping
+  /// planes perpendicular to its axis. Surfaces beyond them are ignored by camera rays and by connections to the lens; for all
+  /// other rays they exist: they cast shadows and are seen in mirrors.
   struct Reach {
     float nearest = 0, farthest = infinity;
   };
 
-  /// Told by the Job before rendering: the size of the whole picture in pixels.
+  /// Sets the size of the whole image in pixels. Called by the Job before rendering.
   virtual void set_film(int width, int height) = 0;
-  /// The ray that brings light to a film point through a lens point given by `lens` (two uniform numbers), as far as it is a
-  /// matter of geometry. The ray's cone covers a pixel. It begins and ends where its `reach` does.
+  /// The ray through a film point and the lens point sampled by `lens` (two uniform numbers): its geometry only, without
+  /// vignetting. The ray's cone covers a pixel. The ray begins and ends at the limits of its `reach`.
   virtual Ray ray(Point2 film, Point2 lens, float time) const = 0;
-  /// The same with what real lenses do to light: it may be held back (false: the sample is black, and counts), weakened, and go
-  /// ways of its own for each wavelength (Wavelengths::drop_secondary; the factor belongs into the weight). By default `ray`,
-  /// with weight 1: a pixel's value is then the mean radiance of its rays. `sample_lens` and `importance` must tell of the
-  /// same.
+  /// The same with the effects of real lenses. Light may be blocked (returns false: the sample is black, and counts),
+  /// attenuated (the weight), or dispersed (calls Wavelengths::drop_secondary, and multiplies the weight by the returned
+  /// factor). By default `ray` with weight 1: a pixel's value is then the mean radiance of its rays. `sample_lens` and
+  /// `importance` must describe the same camera.
   virtual bool sample_ray(Point2 film, Point2 lens, float time, Wavelengths&, CameraRay& sample) const {
     sample.ray = ray(film, lens, time);
     return true;
   }
-  /// Whether `ray` looks at its lens point; cameras that do not may say so, which saves drawing two numbers.
+  /// Whether `ray` uses its argument `lens`. Returning false saves two random numbers.
   virtual bool has_lens() const { return true; }
-  /// Whether all its rays are parallel: directions are then given by places.
+  /// Whether the camera is orthographic: its rays are parallel, with a pdf per area [1/m^2] instead of per solid angle.
   virtual bool parallel() const { return false; }
-  /// The film point a ray from the scene ends at, if it meets lens and film; the ray is given as one the camera could
-  /// have sent (from the lens outward).
+  /// The film point at which light along a ray arrives, if it passes the lens and hits the film. The ray is given in the
+  /// direction of camera rays, from the lens outward.
   virtual std::optional<Point2> film_point(const Ray&) const = 0;
-  /// A lens point seen from a point of the scene; empty when light from there cannot reach the film, or it is out of reach.
-  /// `importance` is then without what depends on wavelengths; light is multiplied by `lens_weight`, too.
+  /// Samples a lens point as seen from a point of the scene. Empty when light from there does not reach the film, or the point
+  /// is outside the clipping planes. The `importance` excludes factors that depend on wavelength: the light must also be
+  /// multiplied by `lens_weight`.
   virtual std::optional<LensSample> sample_lens(const Point3& from, float time, Point2 u) const = 0;
-  /// What the lens leaves of light of these wavelengths that comes by a sample of `sample_lens`.
+  /// The transmittance of the lens per wavelength, for a sample of `sample_lens`.
   virtual Spectrum lens_weight(const LensSample&, const Wavelengths&) const { return Spectrum(1.0f); }
-  /// Importance W_e of a ray the camera could have sent [1/(m^2 sr)]; 0 outside the film. Its integral over lens area
-  /// and projected solid angle is 1 for the whole film (per steradian alone for a pinhole, per area for parallel rays).
+  /// The importance W_e of a camera ray [1/(m^2 sr)]; 0 outside the film. Its integral over lens area and projected solid angle
+  /// is 1 for the whole film ([1/sr] for a pinhole, [1/m^2] for parallel rays).
   virtual float importance(const Ray&) const = 0;
+  /// The pdfs of a camera ray; 0 outside the film.
   virtual CameraPdf pdf(const Ray&) const = 0;
-  /// Of a ray from the lens, or one that the camera sent.
+  /// The reach of a camera ray, which may begin at the lens or at the near clipping plane.
   virtual Reach reach(const Ray&) const { return {}; }
-  /// Where on the lens a ray begins that the camera sent.
+  /// The lens point of a ray returned by `ray`, which begins at the near clipping plane if the camera has one.
   Point3 lens_point(const Ray& sent) const { return sent.origin - reach(sent).nearest * sent.direction; }
 };
 

@@ -1,13 +1,13 @@
 #pragma once
-// DenoisedOutput: an output that has a second picture beside it.
+// DenoisedOutput: an output that also writes a denoised image, to a second file.
 
 #include "etendue/denoiser.h"
 #include "etendue/output.h"
 
 namespace etendue {
 
-/// As an Output it writes the picture as it is, by another output. Who finishes a render (render/denoising.h) writes the
-/// denoised one beside it: only there is the scene known that guides are made of.
+/// As an Output it writes the image unchanged, by another output. The denoised image is written at the end of a render
+/// (render/denoising.h), because the guides are rendered from the scene, which is available only there.
 class DenoisedOutput final : public Output {
  public:
   static void describe(Description<DenoisedOutput>&);
@@ -21,7 +21,7 @@ class DenoisedOutput final : public Output {
   bool for_display() const override { return output && output->for_display(); }
   void write_image(const Image& image, const std::string& path) const override { output->write_image(image, path); }
 
-  /// The file of the denoised picture beside that of the picture: "box.denoised.png" beside "box.png".
+  /// The path of the denoised image for the path of an image: "box.denoised.png" for "box.png".
   static std::string denoised_path(const std::string& path);
 };
 

@@ -1,5 +1,8 @@
 #pragma once
-// Denoiser: makes of a finished picture one with less noise, at the price of a bias.
+// Denoiser (of the same name in pbrt; OptixDenoiser in Mitsuba): computes from a finished image one with less noise, at the
+// price of bias.
+//
+// A new denoiser must implement `denoised` and `worker`. Optional: `require`.
 
 #include "etendue/core/image.h"
 #include "etendue/describe/component.h"
@@ -13,19 +16,19 @@ class Denoiser : public Component {
   using Parent = Component;
   static void describe(Description<Denoiser>&);
 
-  /// Samples per pixel of the guides: what is seen in each pixel beside its light, by which edges are told from noise.
-  /// 0: none are made.
+  /// Samples per pixel of the guides: auxiliary images of albedo and normal, by which edges are distinguished from noise. 0: no
+  /// guides.
   int guide_samples = 16;
 
-  /// Throws Error, at the place where it was written, when it cannot work here, and says what would help. Asked before
-  /// anything is rendered.
+  /// Throws Error, with the component's location and a remedy, if the denoiser cannot work on this machine. Called before
+  /// rendering.
   virtual void require() const {}
-  /// What does the work, with its version: for the texts of the picture.
+  /// The name and version of the library that denoises, for the metadata of the image.
   virtual std::string worker() const = 0;
 
-  /// The picture with other values of X, Y, Z; all else stays. `guides`: of the same size, with the channels "albedo.R", ".G",
-  /// ".B" (linear sRGB) and "normal.X", ".Y", ".Z" (unit vectors, means of them in [-1, 1], or zero); or without channels.
-  /// Values that are not finite count as zero. `threads`: 0 for all cores.
+  /// The image with denoised values of X, Y, Z; everything else is unchanged. `guides` has the same size, and the channels
+  /// "albedo.R", ".G", ".B" (linear sRGB) and "normal.X", ".Y", ".Z" (unit vectors, means of them in [-1, 1], or zero), or no
+  /// channels. Values that are not finite count as zero. `threads`: 0 for all cores.
   virtual Image denoised(const Image& picture, const Image& guides, int threads) const = 0;
 };
 

@@ -1,5 +1,10 @@
 #pragma once
-// EmissionShader: how light leaves a luminaire. An object that has one is a luminaire.
+// EmissionShader: the emission profile of light sources (Light in pbrt, Emitter in Mitsuba): radiance by point and direction.
+// An object with an EmissionShader is a luminaire (an emitter); its shape is the SceneObject.
+//
+// A new emission must implement `radiance`, `sample` with `pdf` (directions of emission, for paths that start at lights) and
+// `power`. Optional, for light from infinity: `sample_incident`, `incident_pdf` and `knows_incident` (importance sampling of an
+// environment map), `only_at_infinity`. Optional: `objects_changed` to drop cached values.
 
 #include "etendue/core/ray.h"
 #include "etendue/core/spectrum.h"
@@ -8,12 +13,13 @@
 
 namespace etendue {
 
-/// Which sides of a surface do something.
+/// The sides of a surface that emit, or that scatter.
 enum class Sides : std::uint8_t { front, back, both };
-/// What becomes of light that a shading normal would send through the surface; see scatter_answers.h.
+/// The treatment of light that a shading normal would send through the surface: the mirrored shading-normal correction, or
+/// dropped (see scatter_answers.h).
 enum class ShadingNormals : std::uint8_t { folded, clipped };
 
-/// A direction with its solid-angle density.
+/// A sampled direction with its pdf per solid angle.
 struct DirectionSample {
   Vector3 direction;
   float pdf = 0;  ///< [1/sr]
@@ -25,31 +31,32 @@ class EmissionShader : public Component {
   using Parent = Component;
   static void describe(Description<EmissionShader>&);
 
-  /// Radiance [W m^-2 sr^-1 nm^-1] that leaves the point in a direction (unit, away from the surface). Zero on a side
-  /// that does not emit. For a luminaire at infinity: the radiance that arrives from `-direction`.
+  /// The emitted radiance [W m^-2 sr^-1 nm^-1] in a direction (unit, away from the surface). Zero on a side that does not emit.
+  /// For a luminaire at infinity: the radiance that arrives from `-direction`.
   virtual Spectrum radiance(const SurfacePoint&, const Vector3& direction, const Wavelengths&) const = 0;
 
-  /// A direction in which light leaves the point, for algorithms that start at luminaires; the density is
-  /// [1/sr] over the emitting sides together.
+  /// Samples a direction of emission at the point, for paths that start at luminaires. The pdf is [1/sr] over all emitting
+  /// sides together.
   virtual DirectionSample sample(const SurfacePoint&, Point2 u) const = 0;
   virtual float pdf(const SurfacePoint&, const Vector3& direction) const = 0;
 
   /// Power [W/nm] the object emits at each wavelength, from its whole area.
   virtual Spectrum power(const SceneObject&, const Wavelengths&) const = 0;
 
-  /// For luminaires at infinity that know where their light comes from: a direction towards the light and its density
-  /// [1/sr], and the density of a given one. Others return density 0, and are sampled uniformly.
+  /// For luminaires at infinity: samples a direction towards the light, and the pdf [1/sr] of a given direction. Implemented by
+  /// emissions whose `knows_incident` returns true; others return pdf 0, and the sphere of directions is sampled uniformly.
   virtual DirectionSample sample_incident(Point2) const { return {}; }
   virtual float incident_pdf(const Vector3&) const { return 0; }
   virtual bool knows_incident() const { return false; }
-  /// Whether it only makes sense at infinity: its light depends on where it comes from, not on a surface.
+  /// Whether the emission may be used at infinity only: its radiance depends on the direction, not on a point of a surface.
   virtual bool only_at_infinity() const { return false; }
 
-  /// The objects that have it are others than before, or were prepared again: what was found out about them is forgotten. By
-  /// Scene::prepare, for every luminaire.
+  /// Called by Scene::prepare for every luminaire. The objects with this emission may have been replaced or prepared again:
+  /// values cached about them must be dropped.
   virtual void objects_changed() {}
 
-  /// A point without a normal, on an object without extent, emits in all directions.
+  /// Whether the side of the surface that the direction is on emits. A point without a normal, on a delta light, emits in all
+  /// directions.
   bool emits(const SurfacePoint& p, const Vector3& direction) const {
     if (sides == Sides::both || p.normal == Normal3{}) return true;
     return (dot(p.normal, direction) > 0) == (sides == Sides::front);

@@ -1,5 +1,9 @@
 #pragma once
-// Exporter: components into a file of another program.
+// Exporter: writes a Job to a scene file of another program (pbrt, Mitsuba, glTF, …). pbrt and Mitsuba have no such plugin
+// type.
+//
+// A new exporter must implement `extensions` and `write`. It writes additional files and reports warnings through the class
+// Exporting.
 
 #include <map>
 #include <set>
@@ -14,32 +18,33 @@ namespace etendue {
 class Job;
 struct ContainedFile;
 
-/// One file being exported: what is written beside it, and what was said of it.
+/// The context of exporting one file: the additional files that are written to its folder, and the warnings so far.
 class Exporting {
  public:
   explicit Exporting(std::string path);
 
   const std::string& path() const { return path_; }
-  /// The folder it is written to, and its name without folder and ending.
+  /// The folder of the exported file, and its name without folder and extension.
   const std::string& folder() const { return folder_; }
   const std::string& stem() const { return stem_; }
 
-  /// Notes what the other program cannot express, or only nearly, at the place where the part, or a member of it, was written.
-  /// The same words about several parts are told once with their number.
+  /// Notes something that the other program cannot express, or only approximately, with the location where the component, or
+  /// its member, was written. The same text about several components is reported once, with their number.
   void inexact(const std::string& what, const Component* of = nullptr, std::string_view member = {});
-  /// All notes, one for each text, in the order in which they came.
+  /// All notes, one for each text, in the order of their first calls.
   std::vector<Error> notes() const;
 
-  /// Has a file written beside the one that is exported, such as a mesh, and gives its name there: the stem, `what` and a
-  /// number, with the ending. No file that is read has that name.
+  /// Schedules an additional file, such as a mesh, for the exported file's folder, and returns its name: the stem, `what` and a
+  /// number, with the extension. The name differs from all input files of the scene, which therefore are not overwritten.
   std::string write_beside(const std::string& what, const std::string& ending, std::string bytes);
-  /// The name by which the exported file can name a file that there is: a copy beside it unless it lies in the same folder or
-  /// below. Of what lies in another file, such as an image in a model, always a copy.
+  /// The path by which the exported file can refer to an existing file. Unless the file lies in the same folder or below it, it
+  /// is scheduled to be copied to that folder. A file contained in another one, such as an image in a model, is always
+  /// extracted to a copy.
   std::string copy_beside(const std::string& path);
-  /// The files that are to be written beside it; none is before write_files is called.
+  /// The paths of the additional files; they are written by write_files only.
   std::vector<std::string> files_beside() const;
   void write_files() const;
-  /// A name that no other part has, made of letters, digits and underscores.
+  /// A unique name for a component, made of letters, digits and underscores.
   std::string name_for(const Component&);
 
  private:
@@ -50,11 +55,11 @@ class Exporting {
   };
   struct Beside {
     std::string path;
-    std::string bytes;   ///< what it holds, or
-    std::string source;  ///< the file that it is a copy of
+    std::string bytes;   ///< its content, or
+    std::string source;  ///< the path of the file to copy
   };
   std::string unpack_beside(const std::string& path, const ContainedFile&);
-  /// Whether nothing that is read, and nothing else that is written, is called so.
+  /// Whether the path is neither that of an input file nor of another additional file.
   bool is_free(const std::string& path) const;
 
   std::string path_, folder_, stem_;
@@ -73,15 +78,15 @@ class Exporter : public Component {
   using Parent = Component;
   static void describe(Description<Exporter>&);
 
-  /// File name endings it writes, without dots, lower case.
+  /// The file name extensions that it writes, without dots, in lower case.
   virtual std::vector<std::string> extensions() const = 0;
-  /// The contents of the file. The job is as it was read, not prepared; what must be prepared is a copy.
+  /// The content of the file. The job was read but not prepared; a component that must be prepared must be copied first.
   virtual std::string write(const Job&, Exporting&) const = 0;
 };
 
-/// The exporter that writes files of this name, by its ending; null: none.
+/// The exporter for a file, by its extension; null: none.
 Ref<Exporter> exporter_of(const std::string& path);
-/// All endings that exporters write, sorted.
+/// All extensions that exporters write, sorted.
 std::vector<std::string> exported_extensions();
 
 }  // namespace etendue

@@ -1,5 +1,8 @@
 #pragma once
-// Filter: how much a sample counts for a pixel, by its offset from the pixel's centre.
+// Filter: the reconstruction filter of the film (Filter in pbrt, ReconstructionFilter in Mitsuba): the weight of a sample for a
+// pixel, by its offset from the pixel's centre.
+//
+// A new filter must implement `weight` and `radius`.
 
 #include "etendue/describe/component.h"
 #include "etendue/describe/description.h"
@@ -12,7 +15,7 @@ class Filter : public Component {
   using Parent = Component;
   static void describe(Description<Filter>&);
 
-  /// Weight at an offset [pixels]; zero beyond the radius. Need not be normalized: the film divides by the sum.
+  /// The weight at an offset [pixels]; zero beyond the radius. It need not be normalized: the film divides by its integral.
   virtual float weight(float x, float y) const = 0;
   /// Half the width of the support [pixels].
   virtual float radius() const = 0;

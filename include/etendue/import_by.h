@@ -1,12 +1,12 @@
 #pragma once
-// Files of other programs being read: what all who import one do.
+// import_by: calls an importer, with better errors for files of the wrong kind.
 
 #include "etendue/importer.h"
 
 namespace etendue {
 
-/// What an importer reads from the file. When that fails because the file holds something else than its name says, the Error
-/// says what.
+/// The component that an importer reads from the file. If the import fails because the file's content is of another format than
+/// its extension says, the Error names that format.
 Ref<Component> import_by(const Importer&, Importing&);
 
 }  // namespace etendue

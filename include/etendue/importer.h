@@ -1,5 +1,9 @@
 #pragma once
-// Importer: a file of another program into components.
+// Importer: reads a scene file of another program (pbrt, Mitsuba, glTF, …) into components. pbrt and Mitsuba have no such
+// plugin type.
+//
+// A new importer must implement `extensions` and `import`. It finds files, makes components and reports warnings through the
+// class Importing.
 
 #include <map>
 #include <memory>
@@ -14,11 +18,11 @@
 
 namespace etendue {
 
-/// The structure that imported scenes are searched by: the fastest one on most scenes (docs/performance.md, "Structures").
+/// The acceleration structure of imported scenes: the fastest one on most scenes (docs/performance.md, "Structures").
 inline constexpr const char* imported_structure = "BvhScene";
 
-/// One file being imported: what it may read, and what was said of it. All importers find files, make parts and tell what they
-/// could not express through it, so that these are the same for every format.
+/// The context of importing one file: the files that may be read, and the warnings so far. All importers find files, make
+/// components and report what they could not express through this class, so that this is the same for every format.
 class Importing {
  public:
   /// `path` is the file; `parameters` are values for the source's own parameters, from `-D name=value`.
@@ -26,38 +30,43 @@ class Importing {
 
   const std::string& path() const { return path_; }
   const ImportOptions& options() const { return options_; }
-  /// The whole file, or a place in it.
+  /// The location of a line and column in the file, or of the file as a whole (line 0).
   Location at(int line = 0, int column = 0) const { return {name_, line, column}; }
 
-  /// The value given to a parameter of the source ("spp" for Mitsuba's $spp), which counts as used then; none: there is none.
+  /// The value given by the user to a parameter of the source ("spp" for Mitsuba's $spp), which is marked as used; empty: no
+  /// value was given.
   std::optional<std::string> parameter(const std::string& name);
 
-  /// Adds a folder in which files are looked for that are not beside what names them. Relative to the file's folder.
+  /// Adds a search folder for files that are not in the folder of the file that refers to them. Relative to the imported file's
+  /// folder.
   void add_search_folder(const std::string& folder, Location at);
-  /// The file that a source names: beside the file that names it (whose folder is `beside`, or empty: the imported file's), in
-  /// the search folders, and, where the author's machine had other folders, by its last name alone, small letters and capitals
-  /// aside. Throws Error at the place where there is none, or where it lies outside of the file's folder and of those allowed.
+  /// The path of a file that the source refers to. It is searched in the folder of the referring file (`beside`; empty: the
+  /// imported file's folder) and in the search folders; if it is not found, as the folders on the author's machine were
+  /// different, by its name without folders, ignoring case. Throws Error with the location if the file does not exist, or lies
+  /// outside of the imported file's folder and the allowed folders.
   std::string file(const std::string& named, Location at, const std::string& beside = {}) const;
-  /// The same for what a scene can do without, such as a texture: nothing and a note when there is none.
+  /// The same for an optional file, such as a texture: if it is not found, returns empty and notes a warning.
   std::optional<std::string> optional_file(const std::string& named, Location at, const std::string& beside = {});
 
-  /// The names of an image's channels. A file that many materials name is opened once. Throws Error where it cannot be read.
+  /// The names of an image's channels. The result is cached, so that a file used by many materials is opened once. Throws Error
+  /// if the file cannot be read.
   const std::vector<std::string>& image_channels(const std::string& path);
 
-  /// Notes what the source says and this program could not express, or only nearly: a warning, or an error when strict. The
-  /// same words at several places are told once with their number. At most one call for each place and thing.
+  /// Notes something in the source that this program cannot express, or only approximately: a warning, or an error with
+  /// ImportOptions::strict. The same text at several locations is reported once, with their number. Call it at most once for
+  /// each location and text.
   void inexact(const std::string& what, Location at);
-  /// All notes in the order of the places, one for each text.
+  /// All notes in the order of their first calls, one for each text; then the parameters that the file does not have.
   std::vector<Error> notes() const;
 
-  /// A part of a class, made at a place of the source and named as there ("" without a name). Throws as the Registry does.
+  /// Makes a component of a class, with its location and name in the source ("": no name). Throws as Registry::create.
   Ref<Component> make(const std::string& class_name, Location at, const std::string& name = {}) const;
 
-  /// Of files of models, which are looked at in light of the viewer's own: whether they have light. When it is false some is
-  /// added. None: a Scene gets light when nothing in it emits, a Job never.
+  /// Whether the file contains lights. Set by importers of model formats, whose viewers supply their own lighting. If false,
+  /// lights are added. If empty, lights are added to an imported Scene in which nothing emits, and never to a Job.
   std::optional<bool> is_lit;
 
-  /// The direction that points upwards in the source's world, for the camera and the sky of a file that has none.
+  /// The up direction of the source's world, for the default camera and sky of a file without them.
   DoubleVector3 up{0, 1, 0};
 
  private:
@@ -78,7 +87,7 @@ class Importing {
   std::map<std::string, Note> notes_;
 };
 
-/// Sets a member of a part that an importer makes, as `set` does; what is wrong is an Error at the place.
+/// Sets a member of a component made by an importer, as `set` does; throws Error with the location if the value is invalid.
 template <class T>
 void set_member(Component& part, std::string_view member, T value, Location at) {
   set(part, member, Value(std::move(value), at));
@@ -99,16 +108,17 @@ class Importer : public Component {
   using Parent = Component;
   static void describe(Description<Importer>&);
 
-  /// File name endings it reads, without dots, lower case.
+  /// The file name extensions that it reads, without dots, in lower case.
   virtual std::vector<std::string> extensions() const = 0;
-  /// What the file holds: a Job, or a Scene of objects when it knows no camera. Shared parts are shared and have the source's
-  /// names (Component::origin). Throws Error, or Errors with all that is wrong, naming the file and the place in it.
+  /// Reads the file: returns a Job, or a Scene if the format has no cameras. Components that are shared in the source are
+  /// shared in the result, and have their names in the source (Component::origin). Throws Error, or Errors with all errors
+  /// found, with the file and the location in it.
   virtual Ref<Component> import(Importing&) const = 0;
 };
 
-/// The importer that reads files of this name, by its ending; null: none.
+/// The importer for a file, by its extension; null: none.
 Ref<Importer> importer_of(const std::string& path);
-/// All endings that importers read, sorted.
+/// All extensions that importers read, sorted.
 std::vector<std::string> imported_extensions();
 
 }  // namespace etendue

@@ -1,5 +1,8 @@
 #pragma once
-// LightSampler: which luminaire to ask for light, and with what probability.
+// LightSampler (of the same name in pbrt; part of Scene::sample_emitter in Mitsuba): chooses a luminaire for next event
+// estimation or for the start of a light path, with a probability.
+//
+// A new light sampler must implement all functions: `build`, and `choose` with `probability` for a point and by power.
 
 #include "etendue/describe/component.h"
 #include "etendue/describe/description.h"
@@ -8,7 +11,7 @@
 namespace etendue {
 
 struct LightChoice {
-  const SceneObject* luminaire = nullptr;  ///< null: there is none
+  const SceneObject* luminaire = nullptr;  ///< null: no luminaire was chosen
   float probability = 0;
 };
 
@@ -18,12 +21,14 @@ class LightSampler : public Component {
   using Parent = Component;
   static void describe(Description<LightSampler>&);
 
-  /// Looks at the scene's luminaires before rendering: when a process is started, while no step is at hand.
+  /// Builds the data structure from the scene's luminaires (Scene::luminaires). Called when a render process starts, before its
+  /// first step.
   virtual void build(const Scene&) = 0;
-  /// A luminaire for a point with a normal (zero: a point in a volume); probabilities sum to 1.
+  /// Chooses a luminaire for next event estimation at a point with a normal (zero: a point in a volume). The probabilities of
+  /// all luminaires sum to 1.
   virtual LightChoice choose(const Point3&, const Normal3&, float u) const = 0;
   virtual float probability(const Point3&, const Normal3&, const SceneObject& luminaire) const = 0;
-  /// A luminaire by power alone, for paths that start there.
+  /// Chooses a luminaire by power alone, for paths that start at luminaires.
   virtual LightChoice choose(float u) const = 0;
   virtual float probability(const SceneObject& luminaire) const = 0;
 };

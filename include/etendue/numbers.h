@@ -1,16 +1,16 @@
 #pragma once
-// Numbers: what a path is made of. Its place on the film, its lens point, time and wavelengths, its directions and choices
-// are a function of uniform numbers in [0, 1): whoever gives others (a recording, a mutation) gets another path of the same
-// algorithm.
+// Primary samples (Kelemen et al. 2002): a path, with its film point, lens point, time, wavelengths, directions and choices, is
+// a function of uniform numbers in [0, 1). NumberSource supplies these numbers, and NumberStream hands them out in sequence.
+// Another source (a recording, a mutation) gives another path of the same algorithm.
 
 #include "etendue/core/math.h"
 #include "etendue/core/vector.h"
 
 namespace etendue {
 
-/// Which numbers: those of one walk of one sample. `walk` hashes the seed, the pixel and the names of walks (see
-/// NumberStream::fork), so that every number is a function of (seed, pixel, sample, walk, dimension) alone and any sample can
-/// be replayed alone.
+/// Identifies the sequence of primary samples of one walk of one sample. `walk` is a hash of the seed, the pixel and the names
+/// of walks (see NumberStream::fork). So every number is a function of (seed, pixel, sample, walk, dimension) alone, and any
+/// sample can be replayed by itself.
 struct SampleKey {
   std::uint64_t walk = 0;
   std::uint32_t sample = 0;
@@ -21,16 +21,17 @@ struct SampleKey {
         sample(sample_) {}
 };
 
-/// Where numbers come from. Keys are handed over by value, in registers: copied from memory where one part was just written
-/// they would wait for it. The same arguments give the same numbers. A Sampler is one; see transport/primary_sample_vectors.h
-/// for those that remember and change them.
+/// A source of primary samples: the same arguments give the same numbers. Samplers are sources;
+/// transport/primary_sample_vectors.h has sources that record and mutate numbers. Keys are passed by value, in registers: a
+/// copy from memory where one half was just written would wait for that write (a store-forwarding stall).
 class NumberSource {
  public:
   /// One number in [0, 1).
   virtual float number(SampleKey, std::uint32_t dimension) const = 0;
-  /// Two numbers, well spread together over the samples of a walk; uses dimensions `dimension` and `dimension + 1`.
+  /// Two numbers that are well distributed in the unit square over the samples of a walk. Uses the dimensions `dimension` and
+  /// `dimension + 1`.
   virtual Point2 pair(SampleKey, std::uint32_t dimension) const = 0;
-  /// The same pairs as two calls give, for sources that find two at once with less work.
+  /// The same pairs as two calls of `pair`, for sources that compute two at once faster.
   struct Pairs {
     Point2 first, second;
   };
@@ -42,7 +43,7 @@ class NumberSource {
   ~NumberSource() = default;
 };
 
-/// The name of a walk, hashed when it is compiled (FNV-1a).
+/// The name of a walk, hashed at compile time (FNV-1a).
 struct WalkName {
   std::uint64_t hash = 0xcbf29ce484222325ull;
   consteval WalkName(const char* name) {
@@ -50,7 +51,7 @@ struct WalkName {
   }
 };
 
-/// A walk's numbers, in the order an algorithm asks for them. A small value: a copy goes on by itself.
+/// The primary samples of a walk, in the order of the calls. A small value type: a copy continues independently.
 class NumberStream {
  public:
   NumberStream(const NumberSource& source, SampleKey key) : source_(&source), key_(key) {}
@@ -61,8 +62,9 @@ class NumberStream {
     dimension_ += 2;
     return p;
   }
-  /// The numbers of a bounce, in this order: which luminaire, where on it, which lobe, where in it. They depend on nothing, so
-  /// the processor finds them while it does the rest. A choice among one alone is passed over.
+  /// The primary samples of a bounce, in this order: choice of the luminaire, point on it, choice of the lobe, direction within
+  /// it. They do not depend on the vertex, so the processor computes them in parallel with other work. With only one luminaire
+  /// or lobe the number of the choice is skipped.
   struct Bounce {
     float light_choice = 0, lobe_choice = 0;
     Point2 light_point, direction;
@@ -74,11 +76,11 @@ class NumberStream {
     return {several_lights ? source_->number(key_, first) : 0, several_lobes ? source_->number(key_, first + 3) : 0,
             pairs.first, pairs.second};
   }
-  /// Passes over numbers that will not be looked at; those that follow are the same as if they had been taken.
+  /// Skips numbers that are not used; the following numbers are the same as if these had been taken.
   void skip(std::uint32_t count = 1) { dimension_ += count; }
 
-  /// Numbers of their own for another part of the same sample, by its name and, of many such, its index: they are the same
-  /// whatever this walk has used or will use.
+  /// An independent stream for another part of the same sample, identified by a name and an index (for several streams of one
+  /// name). It does not depend on how many numbers of this stream were used.
   NumberStream fork(WalkName name, std::uint32_t index = 0) const {
     NumberStream other = *this;
     other.key_.walk = mix_bits(key_.walk ^ (name.hash + index * 0x9e3779b97f4a7c15ull));
@@ -87,7 +89,7 @@ class NumberStream {
   }
 
   SampleKey key() const { return key_; }
-  /// How many were taken or passed over.
+  /// The count of numbers that were taken or skipped.
   std::uint32_t count() const { return dimension_; }
 
  private:

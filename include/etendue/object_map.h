@@ -1,5 +1,7 @@
 #pragma once
-// ObjectMap (a texture): a scalar or a colour at a surface point.
+// ObjectMap: the interface of textures (Texture in pbrt and Mitsuba): a scalar or a colour at a surface point.
+//
+// A new map must implement `color` and `scalar`. Optional: `constant` if it is the same everywhere, `largest`.
 
 #include "etendue/core/ray.h"
 #include "etendue/core/spectral_function.h"
@@ -14,22 +16,22 @@ class ObjectMap : public Component {
   using Parent = Component;
   static void describe(Description<ObjectMap>&);
 
-  /// The colour at the point, at the path's wavelengths. Who asks says what for: a map given in RGB becomes a
-  /// spectrum accordingly. As a reflectance it lies in [0, 1].
+  /// The colour at the point, at the path's wavelengths. An RGB value is converted to a spectrum according to its ColorUse. The
+  /// result for ColorUse::reflectance lies in [0, 1].
   virtual Spectrum color(const SurfacePoint&, const Wavelengths&, ColorUse) const = 0;
-  /// A single number at the point (a roughness, a weight): of a colour, its mean over the channels or wavelengths.
+  /// A single number at the point (a roughness, a weight); for a colour its mean over the channels or wavelengths.
   virtual float scalar(const SurfacePoint&) const = 0;
-  /// The map's only colour when it is the same everywhere, else null: for what is computed once, before rendering.
+  /// The colour of a map that is the same everywhere, else null. Used for precomputation before rendering.
   virtual Color constant() const { return nullptr; }
 
-  /// The largest number it was given as a whole (an image's texels; a constant's colour is asked itself). What is more than 1
-  /// shaders cut where they need a reflectance. 0: not known, or within.
+  /// The largest number in the map's data, such as an image's texels (for a constant map see its colour). Shaders clamp values
+  /// above 1 where they need a reflectance. 0: unknown, or no value exceeds 1.
   virtual float largest() const { return 0; }
 
   Spectrum reflectance(const SurfacePoint& p, const Wavelengths& w) const { return color(p, w, ColorUse::reflectance); }
 };
 
-/// A ConstantMap: how a class states its default.
+/// Makes a ConstantMap, for the default value of a member.
 Ref<ObjectMap> constant(float value);
 
 }  // namespace etendue

@@ -1,5 +1,8 @@
 #pragma once
-// Output: writes a picture to a file, beside it first and renamed when whole.
+// Output: the interface of image file formats (part of Image in pbrt, of Bitmap and Film in Mitsuba). Files are written to a
+// temporary file and renamed when complete.
+//
+// A new output must implement `extension`, `for_display` and `write_image`.
 
 #include "etendue/describe/component.h"
 #include "etendue/describe/description.h"
@@ -14,16 +17,16 @@ class Output : public Component {
   static void describe(Description<Output>&);
 
   FilePath file;          ///< empty: the render description's name with the format's ending
-  Ref<ToneMap> tone_map;  ///< null: the Job's for formats that are looked at, none for those that keep radiance
+  Ref<ToneMap> tone_map;  ///< null: the Job's tone map if for_display(), else none
 
-  /// The usual ending, with the dot.
+  /// The usual file name extension, with the dot.
   virtual std::string extension() const = 0;
-  /// Where the picture goes, if an output without a file goes to `stem` with the usual ending.
+  /// The path of the file: `file` if it is set, else `stem` with the usual extension.
   std::string path(const std::string& stem) const { return file.empty() ? stem + extension() : file.resolved(); }
-  /// Whether the format is for looking at (bounded, tone mapped) or keeps the radiance itself.
+  /// Whether the format is for display (bounded, tone mapped), or stores radiance.
   virtual bool for_display() const = 0;
-  /// Writes the picture (R G B when for_display or tone mapped, else X Y Z, then layers) with its metadata to a path.
-  /// Throws Error naming the file and the reason; the path then holds what it held before.
+  /// Writes the image (R G B if for_display or tone mapped, else X Y Z, then the layers) with its metadata to a path. Throws
+  /// Error with the file and the reason; the previous content of the file is then unchanged.
   virtual void write_image(const Image&, const std::string& path) const = 0;
 };
 

@@ -1,50 +1,59 @@
 #pragma once
-// How Scatter's public calls are answered by a model's local functions: what shading normals and refraction make of f.
+// How Scatter's public functions are computed from a model's local functions: the corrections for refraction and shading
+// normals.
 //
-// Notation: light or importance is carried along a path that came from `out` and goes on to `in`. ng is the geometric normal,
-// ns the shading normal, which interpolation or a map has turned away from it. Public values contain the cosine: they are
-// what light that arrives from `in` is multiplied by, per solid angle.
+// Notation: a path came from the direction `out` and continues in the direction `in`. ng is the geometric normal, ns the
+// shading normal, which interpolation or a map has tilted against ng. Public values contain the cosine: light that arrives from
+// `in` is multiplied by them, per solid angle.
 //
-// Refraction (Veach 1997, section 5.2). A beam that is refracted keeps its power but not its spread:
-// n_o^2 cos_o dw_o = n_i^2 cos_i dw_i, so radiance that arrives in a medium of index n_i leaves into one of index n_o as
-// L_o = (1 - F) (n_o / n_i)^2 L_i (eq. 5.2). A path that carries radiance's adjoint from the camera looks from `out` to
-// where light comes from, `in`: n_o is the index on the side of `out`, n_i that on the side of `in`, and with
-// eta = n_i / n_o the factor is 1 / eta^2. A path from a light carries power: none of it is gained or lost by the change
-// of spread, f integrates over `in` to 1 - F, and there is no factor. Local functions are in this second convention.
-// Indices differ between wavelengths, and so does the factor. A specular refraction has the direction of one wavelength: where
-// indices differ only the hero goes on, and its factor is all that counts.
+// Refraction (Veach 1997, section 5.2). A refracted beam keeps its power but not its solid angle:
+//     n_o^2 cos_o dw_o = n_i^2 cos_i dw_i.
+// Therefore radiance L_i that arrives in a medium of index n_i leaves into a medium of index n_o as
+//     L_o = (1 - F) (n_o / n_i)^2 L_i                                       (eq. 5.2).
+// On a path from the camera, light arrives from `in` and leaves to `out`: n_o is the index on the side of `out`, n_i that on
+// the side of `in`, and with eta = n_i / n_o the factor is 1 / eta^2. A path from a light carries power, which does not change
+// with the solid angle: f integrates over `in` to 1 - F, and there is no factor. The local functions use this second
+// convention. The indices differ between wavelengths, and so does the factor. A specular refraction has the direction of one
+// wavelength: where the indices differ only the hero wavelength continues, and only its factor matters.
 //
-// Shading normals: radiance. The model knows ns alone, but which side of the surface a direction is on is decided by ng, or
-// light would leak through. Where the two disagree, most renderers lose the light: a white surface darkens towards its
-// outline, a ball of glass loses 0.3 to 3 %. Here two mirrors bring every direction to the side it belongs to:
-//   - a viewer from whom ns faces away is looked at from his image in the plane across ns: seen(out);
-//   - light that the model takes from the wrong side of the surface is taken from its image in the surface: fold(w).
-// A mirror keeps solid angles and fold leads each direction somewhere, so what leaves towards `out` is
+// Shading normals, radiance. The model is defined by ns alone, but the side of the surface that a direction is on must be
+// decided by ng, or light would leak through the surface. Where ns and ng disagree most renderers drop the light: a white
+// surface darkens towards its silhouette, a glass ball loses 0.3 to 3 %. Here every direction on the wrong side is mirrored to
+// the right side, which we call the mirrored shading-normal correction:
+//   - seen(out): a viewer on the back of ns but on the front of ng (or the reverse) is replaced by its mirror image in the
+//     plane perpendicular to ns;
+//   - fold(w): a light direction w of the model on the wrong side of the surface is replaced by its mirror image in the tangent
+//     plane of ng.
+// Mirroring preserves solid angles and fold maps every w to some direction. So the light scattered towards `out` is
 //     R(out, in) = sum over w with fold(w) = in of f(seen(out), w) |w . ns|     [1/sr],
-// and its integral over `in` is that of the model over all w, its own albedo: a model that loses nothing loses nothing under
-// any shading normal. At most two w lead to one direction: itself, and its image in the surface. Both mirrors are the
-// identity at their planes, so R has no seams. An object may ask for the loss instead (ShadingNormals::clipped).
+// and the integral of R over `in` equals that of the model over all w, its albedo: a model that loses no energy loses none
+// under any shading normal. At most two w are mapped to the same direction: the direction itself, and its image in the surface.
+// Both mirrorings are the identity on their planes, so R is continuous there. An object may select to drop the light instead
+// (ShadingNormals::clipped).
 //
-// Shading normals: importance. Multiplying light from `in` by R means a surface whose true function is R / |in . ng|, a
-// function of where light comes from. On a path from a light, light comes from `out`, and the true cosine is |in . ng|:
+// Shading normals, importance. Multiplying the light from `in` by R corresponds to a surface with the BSDF R / |in . ng|, a
+// function of the direction that light comes from. On a path from a light, light comes from `out`, and the true cosine is that
+// of `in` with ng:
 //     I(out, in) = R(in, out) |in . ng| / |out . ng|                        (Veach 1997, section 5.3, eq. 5.19).
-// So the w are images of `out`, and the model looks from seen(in).
+// So the w are images of `out`, and the model is viewed from seen(in).
 //
-// Captives. A smooth boundary that reflects all light from within keeps it inside. Real light that gets in also gets out; but
-// under shading normals light gets in along ways that it does not find back, and would run along under the surface for ever (a
-// hundredth of what enters bumped glass). A real surface has as many slopes the other way: a viewer who is wholly
-// reflected sees the opposite one, of normal 2 (ng . ns) ng - ns, with the probability opposite_slope_probability. Its model is
-// the same, mirrored across the tilt of ns.
+// Trapped light under total internal reflection. At a real boundary light that gets in also gets out. Under shading normals,
+// light may enter along directions from which it cannot leave: it would be totally reflected along under the surface for ever
+// (a hundredth of the light that enters bumped glass). But a real bumpy surface has as many facets that are tilted the opposite
+// way. Therefore a viewer for whom there is total internal reflection at ns sees with opposite_slope_probability the facet with
+// the opposite tilt, whose normal is 2 (ng . ns) ng - ns. It has the same model, mirrored across the tilt of ns. Slope in the
+// code is the choice between these two facets.
 //
-// Models that are not reciprocal. On a path from a light, light comes from `out` and leaves to `in`: f is asked for (in, out).
-// Directions are still drawn as if it were (out, in), which is near, and weighed with what f then is.
+// Models that are not reciprocal. On a path from a light, light comes from `out` and leaves to `in`: f is evaluated for
+// (in, out). Directions are still sampled as for (out, in), which is similar, and the weight is computed with the value of f
+// for (in, out).
 
 #include "etendue/shader.h"
 
 namespace etendue {
 
-/// Model: Scatter, whose local functions are virtual, or a final class, in which they are public and the compiler sees which
-/// they are.
+/// Model is Scatter, whose local functions are virtual, or a final class with public local functions, so that the compiler can
+/// inline them (ScatterModel).
 template <class Model>
 class ScatterAnswers {
   /// Up to two directions.
@@ -53,20 +62,22 @@ class ScatterAnswers {
     int count = 0;
     void add(const Vector3& v) { at[count++] = v; }
   };
-  /// Which of the two slopes: that of ns, or the opposite one.
+  /// Which of the two facets: the one with normal ns, or the one with the opposite tilt.
   enum class Slope : bool { own, opposite };
 
   static bool plain(const Model& m) { return m.normals_ == Scatter::Normals::same; }
   static bool folds(const Model& m) { return m.normals_ == Scatter::Normals::folded; }
 
-  /// A direction mirrored across the tilt of ns, t = ns - (ns . ng) ng, as which the opposite slope becomes that of ns.
+  /// A direction mirrored in the plane perpendicular to the tilt of ns, t = ns - (ns . ng) ng. This maps the opposite facet to
+  /// the one with normal ns.
   static Vector3 mirrored(const Model& m, const Vector3& v, Slope slope) {
     if (slope == Slope::own) return v;
     const Vector3 t = Vector3(m.frame_.n) - dot(m.frame_.n, m.normal_) * Vector3(m.normal_);
     return v - (2 * dot(t, v) / length_squared(t)) * t;
   }
 
-  /// The local direction of a slope that the model looks from when the path ends at `v`. False: from there nothing is seen.
+  /// seen(v): the local direction, relative to a facet, from which the model is viewed by a viewer in the world direction `v`.
+  /// Returns false if the facet is not visible from `v`.
   static bool seen(const Model& m, const Vector3& v, Vector3& local, Slope slope = Slope::own) {
     local = m.frame_.to_local(mirrored(m, v, slope));
     if (plain(m)) return local.z != 0;
@@ -76,19 +87,20 @@ class ScatterAnswers {
     local.z = -local.z;
     return side * local.z > 0;
   }
-  /// Of a local direction of a slope, those that see it: from which the model looks from there.
+  /// The inverse of `seen`: the world directions from which the model is viewed from a given local direction of a facet.
   static Directions seers(const Model& m, const Vector3& local, Slope slope = Slope::own) {
     Directions found;
     const Vector3 v = m.frame_.to_world(local);
     const float side = plain(m) ? local.z : dot(m.normal_, v);
-    if (!(side * local.z > 0)) return found;  // and its image across ns is farther still on the wrong side
+    if (!(side * local.z > 0)) return found;  // its image across ns is even farther on the wrong side
     found.add(mirrored(m, v, slope));
     if (folds(m) && (side - 2 * local.z * dot(m.frame_.n, m.normal_)) * local.z > 0)
       found.add(mirrored(m, v - 2 * local.z * Vector3(m.frame_.n), slope));
     return found;
   }
 
-  /// The direction that a local one of a slope stands for, where light comes from. False: light from there is lost.
+  /// fold(w): the world direction `v` of the light that the model receives from a local direction of a facet. `image`: whether
+  /// it was mirrored in the surface. Returns false if light from there is dropped.
   static bool fold(const Model& m, const Vector3& local, Slope slope, Vector3& v, bool& image) {
     v = mirrored(m, m.frame_.to_world(local), slope);
     image = false;
@@ -99,19 +111,21 @@ class ScatterAnswers {
     v = v - 2 * side * Vector3(m.normal_);
     return folds(m) && side != 0;
   }
-  /// The local directions of a slope that stand for light from `v`, itself first.
+  /// The inverse of `fold`: the local directions of a facet that are mapped to the world direction `v`, the unmirrored one
+  /// first.
   static Directions unfolded(const Model& m, const Vector3& v, Slope slope = Slope::own) {
     Directions found;
     const Vector3 local = m.frame_.to_local(mirrored(m, v, slope));
     const float side = plain(m) ? local.z : dot(m.normal_, v);
-    if (!(side * local.z > 0)) return found;  // and its image in the surface is farther still behind ns
+    if (!(side * local.z > 0)) return found;  // its image in the surface is even farther behind ns
     found.add(local);
     if (folds(m) && (local.z - 2 * side * dot(m.frame_.n, m.normal_)) * side > 0)
       found.add(local - 2 * side * m.frame_.to_local(Vector3(m.normal_)));
     return found;
   }
 
-  /// The probability with which a slope is seen from `v`. Only models that may hold light captive show the opposite one.
+  /// The probability with which a facet is seen from `v`. The opposite one is seen only in models with total internal
+  /// reflection.
   static float visibility(const Model& m, const Vector3& v, Slope slope) {
     float opposite = 0;
     Vector3 own;
@@ -119,12 +133,12 @@ class ScatterAnswers {
       opposite = opposite_slope_probability(m);
     return slope == Slope::opposite ? opposite : 1 - opposite;
   }
-  /// Twice the sine of the tilt, at most a half: what lets light out of bumped glass soonest, and shows nothing of itself where
+  /// Twice the sine of the tilt, at most 0.5. This releases light from bumped glass soonest, and is not noticeable where
   /// normals are tilted by a degree or two.
   static float opposite_slope_probability(const Model& m) {
     return std::min(0.5f, 2 * safe_sqrt(1 - square(dot(m.frame_.n, m.normal_))));
   }
-  /// The probability with which light is taken to be scattered by a slope.
+  /// The probability with which sample_importance chooses a facet.
   static float slope_probability(const Model& m, Slope slope) {
     const float opposite = m.has_total_internal_reflection_ && folds(m) ? 0.5f * opposite_slope_probability(m) : 0;
     return slope == Slope::opposite ? opposite : 1 - opposite;
@@ -135,12 +149,12 @@ class ScatterAnswers {
   }
   static Spectrum squared(const Spectrum& s) { return s * s; }
 
-  /// f |w . ns| of a viewer at `o` and light from `w`, as radiance.
+  /// f |w . ns| for radiance, of a viewer at `o` and light from `w`: with the factor 1 / eta^2 of refraction.
   static Spectrum refracted(const Model& m, const Spectrum& f, const Vector3& o, const Vector3& w) {
     const Spectrum value = f * std::abs(w.z);
     return o.z * w.z > 0 ? value : value / squared(m.relative_index(o, w));
   }
-  /// The same as importance, which comes from `w`: without what refraction does to radiance.
+  /// The same for importance, on a path that came from `w`: without the factor 1 / eta^2 if the model is reciprocal.
   static Spectrum importance(const Model& m, const Vector3& w, const Vector3& o, Lobes which) {
     if (m.reciprocal_) return m.local_evaluate(w, o, which) * std::abs(w.z);
     return refracted(m, m.local_evaluate(o, w, which), o, w);
@@ -150,7 +164,8 @@ class ScatterAnswers {
     return std::abs(dot(m.normal_, in) / dot(m.normal_, out));
   }
 
-  /// What passes straight on sees the model from where it goes to when it is importance: that is asked for apart.
+  /// Whether null scattering must be sampled separately from other lobes. For importance the viewer is at the direction that
+  /// the path continues in, which for null scattering is -out, and for the other lobes is not known before sampling.
   static bool straight_apart(const Model& m, Lobes which) {
     return folds(m) && (which & null_scattering) && (which & ~null_scattering);
   }
@@ -221,7 +236,7 @@ class ScatterAnswers {
   }
 
  private:
-  /// Straight on, whatever the normals are.
+  /// A sample of null scattering, whose direction does not depend on the normals.
   static ScatterSample straight_on(const Vector3& out, const Scatter::LocalSample& local) {
     return {-out, local.value / local.pdf, local.pdf, null_scattering, 1, false};
   }
@@ -248,7 +263,7 @@ class ScatterAnswers {
     if (!fold(m, local.in, slope, s.direction, image)) return std::nullopt;
     if (s.transmitted()) s.weight = s.weight / squared(s.specular() ? Spectrum(local.eta) : m.relative_index(o, local.in));
     if (!folds(m) || s.specular()) return s;
-    // The other local direction that stands for the same light may have been drawn as well.
+    // The other local direction that is mapped to the same world direction could have been sampled as well.
     const Directions light = unfolded(m, s.direction);
     if (light.count < 2) return s;
     const Vector3& other = light.at[image ? 0 : 1];
@@ -258,8 +273,8 @@ class ScatterAnswers {
     return s;
   }
 
-  // A slope is chosen; where light comes from is one of its local directions w, each as likely as another, and where it goes to
-  // one of those that see the local direction drawn from w.
+  // Chooses a facet, then uniformly one of the local directions w that are mapped to `out`, samples a local direction from w,
+  // and chooses uniformly one of the world directions from which the model is viewed from there.
   static std::optional<ScatterSample> sample_importance(const Model& m, const Vector3& out, float choice, Point2 u,
                                                         Lobes which) {
     Slope slope = Slope::own;
@@ -286,12 +301,13 @@ class ScatterAnswers {
     }
     s.pdf *= slope_probability(m, slope) / float(light.count * to.count);
     const float visible = visibility(m, s.direction, slope);
-    // In this order, as the last two over a density of 1e-36 are more than a float holds.
+    // In this order, as the product of the last two factors over a pdf of 1e-36 would overflow a float.
     s.weight = value / s.pdf * (visible * projected(m, out, s.direction));
     return visible > 0 ? std::optional(s) : std::nullopt;
   }
 
-  /// Whether something of a probability is chosen; `choice` is what is left of it.
+  /// Whether an event of the given probability happens. Rescales the random number `choice` to [0, 1), so that it can be used
+  /// again.
   static bool take_choice(float& choice, float probability) {
     const bool chosen = choice < probability;
     choice = std::min(chosen ? choice / probability : (choice - probability) / (1 - probability), one_minus_epsilon);

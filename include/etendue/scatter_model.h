@@ -1,12 +1,13 @@
 #pragma once
-// ScatterModel, which spares a model the virtual calls.
+// ScatterModel: the base of a Scatter whose local functions are called without virtual calls.
 
 #include "etendue/scatter_answers.h"
 
 namespace etendue {
 
-/// The base of a model that is asked often: `class MyScatter final : public ScatterModel<MyScatter>`, with its local functions
-/// public. A call of Scatter's is then one virtual call, in which what the model does not look at is not computed.
+/// The base of a model that is evaluated often (the curiously recurring template pattern): `class MyScatter final : public
+/// ScatterModel<MyScatter>`, with public local functions. Each public function of Scatter is then a single virtual call. The
+/// compiler inlines the local functions into it and omits the computation of arguments that the model does not use.
 template <class Model>
 class ScatterModel : public Scatter {
  protected:

@@ -1,5 +1,9 @@
 #pragma once
-// Scene (an accelerator): finds what rays hit. Is itself a SceneObject, so scenes nest.
+// Scene: a set of objects with an acceleration structure for ray intersection (Aggregate in pbrt, Scene and its kd-tree in
+// Mitsuba), and Instance, another placement of a scene. Both are SceneObjects themselves, so scenes nest.
+//
+// A new acceleration structure must implement `build`, `find_nearest` and `find_any`. Optional: `find_all`, so that coincident
+// surfaces are found. Everything else (lists of luminaires, nesting, invisible objects, media) is implemented here.
 
 #include <memory>
 #include <span>
@@ -19,18 +23,17 @@ class Scene : public SceneObject {
   static void describe(Description<Scene>&);
 
   std::vector<Ref<SceneObject>> objects;
-  /// Of a nested scene that may choose, when it is prepared, from which point its objects count: the time at which the shutter
-  /// opens [s]. Set by the Job.
+  /// Set by the Job for a nested scene that may choose the origin of its object space when it is prepared (see
+  /// AnimatedTransform): the time at which the shutter opens [s].
   std::optional<float> chooses_centre;
 
-  /// The nearest hit with t in (0, ray.maximum).
+  /// Finds the nearest hit with t in (0, ray.maximum).
   bool nearest(const Ray& ray, Hit& hit) const { return careful_ ? nearest_with_care(ray, hit) : find_nearest(ray, hit); }
-  /// Whether anything lies on the ray.
+  /// Whether any object occludes the ray.
   bool any(const Ray& ray) const { return find_any(ray) || (unseen_ && !ray.of_camera && unseen_->find_any(ray)); }
 
-  /// Whether anything lies on a shadow ray (null: there is none), and what the nearest hit of another one is. The two need
-  /// nothing of each other, and asked one right after the other the processor works on both at once
-  /// (docs/decisions/008-numbers-at-once.md).
+  /// Whether a shadow ray is occluded (null: no shadow ray), and the nearest hit of another ray. The two queries are
+  /// independent, so the processor overlaps them if one directly follows the other (docs/decisions/008-numbers-at-once.md).
   struct AnyAndNearest {
     bool any, nearest;
   };
@@ -39,20 +42,20 @@ class Scene : public SceneObject {
     return {blocked, nearest(ray, hit)};
   }
 
-  /// Every hit on a short ray, in no order; a scene that cannot tell gives the nearest. Objects that have a hit in the list
-  /// already may be left out.
+  /// Adds all hits along a short ray, in no order; a structure that does not implement find_all adds the nearest only. Objects
+  /// with a hit already in the list may be omitted.
   void all(const Ray& ray, HitList& list) const {
     find_all(ray, list);
     if (unseen_ && !ray.of_camera) all_unseen(ray, list);
   }
 
-  /// The surface point of a hit found by `nearest`, through all the nested scenes it lies in.
+  /// The surface point of a hit found by `nearest`, transformed out of all nested scenes that contain it.
   void locate(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
     locate_alone(ray, hit, point);
     if (coincident_) [[unlikely]]
       widen_coincident(hit, point);
   }
-  /// The same, whatever else lies in that place.
+  /// The same without widening the point's error to that of coincident surfaces.
   void locate_alone(const Ray& ray, const Hit& hit, SurfacePoint& point) const {
     if (hit.depth == 0) [[likely]]
       hit.object->surface_point(ray, hit, point);
@@ -62,47 +65,47 @@ class Scene : public SceneObject {
     point.footprint_cosine = std::abs(dot(point.normal, ray.direction));
     point.ray_direction = ray.direction;
   }
-  /// Whether the light that leaves a point of a luminaire in a direction is seen from there: in one place with others, one
-  /// surface alone is, the same which rays from there meet (see CoincidentLuminaires). To be asked of points that were sampled;
-  /// those that a ray met are seen. The point's error is then that of all surfaces there.
+  /// Whether a sampled point of a luminaire is the surface that is visible from a direction, where several surfaces coincide.
+  /// Exactly one of them is visible, the same that rays from that direction hit (see CoincidentLuminaires). Must be called for
+  /// sampled points only; points hit by rays are visible. Widens the point's error to that of all coincident surfaces.
   bool in_front(SurfacePoint& point, const Vector3& direction) const {
     return !coincident_ || in_front_of_coincident(point, direction);
   }
 
-  /// Objects that emit, those at infinity included. One in a nested scene is in the list once for each place where that
-  /// stands, by an object that stands for it there (see SceneObject::original), as points on it name it.
+  /// The objects that emit, including those at infinity. A luminaire in a nested scene is in the list once for each placement
+  /// of that scene, represented by a proxy (see SceneObject::original), which is also the object of surface points on it.
   std::span<const SceneObject* const> luminaires() const { return luminaires_; }
-  /// Luminaires at infinity that such a ray sees when it hits nothing; those without extent are not among them.
+  /// The luminaires at infinity that a ray sees if it hits nothing; without delta lights.
   std::span<const SceneObject* const> infinite_luminaires(const Ray& ray) const {
     return ray.of_camera ? std::span(infinite_).first(infinite_seen_) : std::span(infinite_);
   }
-  /// Whether the camera is not to see everything that is in it.
+  /// Whether some objects are invisible to the camera (SceneObject::visible_to_camera).
   bool has_unseen() const { return has_unseen_; }
-  /// A sphere around all finite objects.
+  /// The bounding sphere of all finite objects.
   Point3 centre() const { return bounds_.empty() ? Point3{} : bounds_.centre(); }
   float radius() const { return bounds_.empty() ? 1.0f : length(bounds_.diagonal()) / 2; }
-  /// Whether any surface lets paths into objects, so that media and indices must be tracked.
+  /// Whether paths can enter any object, so that media and refractive indices must be tracked.
   bool has_interiors() const { return has_interiors_; }
-  /// Whether any surface lets some light pass straight on, so that shadow rays may have to go through surfaces.
+  /// Whether any surface has null scattering, so that shadow rays may have to continue through surfaces.
   bool has_null_surfaces() const { return has_null_surfaces_; }
-  /// Whether a point may lie inside an object that paths can enter: a quick test by bounds.
+  /// Whether a point may lie inside an object that paths can enter: a quick conservative test by bounding boxes.
   bool maybe_inside(const Point3& p) const {
     for (const Bounds3& box : interiors_)
       if (box.contains(p)) return interior_tree_.empty() || in_interior_tree(p);
     return false;
   }
-  /// What all of space outside of other objects is filled with; null: nothing.
+  /// The object whose interior fills all space outside of other objects (SceneObject::surrounds); null: vacuum.
   const SceneObject* surroundings() const { return surroundings_; }
-  /// How deep the scenes in it lie in one another; 0: it holds none.
+  /// The depth of nested scenes; 0: the scene contains no other scene.
   int nesting() const { return nesting_; }
-  /// Another number each time a scene is prepared.
+  /// A new unique number each time a scene is prepared.
   std::uint64_t version() const { return version_; }
-  /// Area [m^2] of the finite objects in it, in its own coordinates.
+  /// Area [m^2] of the contained finite objects, in the scene's object space.
   double own_area(float time) const;
-  /// The same for a scene that is an object under this transform: exact when that is a similarity.
+  /// The same under a transform; exact if the transform is a similarity.
   float placed_area(const AnimatedTransform& placed, float time) const;
 
-  // As an object in another scene: transforms the ray and asks itself.
+  // The scene as an object in another scene: transforms the ray into object space and calls the functions above.
   void prepare() override;
   void prepare_again() override;
   Bounds3 bounds() const override;
@@ -117,10 +120,10 @@ class Scene : public SceneObject {
   SurfaceSample sample_area(Point2 u, float time) const override;
 
  protected:
-  /// Builds the structure over finite objects; called by prepare. What the camera does not see is not among them: it has a
-  /// structure of its own, so that none need know of it.
+  /// Builds the acceleration structure over finite objects; called by `prepare`. Objects that are invisible to the camera are
+  /// not included: they have a separate structure, so subclasses need not handle them.
   virtual void build(std::span<const SceneObject* const> finite) = 0;
-  /// What `nearest`, `any` and `all` say, of what was built.
+  /// `nearest`, `any` and `all` for the objects of `build`.
   virtual bool find_nearest(const Ray&, Hit&) const = 0;
   virtual bool find_any(const Ray&) const = 0;
   virtual void find_all(const Ray& ray, HitList& list) const {
@@ -132,7 +135,7 @@ class Scene : public SceneObject {
   friend class Instance;
   void require_good_objects();
   struct Finite {
-    std::vector<const SceneObject*> seen, unseen;  // by the camera
+    std::vector<const SceneObject*> seen, unseen;  // visible and invisible to the camera
   };
   Finite survey();
   void note_interior(const SceneObject&);
@@ -149,40 +152,40 @@ class Scene : public SceneObject {
   bool in_interior_tree(const Point3&) const;
   void build_interior_tree(std::span<Bounds3>);
 
-  Bounds3 bounds_;  // of the objects, in the scene's own coordinates
+  Bounds3 bounds_;  // of the objects, in the scene's object space
   std::vector<const SceneObject*> luminaires_;
-  std::vector<const SceneObject*> infinite_;                // those that the camera sees come first
-  size_t infinite_seen_ = 0;                                // so many
-  Ref<Scene> unseen_;                                       // finite objects that the camera does not see; null: there are none
-  std::shared_ptr<const CoincidentLuminaires> coincident_;  // null: there are none, or this scene is a nested one itself
-  bool careful_ = false;                                    // whether `nearest` has to mind either
+  std::vector<const SceneObject*> infinite_;                // luminaires at infinity; those visible to the camera come first
+  size_t infinite_seen_ = 0;                                // the number of those visible to the camera
+  Ref<Scene> unseen_;                                       // finite objects invisible to the camera; null: none
+  std::shared_ptr<const CoincidentLuminaires> coincident_;  // null: none, or this scene is nested in another one
+  bool careful_ = false;                                    // whether unseen_ or coincident_ is set
   const SceneObject* surroundings_ = nullptr;
-  std::shared_ptr<const NestedLuminaires> nested_;  // null: there are none, or this scene is a nested one itself
-  std::vector<Bounds3> interiors_;  // of the objects that paths can enter, and of scenes in which there are such; of many
-                                    // such only the union, and the tree
+  std::shared_ptr<const NestedLuminaires> nested_;  // null: none, or this scene is nested in another one
+  std::vector<Bounds3> interiors_;  // bounds of the objects that paths can enter, and of scenes with such objects; if there are
+                                    // many, only their union, and interior_tree_
   bool has_interiors_ = false, has_null_surfaces_ = false, has_unseen_ = false, unbounded_ = false;
   struct Node {
     Bounds3 box;
-    std::uint32_t next = 0;  // after all below it; of a leaf 0
+    std::uint32_t next = 0;  // index of the node after all descendants; 0 for a leaf
   };
-  std::vector<Node> interior_tree_;  // depth first
+  std::vector<Node> interior_tree_;  // in depth-first order
   int nesting_ = 0;
   std::uint64_t version_ = 0;
 };
 
 class ShaderReplacement;
 
-/// A scene placed once more: any number of instances share what is in it and the structure over it.
+/// Another placement of a scene (object instancing): any number of instances share its objects and acceleration structure.
 class Instance final : public SceneObject {
  public:
   static void describe(Description<Instance>&);
 
   Ref<Scene> scene;
 
-  /// Completes a hit found in the scene, with a ray in its coordinates: notes the way out, and what stands for the object
-  /// when this instance has a shader of its own.
+  /// Completes a hit that was found in the scene by a ray in its object space: appends this instance to Hit::scenes, and
+  /// replaces the object by its proxy if this instance has a shader of its own.
   void note_way_out(Hit&) const;
-  /// What hits in this instance may name instead of the scene's own objects; null: those themselves.
+  /// The proxies that hits in this instance refer to instead of the scene's objects; null: there are none.
   const ShaderReplacement* replacement() const { return replacement_.get(); }
 
   void prepare() override;
@@ -200,7 +203,7 @@ class Instance final : public SceneObject {
   std::shared_ptr<const ShaderReplacement> replacement_;
 };
 
-/// The scene that an object is or places; null for all other objects.
+/// The object itself if it is a scene, the placed scene if it is an instance; null for all other objects.
 const Scene* scene_within(const SceneObject&);
 
 }  // namespace etendue

@@ -1,6 +1,8 @@
 #pragma once
-// VolumeShader: a participating medium. Distance sampling and transmittance are not here but in the transport library
-// (transport/medium.h), once for all media.
+// VolumeShader: a participating medium (Medium in pbrt and Mitsuba): its coefficients and phase function. Distance sampling and
+// transmittance are implemented once for all media in transport/medium.h.
+//
+// A new medium must implement `coefficients`, `homogeneous`, `majorant`, `phase` and `sample_phase`. Optional: `emits`.
 
 #include "etendue/core/ray.h"
 #include "etendue/core/spectrum.h"
@@ -9,7 +11,7 @@
 
 namespace etendue {
 
-/// Coefficients at a point [1/m of the scene], and emitted radiance per distance [W m^-3 sr^-1 nm^-1].
+/// The coefficients at a point [1/m, in world space], and the emitted radiance per distance [W m^-3 sr^-1 nm^-1].
 struct VolumeCoefficients {
   Spectrum absorption, scattering, emission;
   Spectrum extinction() const { return absorption + scattering; }
@@ -21,22 +23,21 @@ class VolumeShader : public Component {
   using Parent = Component;
   static void describe(Description<VolumeShader>&);
 
-  // Points are in the own coordinates of the object whose inside the medium fills, as the user wrote them, from their true
-  // origin (a medium that is the same everywhere may get others); directions are those of the scene. Nothing here draws numbers
-  // or remembers: tracking asks for one place again and again, from many threads.
+  // Points are in object space of the object that the medium fills, as written by the user, relative to the true origin of
+  // object space (a homogeneous medium may get other points). Directions are in world space. These functions use no random
+  // numbers and have no state: delta tracking calls them for the same point repeatedly, from many threads.
 
   virtual VolumeCoefficients coefficients(const Point3&, float time, const Wavelengths&) const = 0;
-  /// Coefficients are the same everywhere: free paths then have a closed form.
+  /// Whether the coefficients are the same everywhere: free paths are then sampled in closed form.
   virtual bool homogeneous() const = 0;
-  /// Whether it sends out light of its own.
+  /// Whether the medium emits light.
   virtual bool emits() const { return false; }
-  /// A bound of the extinction [1/m] over the medium, per wavelength: the closer, the faster. A medium that exceeds it
-  /// somewhere is rendered wrongly, so `conform` looks for such places.
+  /// An upper bound of the extinction [1/m] over the whole medium, per wavelength; the tighter, the faster is delta tracking.
+  /// If the extinction exceeds it somewhere the image is wrong, so `etendue conform` searches for such points.
   virtual Spectrum majorant(const Wavelengths&) const = 0;
-  /// Phase function [1/sr] for light that turns from travelling along -out to travelling along in; integrates to 1.
+  /// The phase function [1/sr] for the scattering of light from the direction of travel -out into in; it integrates to 1.
   virtual float phase(const Point3&, const Vector3& out, const Vector3& in) const = 0;
-  /// A direction drawn exactly in proportion to `phase`, and its density [1/sr], which is therefore the same number: walks
-  /// count on phase / density = 1.
+  /// Samples a direction exactly in proportion to `phase`. Its pdf [1/sr] therefore equals `phase`: walks use phase / pdf = 1.
   virtual Vector3 sample_phase(const Point3&, const Vector3& out, Point2 u, float& pdf) const = 0;
 };
 

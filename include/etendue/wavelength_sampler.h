@@ -1,5 +1,8 @@
 #pragma once
-// WavelengthSampler: the wavelengths of a path.
+// WavelengthSampler: samples the wavelengths of a path (in pbrt Film::SampleWavelengths, in Mitsuba
+// Sensor::sample_wavelengths).
+//
+// A new wavelength sampler must implement `sample`.
 
 #include "etendue/core/spectrum.h"
 #include "etendue/describe/component.h"
@@ -14,9 +17,9 @@ class WavelengthSampler : public Component {
   using Parent = Component;
   static void describe(Description<WavelengthSampler>&);
 
-  /// Wavelengths for one sample; `u` is uniform in [0, 1). Densities are per nanometre, such that `to_xyz` estimates
-  /// without bias. The key serves those that take turns over a pixel's samples; paths of one that looks at it cannot be
-  /// mutated.
+  /// Samples the wavelengths of one path by `u`, uniform in [0, 1). The pdfs are per nanometre, such that the estimate `to_xyz`
+  /// is unbiased. The key is for samplers that cycle through wavelengths over a pixel's samples; with a sampler that uses it,
+  /// paths cannot be mutated (Metropolis light transport).
   virtual Wavelengths sample(SampleKey, float u) const = 0;
 };
 

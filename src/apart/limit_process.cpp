@@ -23,7 +23,7 @@ void limit(__rlimit_resource resource, std::uint64_t value) {
   ::setrlimit(resource, &wanted);
 }
 
-/// Sockets and other programs are refused by the system itself from here on.
+/// From here on the kernel refuses sockets and the execution of other programs.
 void forbid_calls() {
   ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   constexpr std::uint32_t refused = SECCOMP_RET_ERRNO | 1;  // EPERM

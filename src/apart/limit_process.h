@@ -1,12 +1,12 @@
 #pragma once
-// What processes may do that read files by libraries whose faults are known, or may be there.
+// Restrictions of processes that read files with libraries that have, or may have, security faults.
 
 #include <cstdint>
 
 namespace etendue::apart {
 
-/// Limits memory [bytes] and the processor's time, closes all but the standard files, and forbids the network and other
-/// programs.
+/// Limits memory [bytes] and CPU time [s], closes all files except the standard ones, and forbids network access and the
+/// execution of other programs.
 void limit_process(std::uint64_t memory, std::uint64_t seconds);
 
 }  // namespace etendue::apart

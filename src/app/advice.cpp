@@ -1,4 +1,4 @@
-// What a renderer cannot find of the light in a scene, and which renderers can.
+// Warnings about the parts of a scene's light transport that a renderer cannot sample, with the renderers that can.
 
 #include "advice.h"
 
@@ -25,7 +25,7 @@ std::string listed(const std::vector<std::string>& names) {
 
 std::string advice_text(const std::string& renderer, const Advice& advice) {
   const std::string text = renderer + " cannot find " + advice.lost + "; ";
-  // Whether it would, were it not for what its members are set to.
+  // This renderer class can find the light with default settings: its members, as set in the job, prevent it.
   if (std::ranges::find(advice.instead, renderer) != advice.instead.end()) return text + "with its members' defaults it can";
   if (advice.instead.empty()) return text + "no known renderer can";
   return text + listed(advice.instead) + " can";

@@ -1,5 +1,5 @@
 #pragma once
-// What a renderer cannot find of the light in a scene, and which renderers can.
+// Warnings about the parts of a scene's light transport that a renderer cannot sample, with the renderers that can.
 
 #include <span>
 #include <string>
@@ -11,7 +11,8 @@ namespace etendue {
 
 /// "PathTracer cannot find caustics of 'lamp' by 'ball'; BidirectionalPathTracer can"
 std::string advice_text(const std::string& renderer, const Advice&);
-/// One such line for everything a job's renderer misses, and one for its bias. The job must be prepared, here and below.
+/// Returns one such line for each kind of light that a job's renderer misses, and one for its bias. Here and below the job must
+/// be prepared.
 std::vector<std::string> advice_lines(const Job&);
 /// Prints them as warnings on standard error.
 void advise(const Job&);
@@ -19,8 +20,8 @@ void advise(const Job&);
 /// Names of the known renderers that, with their defaults, miss nothing in a scene.
 std::vector<std::string> renderers_that_find_all(const SceneTraits&);
 
-/// "4: 1 point light, 2 area lights, 1 environment; 2 in nested scenes": how many luminaires there are, by kind, those of
-/// nested scenes in each place where these stand.
+/// "4: 1 point light, 2 area lights, 1 environment; 2 in nested scenes": the number of luminaires by kind. The luminaires of a
+/// nested scene are counted once for each of its instances.
 std::string luminaires_text(const Scene&, const SceneTraits&);
 
 }  // namespace etendue

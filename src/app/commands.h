@@ -1,6 +1,6 @@
 #pragma once
-// The commands of the program. Each lives in its own file, adds itself to the command line with its options and its
-// help, and says through `run` what is to be done when it was the one given.
+// The commands of the program. Each has its own file: its add_..._command adds the command with its options and help to the
+// command line, and sets `run` when the command was given.
 
 #include <CLI/CLI.hpp>
 #include <functional>
@@ -13,8 +13,8 @@ using Run = std::function<int()>;
 namespace exit_status {
 inline constexpr int done = 0;
 inline constexpr int failed = 1;
-inline constexpr int bad_input = 2;      ///< of the file or the command line
-inline constexpr int interrupted = 130;  ///< as a shell reports Ctrl-C
+inline constexpr int bad_input = 2;      ///< an error in the file or the command line
+inline constexpr int interrupted = 130;  ///< the status that a shell reports after Ctrl-C
 }  // namespace exit_status
 
 void add_render_command(CLI::App& program, Run& run);

@@ -1,4 +1,4 @@
-// Of a surface's light what would leave a side that does not emit.
+// Warns of emission profiles that send part of their power into the side of a surface that does not emit.
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 namespace etendue {
 namespace {
 
-/// Whether an emission says for each direction how much light leaves there, behind a surface as well as before it. A
-/// DiffuseEmission is the same on each side that it emits from.
+/// Whether the emission is defined for directions on both sides of the surface. A DiffuseEmission is the same on each side that
+/// it emits from.
 bool has_directions(const EmissionShader& emission) { return emission.class_info().name != "DiffuseEmission"; }
 
-/// Whether its directions go round with a surface's normal.
+/// Whether the emission's directions are relative to the surface normal.
 bool about_normal(const EmissionShader& emission) {
   if (!emission.class_info().find("about")) return false;
   const Value about = get(emission, "about");
@@ -22,7 +22,7 @@ bool about_normal(const EmissionShader& emission) {
   return text && *text == "normal";
 }
 
-/// At a few wavelengths together.
+/// The emitted power, summed over a few wavelengths.
 double power_of(const EmissionShader& emission, const SceneObject& object) {
   Wavelengths w;
   for (int i = 0; i < spectrum_size; ++i) w.place(i, std::lerp(420.0f, 680.0f, (float(i) + 0.5f) / float(spectrum_size)), 1);
@@ -37,12 +37,13 @@ double power_of(const EmissionShader& emission, const SceneObject& object) {
 void LostLight::look(const SceneObject& object, std::vector<SceneWarning>& list) {
   const EmissionShader* emission = object.emission.get();
   if (!emission || object.delta() || object.infinite() || emission->sides == Sides::both || !has_directions(*emission)) return;
-  // Of a body the other side is its inside, where directions that are the same everywhere lead from half of its surface.
+  // The back side of a closed surface is its inside. An emission whose directions are fixed in space points inwards on half of
+  // the surface, so it is not reported.
   if (object.closed() && !about_normal(*emission)) return;
   if (emission->origin)
     for (const auto& [name, place] : emission->origin->members)
-      if (name == "sides") return;  // who said so knows
-  constexpr size_t most = 100;      // lamps that are looked at: each of them may take some thousand directions
+      if (name == "sides") return;  // written in the file, so it is intended
+  constexpr size_t most = 100;      // number of emitters that are checked: each may need some thousand directions
   if (++looked_at_ > most) return;
   Ref<EmissionShader>& both = with_both_sides_[emission];
   try {
@@ -61,7 +62,7 @@ void LostLight::look(const SceneObject& object, std::vector<SceneWarning>& list)
                                 "lost. sides: both lets it out; sides: front says that this is meant",
                                 name, 100 * (1 - seen / all)),
                     emission->location_of()});
-  } catch (const Error&) {  // what is wrong with it was told when it was prepared
+  } catch (const Error&) {  // errors of this emission have been reported when it was prepared
   }
 }
 

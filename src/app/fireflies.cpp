@@ -1,4 +1,4 @@
-// The samples that brought most light.
+// Lists the samples with the largest contributions.
 
 #include "fireflies.h"
 
@@ -27,7 +27,7 @@ std::string fireflies_text(const Render& render, const std::string& picture_comm
     const std::string which = refusal.empty() ? replay_command(picture_command, sample.x, sample.y, sample.sample) + "   "
                                               : fmt::format("pixel {},{}", sample.x, sample.y);
     text += fmt::format("  {} # Y {:.6g}", which, sample.luminance);
-    // Light of a path from a luminaire falls into another pixel than its own.
+    // A light subpath's contribution is splatted into another pixel than the one of its sample index.
     const int x = sample.splat ? int(std::floor(sample.film.x)) : sample.x;
     const int y = sample.splat ? int(std::floor(sample.film.y)) : sample.y;
     if (sample.splat) text += fmt::format(" splatted at ({:.2f}, {:.2f})", sample.film.x, sample.film.y);

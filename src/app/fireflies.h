@@ -1,5 +1,5 @@
 #pragma once
-// The samples that brought most light: where to look for fireflies.
+// Lists the samples with the largest contributions, which show where fireflies are.
 
 #include <cstdio>
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace etendue {
 
-/// Tells the samples a finished render kept (Film::keep_largest, before it), largest first: what each brought, how
-/// that compares to its pixel, and the command that replays it alone.
+/// Lists the samples that a finished render kept (Film::keep_largest, called before it), largest first: each one's
+/// contribution, its ratio to the pixel's final value, and the command that replays this sample alone.
 std::string fireflies_text(const Render&, const std::string& picture_command);
 
-/// The same, printed.
+/// Prints fireflies_text.
 void report_fireflies(const Render&, const std::string& picture_command, std::FILE* to = stdout);
 
 }  // namespace etendue

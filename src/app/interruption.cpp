@@ -1,4 +1,4 @@
-// Ctrl-C while it renders.
+// Handles Ctrl-C during a render.
 
 #include "interruption.h"
 
@@ -20,11 +20,11 @@ static_assert(std::atomic<Render*>::is_always_lock_free && std::atomic<int>::is_
 
 void say(std::string_view text) { [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size()); }
 
-// Only what is safe in a signal handler: atomics and write().
+// Calls only what is safe in a signal handler: atomics and write().
 void handle(int signal) {
   Render* render = running.load();
   if (!render) return;
-  const int error = errno;  // of whatever was interrupted
+  const int error = errno;  // of the interrupted call
   int none = 0;
   if (requests.compare_exchange_strong(none, 1)) {
     say("\nfinishing this pass and writing what there is; Ctrl-C again aborts\n");
@@ -45,7 +45,7 @@ void install(void (*handler)(int)) {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  // What nohup started is to survive its terminal.
+  // A process that was started by nohup must survive the end of its terminal.
   struct sigaction old = {};
   if (sigaction(SIGHUP, nullptr, &old) == 0 && old.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }

@@ -1,12 +1,13 @@
 #pragma once
-// Ctrl-C while it renders.
+// Handles Ctrl-C during a render.
 
 #include "etendue/render/render.h"
 
 namespace etendue {
 
-/// While it lives, the first SIGINT, SIGTERM or SIGHUP lets the render finish its pass and a second SIGINT aborts it, within
-/// the paths it is at; a third ends the program. Under nohup SIGHUP stays ignored. One at a time.
+/// While an object of this class exists, the first SIGINT, SIGTERM or SIGHUP lets the render finish its pass. A second SIGINT
+/// aborts the render after the paths that its threads are computing; a third ends the program. Under nohup SIGHUP stays
+/// ignored. At most one object may exist at a time.
 class Interruption {
  public:
   explicit Interruption(Render&);
@@ -14,7 +15,7 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  /// Whether a signal came.
+  /// Whether a signal has been received.
   bool asked() const;
 };
 

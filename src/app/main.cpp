@@ -34,12 +34,12 @@ Help on one command: etendue render --help
 Exit status: 0 done, 1 failed, 2 bad input or usage, 130 interrupted.
 )";
 
-/// An empty value is what an unset variable of a shell leaves behind ("--checkpoint $FILE" in quotes). No option means anything
-/// by it, so none takes it.
+/// An empty value is the result of an unset shell variable ("--checkpoint $FILE" in quotes). It has no meaning for any option,
+/// so every option rejects it.
 void refuse_empty_values(CLI::App& command) {
   for (CLI::Option* option : command.get_options())
     if (option->get_items_expected_max() > 0)
-      option->transform(CLI::Validator(  // comes before whatever else the value is checked for
+      option->transform(CLI::Validator(  // runs before the option's other validators
           [](std::string& value) {
             return value.empty() ? std::string("the value is empty; was a variable not set?") : std::string();
           },
@@ -73,7 +73,7 @@ int run_program(int argument_count, char** arguments) {
 
   refuse_empty_values(program);
 
-  // --help behind a command that there is not would print the help of the program, as if all were well.
+  // CLI11 would answer --help after an unknown command with the program's help and exit status 0.
   const std::string first = argument_count > 1 ? arguments[1] : "";
   const std::vector<CLI::App*> commands = program.get_subcommands({});
   if (!first.empty() && !first.starts_with("-") &&

@@ -1,4 +1,4 @@
-// What was written and does not matter, as its component's description says.
+// Warns of members that were written in the file but have no effect, according to their component's conditions (`matters`).
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 namespace etendue {
 namespace {
 
-/// All that a component refers to, itself included, each once, in the order in which a reader meets them.
+/// All components that a component refers to, itself included, each once, depth first in the order of their members.
 void collect(const Component& c, std::unordered_set<const Component*>& seen, std::vector<const Component*>& all) {
   std::vector<const Component*> rest = {&c};
   while (!rest.empty()) {
@@ -42,7 +42,7 @@ void warn_of_members(const Component& root, std::vector<SceneWarning>& list) {
     const ClassInfo& info = c->class_info();
     for (const auto& [name, place] : c->origin->members) {
       const Member* m = info.find(name);
-      // What is written as it would be without: nothing is lost.
+      // A member that was written with its default value is not reported: nothing is lost.
       if (!m || matters(*c, *m) || equal(m->get(*c, *m), m->default_value)) continue;
       for (const Condition& condition : m->conditions)
         if (!condition.holds(*c)) {

@@ -1,4 +1,4 @@
-// What of a scene's objects has no effect, or is not as their materials need it.
+// Warns of members of a scene's objects that have no effect, and of surfaces that are not as their materials require.
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr Lobes refracting_lobes = specular_transmission | glossy_transmission;
 
-/// As the user knows it: the name it has in the file, or what it is.
+/// The object's name in the file, or else its class.
 std::string label(const SceneObject& object) {
   if (object.origin && !object.origin->name.empty()) return "'" + object.origin->name + "'";
   const std::string& name = object.class_info().name;
@@ -30,7 +30,8 @@ bool written(const Component& c, std::string_view member) {
   return false;
 }
 
-/// Calls for a component and all that its members hold, once each; `into` says whether to look inside.
+/// Calls `call` for a component and all components in its members, once each. Its result says whether to descend into this
+/// component.
 template <class Call>
 void for_parts(const Component& c, std::unordered_set<const Component*>& seen, const Call& call) {
   if (!seen.insert(&c).second || !call(c)) return;
@@ -54,7 +55,8 @@ class Objects {
  public:
   Objects(const Job& job, std::vector<SceneWarning>& list) : job_(job), list_(list) {}
 
-  /// `instead`: what all objects have for their own shaders; null: those.
+  /// Checks the objects of a scene. `instead` is the shader that replaces those of all objects (an instance's); null: they keep
+  /// their own.
   void in(const Scene& scene, const Shader* instead) {
     if (!seen_.insert({&scene, instead}).second) return;
     for (const Ref<SceneObject>& object : scene.objects) {
@@ -72,13 +74,13 @@ class Objects {
     }
   }
 
-  /// Of scenes that stand in instances alone, when all have been seen.
+  /// Checks the members of scenes that occur only in instances. To be called after all objects have been visited.
   void of_instanced() {
     for (const Scene* scene : instanced_)
       if (!nested_.contains(scene))
         of_whole(*scene, "of the scene in an instance only its objects count; say it of the instance or of them");
   }
-  /// Of a scene whose objects alone are rendered.
+  /// Checks the members of a scene of which only the objects are rendered.
   void of_whole(const Scene& scene, const std::string& why) {
     without_effect(scene,
                    {"transform", "shader", "emission", "interior", "sides", "priority", "shading_normals", "visible_to_camera"},
@@ -154,7 +156,7 @@ class Objects {
     Lobes lobes = shader->possible_lobes();
     if (object.sides != Sides::both) lobes &= Lobes(reflection_lobes | null_scattering);
     if (!(lobes & transmission_lobes)) return false;
-    // Last, as of a large mesh it takes time.
+    // closed() comes last: it takes time for a large mesh.
     return (shader->transmits() || (object.interior && is_sheet(*shader))) && object.closed();
   }
 
@@ -184,19 +186,19 @@ class Objects {
         object.location_of("interior"));
   }
 
-  /// " (12 of its edges belong to one triangle alone)"
+  /// For example " (12 of its edges belong to one triangle alone)".
   static std::string ends_text(const SceneObject& object) {
     const std::uint64_t open = object.open_edges();
     if (open > 0) return fmt::format(" ({} edge{} to one triangle alone)", grouped(open), open == 1 ? " belongs" : "s belong");
     const auto mesh = object.triangles();
-    constexpr size_t fewest = 4;  // that enclose anything
+    constexpr size_t fewest = 4;  // triangles that can enclose a volume
     return mesh && mesh->triangles.size() >= fewest ? " (its triangles do not all turn the same way around the front)" : "";
   }
 
   void openness(const SceneObject& object, const Shader* shader) {
     if (!shader || object.interior || object.closed() || object.unbounded()) return;
     if (!shader->transmits() || !(shader->possible_lobes() & refracting_lobes)) return;
-    // Of patches nothing is said: those of the best known bodies, such as the teapot, reach into one another and do not meet.
+    // Patches are not reported: those of well-known models, such as the teapot, intersect without sharing edges.
     const std::string& name = object.class_info().name;
     if (name == "BezierPatches" || name == "NurbsSurface") return;
     add("open body",
@@ -207,7 +209,7 @@ class Objects {
         object.location_of("shader"));
   }
 
-  /// What its file says that nobody reads.
+  /// Warns of data in the object's file that are not used: materials and vertex colours.
   void file(const SceneObject& object, const Shader* shader) {
     if (!shader) return;
     const ObjectNotes notes = object.notes();
@@ -236,7 +238,7 @@ class Objects {
     return found;
   }
 
-  /// Images over the surface coordinates of a mesh that has none.
+  /// Warns of image textures on a mesh without uv coordinates.
   void coordinates(const SceneObject& object, const Shader* shader) {
     const Component* roots[] = {shader, object.emission.get()};
     for (const Component* root : roots) {
@@ -246,7 +248,7 @@ class Objects {
       for_parts(*root, seen, [&](const Component& c) {
         const std::string& name = c.class_info().name;
         if (name == "ImageMap" && !image) image = &c;
-        // These give what they hold coordinates of their own.
+        // These maps replace the coordinates of the textures in them.
         return name != "PlanarMap" && name != "CylindricalMap" && name != "SphericalMap" && name != "TriplanarMap";
       });
       if (!image || !object.notes().without_uv) continue;
@@ -263,8 +265,8 @@ class Objects {
   std::vector<SceneWarning>& list_;
   LostLight lost_light_;
   std::set<std::pair<const Scene*, const Shader*>> seen_;
-  std::set<const Scene*> nested_;        // among objects
-  std::vector<const Scene*> instanced_;  // in instances
+  std::set<const Scene*> nested_;        // scenes that are objects themselves
+  std::vector<const Scene*> instanced_;  // scenes in instances
 };
 
 }  // namespace

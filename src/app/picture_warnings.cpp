@@ -10,12 +10,13 @@
 namespace etendue {
 namespace {
 
-constexpr double middle_grey = 0.18;  // of white
+constexpr double middle_grey = 0.18;  // relative to white
 
 struct Shown {
-  double lit = 0;               ///< fraction of pixels with any light at all
-  double black = 0, white = 0;  ///< of the lit ones, those shown as black, or with all of R, G and B at their most
-  double median = 0;            ///< luminance Y of the lit ones
+  double lit = 0;  ///< fraction of pixels with any light at all
+  double black = 0,
+         white = 0;   ///< fractions of the lit pixels that are shown as black, or with R, G and B all at their maximum
+  double median = 0;  ///< luminance Y of the lit pixels
 };
 
 Shown shown(const Image& radiance, const Image& display) {
@@ -62,7 +63,7 @@ std::vector<SceneWarning> picture_warnings(const Job& job, const std::vector<Ref
     const Shown s = shown(radiance, tone->apply(radiance));
     constexpr double most = 0.9;
     const bool dark = s.black >= most, bright = s.white >= most;
-    // A few lit pixels before a black sky are a picture.
+    // An image of a few lit pixels on a black background, such as a starry sky, is not reported.
     if (!(s.median > 0) || s.lit < 0.05 || (!dark && !bright)) continue;
     const double stops = std::log2(middle_grey / s.median);
     const double factor = dark ? middle_grey / s.median : s.median / middle_grey;

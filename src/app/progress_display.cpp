@@ -1,4 +1,4 @@
-// How far a render is, shown to people or programs.
+// Shows the progress of a render as a bar or lines of text, or as JSON for other programs.
 
 #include "progress_display.h"
 
@@ -43,7 +43,7 @@ void ProgressDisplay::show(const Progress& p) {
     }
     case Kind::lines:
       if (p.finished || p.seconds < next_line_) break;
-      next_line_ = p.seconds + std::max(10.0, 0.25 * p.seconds);  // rarer and rarer
+      next_line_ = p.seconds + std::max(10.0, 0.25 * p.seconds);  // the interval grows with the time
       fmt::print(stderr, "{}\n", line(p));
       break;
     case Kind::json: {

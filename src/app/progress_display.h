@@ -1,5 +1,5 @@
 #pragma once
-// How far a render is, shown to people or programs.
+// Shows the progress of a render as a bar or lines of text, or as JSON for other programs.
 
 #include <string>
 
@@ -11,16 +11,16 @@ class ProgressDisplay {
  public:
   enum class Kind { none, bar, lines, json };
 
-  /// What `--progress` asks for: "auto", "bar", "json" or "none".
+  /// The kind for the value of `--progress`: "auto", "bar", "json" or "none".
   static Kind kind_for(const std::string& asked, bool quiet);
 
-  /// `open_ended`: not stopped by a number of samples, which is then not shown.
+  /// `open_ended`: the render is not stopped by a number of samples, so that number is not shown.
   ProgressDisplay(Kind kind, bool open_ended) : kind_(kind), open_ended_(open_ended) {}
   ~ProgressDisplay() { clear(); }
 
   /// Called by one thread at a time.
   void show(const Progress&);
-  /// Takes the bar off the terminal.
+  /// Erases the bar from the terminal.
   void clear();
   const Progress& last() const { return last_; }
 

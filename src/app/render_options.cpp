@@ -1,4 +1,4 @@
-// What `etendue render` takes, and how it changes a Job.
+// The options of `etendue render`, and how they change a Job.
 
 #include "render_options.h"
 
@@ -142,7 +142,7 @@ const std::string& RenderOptions::checkpoint_file() const {
 
 std::vector<RenderOptions::Override> RenderOptions::overrides() const {
   std::vector<Override> list;
-  // Far more than anyone waits for; the other rule comes first.
+  // A number of samples that is never reached: the limit of time or error ends the render first.
   if (open_ended()) list.push_back({"--time", "renderer.samples", "1000000"});
   if (!samples.empty()) list.push_back({"--samples", "renderer.samples", samples});
   if (!time.empty()) list.push_back({"--time", "time_limit", fmt::format("{} s", parse_duration(time, "--time"))});
@@ -183,13 +183,14 @@ void RenderOptions::scale_crop(const Job& job, std::vector<Override>& list) cons
   warn(fmt::format("the crop of the description, {} of {} x {} pixels, becomes {} of {} x {}", crop_of(c.data()), of[0], of[1],
                    crop_of(scaled), n[0], n[1]),
        {intern("--size"), 0, 0});
-  // The old one need not lie within the new picture, nor the new one within the old picture.
+  // The old crop may lie outside the new image, and the new crop outside the old image; so the crop is emptied before the size
+  // changes.
   list.insert(list.begin(), {"--size", "image.crop", "[]"});
   list.push_back({"--size", "image.crop", crop_of(scaled)});
 }
 
 Ref<Job> RenderOptions::load() const {
-  // A command line that makes no sense is told before a long load.
+  // Errors in the command line are thrown before the scene is loaded, which may take long.
   std::vector<Override> list = overrides();
   settings();
   std::vector<SetOption> said = set_options();
@@ -258,7 +259,7 @@ std::string RenderOptions::hash_of(const Job& job, std::set<std::string> read) c
   };
   const auto full = [](const std::string& path) { return std::filesystem::absolute(path).string(); };
   for (const std::string& path : files_named_by(job)) read.insert(full(path));
-  read.insert(full(file));  // one of another program may be read by a process of its own
+  read.insert(full(file));  // a file of another format may be read by a separate process, which InputsRead does not see
   for (const std::string& path : read) {
     const FileContent content = content_of(path);
     hash.add(std::as_bytes(std::span(&content, 1)));
@@ -277,13 +278,14 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// The output for a file name, by its ending.
+/// The output for a file name, chosen by its extension.
 Ref<Output> output_for(const std::string& file) {
   const std::string ending = lower(std::filesystem::path(file).extension().string());
   std::vector<std::string> known;
   for (const ClassInfo* info : Registry::instance().subclasses(*Registry::instance().find("Output"))) {
     const Ref<Output> output = ref_cast<Output>(create(*info));
-    if (dynamic_cast<const DenoisedOutput*>(output.get())) continue;  // it has another's ending
+    if (dynamic_cast<const DenoisedOutput*>(output.get()))
+      continue;  // it writes by another output and has that output's extension
     if (output->extension() == ending) return output;
     known.push_back(output->extension());
   }
@@ -292,7 +294,7 @@ Ref<Output> output_for(const std::string& file) {
               {intern("--output"), 0, 0});
 }
 
-/// The class of what a denoised output writes by; null for others.
+/// The class of the output that a DenoisedOutput writes by; null for other outputs.
 const ClassInfo* format_of(const Output& output) {
   const auto* denoised = dynamic_cast<const DenoisedOutput*>(&output);
   return denoised && denoised->output ? &denoised->output->class_info() : nullptr;
@@ -310,7 +312,7 @@ std::vector<Ref<Output>> chosen_outputs(const std::vector<Ref<Output>>& describe
         break;
       }
     set(*output, "file", Value(FilePath{file, ""}));
-    // A copy says where the file that it was copied from is named.
+    // The copy's origin still gives the location of the described output's `file`.
     if (!output->origin) output->origin = std::make_unique<Component::Origin>();
     std::erase_if(output->origin->members, [](const auto& member) { return member.first == "file"; });
     output->origin->members.emplace_back("file", Location{intern("--output"), 0, 0});
@@ -335,7 +337,7 @@ std::vector<std::string> write_each(const std::vector<Ref<Output>>& outputs, con
 
 void add_outputs(const std::vector<Ref<Output>>& outputs, const std::string& stem, OutputFiles& files) {
   for (const Ref<Output>& output : outputs) {
-    if (!output) continue;  // preparing the job says so
+    if (!output) continue;  // an error is thrown when the job is prepared
     const Location at = output->location_of("file");
     files.add(output->path(stem), at.known() ? at : Location{intern("--output"), 0, 0});
   }

@@ -1,4 +1,4 @@
-// What goes wrong, told to the user.
+// Reports errors to the user.
 
 #include "report.h"
 
@@ -27,7 +27,7 @@ void show_all(const std::vector<Error>& errors) {
   fmt::print(stderr, "{} error{}\n", errors.size(), errors.size() == 1 ? "" : "s");
 }
 
-/// Who else may have failed: code of plugins runs in this program.
+/// Names the plugins in use: their code runs in this process and may have failed.
 std::string plugins_note() {
   std::string text;
   for (const std::string& file : Registry::instance().plugins()) {
@@ -44,7 +44,7 @@ const CLI::App* innermost_command(const CLI::App* app) {
   return app;
 }
 
-/// The known option or command nearest to what was not understood.
+/// A suggestion for an unknown option or command: the nearest known one.
 std::string meant(const CLI::App* command, const std::string& given) {
   std::vector<std::string> known;
   if (given.starts_with("-")) {
@@ -86,7 +86,7 @@ std::string no_command(const CLI::App& program, const std::string& given) {
 std::string usage_failure(const CLI::App* program, const CLI::Error& error) {
   const CLI::App* command = innermost_command(program);
   std::string text = error.what();
-  // Whatever the parser stumbled over, what it could not place at all is the likeliest cause.
+  // Whatever error the parser reports, an argument it does not recognize is the most probable cause.
   const std::vector<std::string> extras = program->remaining(true);
   const auto option = std::ranges::find_if(extras, [](const std::string& extra) { return extra.starts_with("-"); });
   if (option != extras.end())

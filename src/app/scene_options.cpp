@@ -1,4 +1,4 @@
-// What every command takes that reads a render description.
+// The options of all commands that read a render description.
 
 #include "scene_options.h"
 
@@ -108,7 +108,7 @@ ImportedJob SceneOptions::load_imported() const {
 
 namespace {
 
-/// Whether what `path` says is gone when `later` is set: the same place, or one around it.
+/// Whether setting `later` overwrites what was set at `path`: the same member, or one that contains it.
 bool replaces(const std::string& later, const std::string& path) {
   return path.starts_with(later) && (path.size() == later.size() || path[later.size()] == '.' || path[later.size()] == '[');
 }

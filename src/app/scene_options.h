@@ -1,5 +1,5 @@
 #pragma once
-// What every command takes that reads a render description: the file, and what replaces parts of it.
+// The options of all commands that read a render description: the file, and overrides of its parts.
 
 #include <optional>
 #include <string>
@@ -12,12 +12,12 @@
 
 namespace etendue {
 
-/// What an option sets in a job.
+/// A member that an option sets in a job.
 struct SetOption {
   std::string option, path;
 };
 
-/// Throws Error where what one says is lost, as a later one sets the same place or one around it.
+/// Throws Error if an option is overwritten by a later one, which sets the same member or one that contains it.
 void require_kept(const std::vector<SetOption>&);
 
 struct SceneOptions {
@@ -25,31 +25,31 @@ struct SceneOptions {
   std::vector<std::string> defines;  ///< "name=value"
   std::vector<std::string> sets;     ///< "path=value"
   std::vector<std::string> plugins;
-  ImportOptions import;      ///< for files of other programs
-  std::optional<int> frame;  ///< what `frame` means in the file; without it 0
-  std::string fps;           ///< frames in a second of `time`, as written; empty: default_fps
-  bool animated = false;     ///< the file is one of several frames
+  ImportOptions import;      ///< for files of other formats
+  std::optional<int> frame;  ///< the value of `frame` in the file; without it 0
+  std::string fps;           ///< frames per second of `time`, as written; empty: default_fps
+  bool animated = false;     ///< the file is rendered for several frames
 
   static constexpr double default_fps = 24;
   static constexpr int most_frames = 999'999'999;
 
   void add_to(CLI::App& command);
-  /// All but the file, for commands that take several.
+  /// Adds all options but the file, for commands with several files.
   void add_overrides_to(CLI::App& command);
 
-  /// Loads plugins and file and applies the overrides. Throws Errors.
+  /// Loads the plugins and the file, and applies the overrides. Throws Errors.
   Ref<Job> load() const;
-  /// The same for a file of another program, with what is not as there. Throws when no Importer reads it.
+  /// The same for a file of another format, with the differences from it. Throws Error if no Importer reads the format.
   ImportedJob load_imported() const;
-  /// Frames in a second of `time`. Throws Error for what is none.
+  /// Frames per second of `time`. Throws Error if the option is not a positive number.
   double frames_per_second() const;
-  /// These options as they are written on a command line, quoted for a shell, each with a blank before it.
+  /// The options as written on a command line, quoted for a shell, with a blank before each.
   std::string command_line() const;
   /// The same without the file.
   std::string overrides_line() const;
 
  protected:
-  /// What `sets` set, in their order.
+  /// The members that `sets` sets, in their order.
   std::vector<SetOption> set_options() const;
 
  private:
@@ -57,7 +57,7 @@ struct SceneOptions {
   void apply_sets(Job&) const;
 };
 
-/// The text in single quotes when a shell would otherwise take it apart.
+/// The text, in single quotes if it has characters that are special to a shell.
 std::string shell_quoted(const std::string& text);
 
 /// The file's name without folder and ending.

@@ -1,7 +1,7 @@
 // Standard output and standard error of the program.
 //
-// Both become streams of ours (fopencookie) that hand their bytes to the descriptor and report success to whoever prints, so
-// that no print in the program needs to expect failure. The first error is kept and told at the end.
+// Both are replaced by streams (fopencookie) that write to the descriptor and always report success, so that no caller of print
+// needs to handle errors. The first error is stored and reported at the end of the program.
 
 #include "streams.h"
 
@@ -23,11 +23,11 @@ namespace {
 
 struct StandardStream {
   int descriptor;
-  int error = 0;  ///< the first
+  int error = 0;  ///< the first error
 };
 StandardStream standard_output{STDOUT_FILENO}, standard_error{STDERR_FILENO};
 
-/// Writes all, or notes why not.
+/// Writes all bytes, or stores the error.
 ssize_t write_to(void* cookie, const char* data, size_t size) {
   auto& stream = *static_cast<StandardStream*>(cookie);
   size_t done = 0;
@@ -35,7 +35,7 @@ ssize_t write_to(void* cookie, const char* data, size_t size) {
     const ssize_t written = ::write(stream.descriptor, data + done, size - done);
     if (written > 0) {
       done += size_t(written);
-    } else if (written < 0 && errno == EAGAIN) {  // whoever shares a terminal may have made it so
+    } else if (written < 0 && errno == EAGAIN) {  // another process may have made a shared terminal non-blocking
       pollfd ready{stream.descriptor, POLLOUT, 0};
       ::poll(&ready, 1, 1000);
     } else if (written < 0 && errno != EINTR) {
@@ -45,20 +45,20 @@ ssize_t write_to(void* cookie, const char* data, size_t size) {
   return ssize_t(size);
 }
 
-/// None when there is no memory for it: then the stream stays what it was.
+/// Null if memory is short: then the original stream stays in use.
 std::FILE* stream_to(StandardStream& stream, int buffering) {
   std::FILE* file = fopencookie(&stream, "w", {nullptr, write_to, nullptr, nullptr});
   if (file) std::setvbuf(file, nullptr, buffering, BUFSIZ);
   return file;
 }
 
-/// Where a descriptor is closed, opens something that fails as it would: reading from what is open for writing alone, and the
-/// other way round.
+/// If a descriptor is closed, opens a file on it that fails as a closed one would: for reading if it is opened for writing
+/// only, and vice versa.
 void occupy(int descriptor) {
   if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) return;
   int opened = ::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   if (opened < 0) opened = ::open("/", O_RDONLY | O_DIRECTORY);
-  // The lowest that is free is taken, and those below are in use.
+  // open() returns the lowest free descriptor; all below this one are in use.
   if (opened >= 0 && opened != descriptor) {
     ::dup2(opened, descriptor);
     ::close(opened);

@@ -3,14 +3,14 @@
 
 namespace etendue {
 
-/// To be called before anything else. From then on
-///  - descriptors 0 to 2 are in use, if only by what cannot be read or written: no file that is opened later takes the place
-///    of a stream that was closed, to have messages written into it;
-///  - nothing that is printed throws, waits or ends the program, whatever becomes of its reader: a render outlives that.
+/// To be called before anything else. Afterwards
+///  - descriptors 0 to 2 are open, if only to a file that cannot be read or written. Otherwise a file that is opened later
+///    could get the descriptor of a closed stream, and messages would be written into it;
+///  - printing neither throws nor ends the program, whatever happens to the reader: a render outlives its reader.
 void open_standard_streams();
 
-/// Prints what is still held back. A program whose standard output was lost has not done what it was asked to do: this is then
-/// said, and the status of success becomes that of failure. A reader that went away (`| head -1`) had what it wanted.
+/// Prints what is still buffered. If writing to standard output failed, prints this error and turns the status of success into
+/// that of failure. A reader that closed the pipe (`| head -1`, EPIPE) is no failure.
 int close_standard_streams(int status);
 
 }  // namespace etendue

@@ -48,7 +48,7 @@ enum class Operation : std::uint8_t { close_image = 2, create_image = 4, update_
 class Packet {
  public:
   explicit Packet(Operation o) {
-    integer(0);  // its length, known at the end
+    integer(0);  // a placeholder for the length, set in take()
     bytes_.push_back(std::byte(o));
   }
   Packet& flag(bool b) {
@@ -108,10 +108,10 @@ std::vector<std::byte> tev_close_image(const std::string& name) {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds patience(3);  // to connect, and for a packet to be taken whole
-constexpr std::chrono::seconds farewell(5);  // for all that is sent once the render has ended
+constexpr std::chrono::seconds patience(3);  // timeout to connect, and to send one packet
+constexpr std::chrono::seconds farewell(5);  // timeout for all packets that are sent after the end of the render
 
-/// Waits until a socket can be written to. Throws Error, also when that is not so by `deadline`.
+/// Waits until a socket can be written to. Throws Error on failure or when `deadline` has passed.
 void await_room(int socket, Clock::time_point deadline) {
   pollfd ready{socket, POLLOUT, 0};
   for (;;) {
@@ -175,7 +175,7 @@ void TevDisplay::finish(bool keep) {
 }
 
 void TevDisplay::send(const std::vector<std::byte>& bytes) {
-  // For the whole packet: a viewer that takes a few bytes now and then holds nothing up for longer.
+  // The deadline is for the whole packet, so a viewer that accepts only a few bytes at a time cannot block for longer.
   const Clock::time_point whole = Clock::now() + patience;
   for (size_t sent = 0; sent < bytes.size();) {
     Clock::time_point deadline = whole;
@@ -190,7 +190,7 @@ void TevDisplay::send(const std::vector<std::byte>& bytes) {
   }
 }
 
-/// Linear sRGB, as tev takes pictures to be; in bands of rows, so that no packet is very large.
+/// Sends the image in linear sRGB, which tev expects, in bands of rows that keep packets small.
 void TevDisplay::show() {
   const Image picture = convert_color_space(render_.picture(), "srgb");
   static const std::vector<std::string> channels = {"R", "G", "B"};
@@ -214,7 +214,7 @@ void TevDisplay::work() {
     for (bool last = false; !last;) {
       const Clock::time_point began = Clock::now();
       show();
-      // Showing is a small part of what is done.
+      // Pauses at least 20 times as long as sending took, so that the display costs little of the render's time.
       const auto pause = std::max<Clock::duration>(std::chrono::seconds(1), 20 * (Clock::now() - began));
       std::unique_lock lock(guard_);
       changed_.wait_for(lock, pause, [&] { return ending_; });

@@ -1,6 +1,6 @@
 #pragma once
-// A render shown in tev while it goes on: `etendue render --tev HOST[:PORT]`. tev (https://github.com/Tom94/tev) is a viewer of
-// pictures that takes them over TCP; its README says how (section "Over a Network").
+// Shows a render in the viewer tev during rendering: `etendue render --tev HOST[:PORT]`. tev (https://github.com/Tom94/tev)
+// receives images over TCP; its README describes the protocol (section "Over a Network").
 
 #include <chrono>
 #include <condition_variable>
@@ -13,23 +13,23 @@
 
 namespace etendue {
 
-/// Where a tev listens.
+/// The address of a running tev.
 struct TevAddress {
   std::string host, port;
 };
-/// "HOST", "HOST:PORT", "[IPv6]:PORT". Throws Error, naming --tev, when it is none.
+/// "HOST", "HOST:PORT", "[IPv6]:PORT". Throws Error, with --tev as location, for anything else.
 TevAddress parse_tev_address(const std::string&);
 
-// Packets: a length that counts itself, an operation, and what belongs to that, all little endian.
+// Packets: the length in bytes (including itself), the operation, and its arguments, all little endian.
 std::vector<std::byte> tev_create_image(const std::string& name, int width, int height,
                                         const std::vector<std::string>& channels);
-/// Rows [first, last) of a picture; `planes` are its channels, one after the other.
+/// Rows [first, last) of an image; `planes` are its channels, one after the other.
 std::vector<std::byte> tev_update_image(const std::string& name, const std::vector<std::string>& channels,
                                         const std::vector<std::vector<float>>& planes, int width, int first, int last);
 std::vector<std::byte> tev_close_image(const std::string& name);
 
-/// Sends the picture about once a second, from a thread of its own. Whatever goes wrong is said once, as a warning, and the
-/// render goes on without.
+/// Sends the image about once a second, from its own thread. An error is reported once, as a warning; the render continues
+/// without the display.
 class TevDisplay {
  public:
   TevDisplay(const Render&, TevAddress, std::string name);
@@ -37,8 +37,8 @@ class TevDisplay {
   TevDisplay(const TevDisplay&) = delete;
   TevDisplay& operator=(const TevDisplay&) = delete;
 
-  /// The last picture is shown; or, of a render that came to nothing, taken away. Waits for that, but a few seconds at most:
-  /// what is to be kept is better written before.
+  /// Shows the final image or, if `keep` is false because the render was aborted, closes the image in tev. Blocks until this is
+  /// sent, at most a few seconds, so files should be written before.
   void finish(bool keep);
 
  private:
@@ -54,7 +54,7 @@ class TevDisplay {
   std::mutex guard_;
   std::condition_variable changed_;
   bool ending_ = false, keep_ = true;
-  std::chrono::steady_clock::time_point last_moment_;  // for what is sent when ending_
+  std::chrono::steady_clock::time_point last_moment_;  // the deadline once ending_ is set
   std::thread thread_;
 };
 

@@ -1,4 +1,4 @@
-// Numbers and times as people read and write them, and text files.
+// Conversion of numbers and times from and to text, and reading of text files.
 
 #include "text.h"
 
@@ -43,7 +43,7 @@ double parse_duration(const std::string& text, const std::string& option) {
     if (problem != std::errc() || !(number >= 0) || !std::isfinite(number)) throw wrong();
     const bool plain = after == end;
     const double unit = plain || *after == 's' ? 1 : *after == 'm' ? 60 : *after == 'h' ? 3600 : 0;
-    // Units come once each, the largest first; a plain number stands alone.
+    // Each unit occurs once, the largest first; a number without a unit stands alone.
     if (unit == 0 || unit >= largest_unit || (plain && at != text.data())) throw wrong();
     largest_unit = unit;
     seconds += number * unit;

@@ -1,4 +1,4 @@
-// What the camera sees of a scene, and where it stands.
+// Warns of cameras that see no object or stand inside an opaque one.
 
 #include <fmt/format.h>
 
@@ -10,14 +10,14 @@
 namespace etendue {
 namespace {
 
-constexpr int side = 24;  // rays across the film, and down it
+constexpr int side = 24;  // number of rays across the film, and down it
 
 std::string name_of(const SceneObject& object) {
   if (object.origin && !object.origin->name.empty()) return "'" + object.origin->name + "'";
   return "the " + object.class_info().name;
 }
 
-/// One of so many rays that are spread over the film and the time the shutter is open.
+/// One of side x side rays, spread over the film and over the time the shutter is open.
 Ray camera_ray(const Job& job, int x, int y) {
   const Camera& camera = *job.camera;
   const float part = (float(x + side * y) + 0.5f) / (side * side);
@@ -27,7 +27,7 @@ Ray camera_ray(const Job& job, int x, int y) {
   return ray;
 }
 
-/// Whether a ray comes near a box: within `slack` radians of the sphere around it.
+/// Whether a ray passes a box: within `slack` radians of its bounding sphere.
 bool comes_near(const Ray& ray, const Bounds3& box, float slack) {
   const Vector3 to = box.centre() - ray.origin;
   const float radius = length(box.diagonal()) / 2, along = dot(to, ray.direction), distance = length(to);
@@ -36,7 +36,7 @@ bool comes_near(const Ray& ray, const Bounds3& box, float slack) {
   return along > 0 && along - radius <= ray.maximum && across <= radius + slack * along;
 }
 
-/// The camera looks past everything there is.
+/// Warns if all objects are outside the camera's view.
 void sees_nothing(const Job& job, std::vector<SceneWarning>& list) {
   const Scene& scene = *job.scene;
   if (scene.unbounded()) return;
@@ -74,13 +74,13 @@ void sees_nothing(const Job& job, std::vector<SceneWarning>& list) {
        camera.location_of("to")});
 }
 
-/// The camera stands in a body that lets no light in, and nothing shines in there.
+/// Warns if the camera is inside an opaque closed object that contains no luminaire.
 void stands_in_the_dark(const Job& job, std::vector<SceneWarning>& list) {
   const Scene& scene = *job.scene;
   const Ray start = camera_ray(job, side / 2, side / 2);
   const SceneObject* around = nullptr;
   constexpr int directions = 32;
-  for (int i = 0; i < directions; ++i) {  // evenly over the sphere, along a spiral
+  for (int i = 0; i < directions; ++i) {  // evenly distributed over the sphere, along a spiral
     Ray ray = start;
     const float z = 1 - (2 * float(i) + 1) / directions, r = std::sqrt(std::max(1 - z * z, 0.0f)), turn = 2.399963f * float(i);
     ray.direction = {r * std::cos(turn), r * std::sin(turn), z};

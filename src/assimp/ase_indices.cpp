@@ -14,7 +14,7 @@ std::string wrong_ase_index(const std::string& path) {
   const std::optional<std::string> wide = utf16_text(path);
   if (wide) decoded.str(*wide);
   std::istream& file = wide ? static_cast<std::istream&>(decoded) : plain;
-  unsigned long corners[2] = {0, 0};  // of textures, of colours: how many the list has that stands before the faces
+  unsigned long corners[2] = {0, 0};  // lengths of the lists of texture and colour vertices that precede the faces
   for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);
     std::string word;

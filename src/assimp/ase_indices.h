@@ -1,12 +1,12 @@
 #pragma once
-// ASE files whose faces name corners of textures or colours that there are not. The library reads those from behind its lists,
-// where there may be anything, the same in each process.
+// Checks ASE files for faces with invalid indices of texture or colour vertices. Assimp does not check them and reads beyond
+// its lists, where the memory can hold anything, but the same in each process.
 
 #include <string>
 
 namespace etendue::assimp_helper {
 
-/// What is wrong with a file of that ending; empty: nothing was found, or it is no such file.
+/// The message for an invalid index in a file with the ending of ASE; empty: none was found, or it is another format.
 std::string wrong_ase_index(const std::string& path);
 
 }  // namespace etendue::assimp_helper

@@ -33,7 +33,7 @@ class SceneWriter {
     return found == all.end() ? SIZE_MAX : found->second;
   }
 
-  /// A primitive, or null when there is nothing to be seen in it.
+  /// Adds a glTF mesh with one primitive; none if the mesh has no triangles.
   void mesh(const aiMesh& m) {
     meshes_.push_back(SIZE_MAX);
     if (!(m.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) || !m.HasPositions() || m.mNumFaces == 0) return;
@@ -68,7 +68,7 @@ class SceneWriter {
     meshes_.back() = glb_.add("meshes", {{"name", clean(m.mName.C_Str())}, {"primitives", Json::array({primitive})}});
   }
 
-  /// The four bones that pull most at each vertex.
+  /// The four bones with the largest weights at each vertex.
   void weights(const aiMesh& m, Json& attributes) {
     std::vector<std::uint16_t> joints(4 * size_t(m.mNumVertices));
     std::vector<float> pulls(joints.size());
@@ -109,7 +109,7 @@ class SceneWriter {
     std::vector<float> inverse;
     for (unsigned b = 0; b < m.mNumBones; ++b) {
       const size_t joint = find(&names_, m.mBones[b]->mName.C_Str());
-      if (joint == SIZE_MAX) return;  // bones without nodes: it stays as it is
+      if (joint == SIZE_MAX) return;  // bones without nodes: the mesh stays undeformed
       joints.push_back(joint);
       const Json matrix = matrix_json(m.mBones[b]->mOffsetMatrix);
       for (const Json& x : matrix) inverse.push_back(x.get<float>());
@@ -118,10 +118,10 @@ class SceneWriter {
         glb_.add("skins", {{"joints", joints}, {"inverseBindMatrices", glb_.add_floats(inverse, "MAT4", 16)}});
   }
 
-  /// A node around all that brings what the file says of its units and axes to metres and y upwards.
+  /// Adds a root node that converts the file's units and axes to metres and y upwards.
   size_t outer(size_t root) {
     int up = 1, sign = 1;
-    if (ending_ == "3mf") up = 2;  // its core specification, 3.1: the build platform is the xy plane, z points upwards
+    if (ending_ == "3mf") up = 2;  // 3MF core specification, 3.1: the build platform is the xy plane, z points upwards
     if (scene_.mMetaData) {
       scene_.mMetaData->Get("UpAxis", up);
       scene_.mMetaData->Get("UpAxisSign", sign);
@@ -133,21 +133,21 @@ class SceneWriter {
     return glb_.add("nodes", made);
   }
 
-  /// Of lengths in the file [m].
+  /// The file's unit of length [m].
   double unit() const {
     double unit = 0;
     float unit_float = 0;
     if (scene_.mMetaData && !scene_.mMetaData->Get("UnitScaleFactor", unit) &&
         scene_.mMetaData->Get("UnitScaleFactor", unit_float))
       unit = double(unit_float);
-    return unit > 0 && std::isfinite(unit) ? unit / 100 : (unit_ > 0 ? unit_ : 1);  // FBX has it in centimetres
+    return unit > 0 && std::isfinite(unit) ? unit / 100 : (unit_ > 0 ? unit_ : 1);  // FBX states it in centimetres
   }
 
   const aiScene& scene_;
   Glb& glb_;
   const std::string& ending_;
   double unit_;
-  std::vector<size_t> meshes_;  // their places in the .glb
+  std::vector<size_t> meshes_;  // their indices in the .glb
   std::vector<std::pair<size_t, unsigned>> skinned_;
   Names names_;
 };

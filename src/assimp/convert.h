@@ -1,5 +1,5 @@
 #pragma once
-// A scene of Assimp's as glTF.
+// Converts an Assimp scene to glTF.
 
 #include <assimp/scene.h>
 
@@ -7,15 +7,15 @@
 
 namespace etendue::assimp_helper {
 
-/// The whole scene of a file with this ending (small letters, without a dot). `unit` is that of its lengths [m], where the
-/// library does not tell it; 0: it does.
+/// Converts the whole scene of a file with this ending (lower case, without a dot). `unit` is the file's unit of length [m] if
+/// Assimp does not report it; 0: it does.
 void convert(const aiScene&, Glb&, const std::string& ending, double unit);
 
-/// The materials; their places are those in the scene. See materials.cpp.
+/// Converts the materials; indices are those in the scene. See materials.cpp.
 void convert_materials(const aiScene&, Glb&, const std::string& ending);
 
-/// Lights and cameras, as children of the nodes that have their names. `node_of` gives the place of a node by its name, or
-/// SIZE_MAX; `unit` is the length of the file's unit [m].
+/// Converts lights and cameras to children of the nodes with their names. `node_of` returns the index of a node by its name, or
+/// SIZE_MAX; `unit` is the file's unit of length [m].
 void convert_lights(const aiScene&, Glb&, size_t (*node_of)(const void* names, const char* name), const void* names,
                     double unit);
 

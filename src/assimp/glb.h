@@ -1,5 +1,5 @@
 #pragma once
-// A .glb that is being written: its JSON, and the bytes of its one buffer.
+// Builds a .glb file: its JSON, and the bytes of its single buffer.
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -15,26 +15,26 @@ class Glb {
   Glb();
   Json json;
 
-  /// Adds an element to a list at the top, and gives its place.
+  /// Adds an element to a top-level list and returns its index.
   size_t add(const char* list, Json element);
-  /// Bytes as a buffer view.
+  /// Adds bytes as a buffer view.
   size_t add_view(const void* bytes, size_t size);
   size_t add_floats(const std::vector<float>&, const char* type, size_t width);
   size_t add_indices(const std::vector<std::uint32_t>&);
   size_t add_joints(const std::vector<std::uint16_t>&);
-  /// What could not be expressed, once for each text: the importer tells it.
+  /// Stores a warning about an inexact conversion, once for each text; the importer reports it.
   void note(const std::string&);
 
-  /// Of all that will be written.
+  /// A hash of the content to be written.
   std::uint64_t digest() const;
-  /// To a file descriptor; false: it could not be written.
+  /// Writes to a file descriptor; returns false on failure.
   bool write(int descriptor);
 
  private:
   std::string buffer_;
 };
 
-/// What is no UTF-8 becomes '?': JSON has nothing else.
+/// Replaces invalid UTF-8 by U+FFFD, since JSON must be UTF-8.
 std::string clean(const std::string&);
 
 }  // namespace etendue::assimp_helper

@@ -1,4 +1,4 @@
-// Assimp's lights and cameras as those of glTF.
+// Converts Assimp's lights and cameras to glTF.
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// From coordinates in which -z is forward to those in which `forward` is.
+/// The transform from a space with -z forward to one in which `forward` is.
 aiMatrix4x4 looking(const aiVector3D& from, aiVector3D forward, aiVector3D up) {
   if (!(forward.SquareLength() > 0)) forward = {0, 0, -1};
   forward.Normalize();
@@ -42,14 +42,14 @@ void bounds(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, 
   for (unsigned i = 0; i < node.mNumChildren; ++i) bounds(scene, *node.mChildren[i], here, low, high);
 }
 
-/// A child of a node, or of the root.
+/// Adds a child to a node, or to the root if `parent` is SIZE_MAX.
 void add_below(Glb& glb, size_t parent, Json node) {
   const size_t place = glb.add("nodes", std::move(node));
-  glb.json["nodes"][parent == SIZE_MAX ? 0 : parent]["children"].push_back(place);  // the first is the root
+  glb.json["nodes"][parent == SIZE_MAX ? 0 : parent]["children"].push_back(place);  // node 0 is the root
 }
 
-// These formats do not say how strong lights are. Their colour is taken for what they give to the middle of the model:
-// so much that a white surface there would be of that colour.
+// These formats do not state the strength of lights. Their colour is taken for the irradiance at the centre of the model, such
+// that a white surface there would have that colour.
 void add_light(const aiScene& scene, Glb& glb, const aiLight& light, size_t parent, const aiVector3D& middle, double unit) {
   const std::string name = clean(light.mName.C_Str());
   if (light.mType == aiLightSource_AMBIENT) return glb.note("light that comes from everywhere ('ambient') is left out");
@@ -79,7 +79,7 @@ void add_light(const aiScene& scene, Glb& glb, const aiLight& light, size_t pare
              {"extensions", {{"KHR_lights_punctual", {{"light", index}}}}}});
 }
 
-/// Whether a camera looks past the box: some formats' readers take its direction from the wrong place.
+/// Whether the model's bounding box is outside of a camera's view: for some formats Assimp computes a wrong view direction.
 bool sees_nothing(const aiScene& scene, const aiCamera& camera, const aiVector3D& low, const aiVector3D& high) {
   const aiMatrix4x4 place = global(scene.mRootNode->FindNode(camera.mName));
   const aiVector3D from = place * camera.mPosition;
@@ -91,7 +91,7 @@ bool sees_nothing(const aiScene& scene, const aiCamera& camera, const aiVector3D
   return std::acos(std::clamp(cosine, -1.0, 1.0)) > std::asin(radius / distance) + double(camera.mHorizontalFOV) / 2;
 }
 
-// Its clipping planes are left out: Assimp does not tell whether the file states them.
+// Clipping planes are omitted: Assimp does not report whether the file states them.
 void add_camera(Glb& glb, const aiCamera& camera, size_t parent) {
   const std::string name = clean(camera.mName.C_Str());
   const double aspect = camera.mAspect > 0 && std::isfinite(camera.mAspect) ? double(camera.mAspect) : 4.0 / 3;

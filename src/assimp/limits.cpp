@@ -16,7 +16,7 @@
 namespace etendue::assimp_helper {
 namespace {
 
-/// A file of the C library.
+/// A stream on a C library file.
 class File final : public Assimp::IOStream {
  public:
   explicit File(std::FILE* file) : file_(file) {}
@@ -59,7 +59,7 @@ bool FilesWithin::Exists(const char* path) const { return !allowed(path).empty()
 Assimp::IOStream* FilesWithin::Open(const char* path, const char*) {
   const std::string found = allowed(path);
   if (found.empty()) return nullptr;
-  // The library opens a file several times: to look at how it begins, and to read it.
+  // Assimp opens a file several times: to detect its format, and to read it.
   auto known = prepared_.find(found);
   if (known == prepared_.end()) known = prepared_.emplace(found, prepared(found)).first;
   if (const std::optional<std::string>& text = known->second) {

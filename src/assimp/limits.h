@@ -1,5 +1,5 @@
 #pragma once
-// Which files this process may open: it reads formats whose reader has faults that are known.
+// Restricts the files that this process may open, because Assimp's readers have known vulnerabilities.
 
 #include <cstdint>
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace etendue::assimp_helper {
 
-/// Files in these folders and below, for reading alone. Assimp asks it for everything it opens.
+/// Read access to files in these folders and below. Assimp opens all files through this class.
 class FilesWithin : public Assimp::IOSystem {
  public:
   explicit FilesWithin(std::vector<std::string> folders);
@@ -21,10 +21,10 @@ class FilesWithin : public Assimp::IOSystem {
   void Close(Assimp::IOStream*) override;
 
  private:
-  /// The path to open, or "".
+  /// The path to open, or "" if it is not allowed.
   std::string allowed(const std::string& path) const;
-  std::vector<std::string> folders_;                            // with all links followed
-  std::map<std::string, std::optional<std::string>> prepared_;  // by the path
+  std::vector<std::string> folders_;                            // with all symbolic links resolved
+  std::map<std::string, std::optional<std::string>> prepared_;  // result of prepared(), by path
 };
 
 }  // namespace etendue::assimp_helper

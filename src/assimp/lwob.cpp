@@ -1,6 +1,6 @@
-// LightWave's old object format as its new one (NewTek, "LWOB: LightWave 3D object file format" and "LWO2: LightWave 3D 2001
-// object file format", of the LightWave SDK). Both are chunks of a name, a length and that many bytes, with the highest byte of
-// a number first; what differs is how faces name their surfaces, and how a surface's numbers are written.
+// Converts LightWave's old object format to its new one (NewTek, "LWOB: LightWave 3D object file format" and "LWO2: LightWave
+// 3D 2001 object file format", of the LightWave SDK). Both consist of chunks of a name, a big-endian length and that many
+// bytes; they differ in how faces refer to surfaces, and how a surface's numbers are written.
 
 #include <bit>
 #include <cstdint>
@@ -20,14 +20,14 @@ void put(std::string& to, std::uint32_t value, int bytes) {
   for (int i = bytes; i-- > 0;) to += char(value >> 8 * i & 0xff);
 }
 void put(std::string& to, float value) { put(to, std::bit_cast<std::uint32_t>(value), 4); }
-/// An index of up to four bytes.
+/// An index in LWO2's variable-length encoding, of two or four bytes.
 void put_index(std::string& to, std::uint32_t index) {
   if (index < 0xff00)
     put(to, index, 2);
   else
     put(to, 0xff000000u | index, 4);
 }
-/// Ended by a zero, of an even length.
+/// A zero-terminated name, padded to an even length.
 void put_name(std::string& to, std::string_view name) {
   to += name;
   to.append(name.size() % 2 ? 1 : 2, '\0');
@@ -39,7 +39,7 @@ void put_chunk(std::string& to, std::string_view kind, const std::string& conten
   if (content.size() % 2) to += '\0';
 }
 
-/// What is left to be read; `sound` is false once something was longer than the file.
+/// The unread rest of the file; `sound` becomes false when something claims to be longer than the file.
 struct Rest {
   std::string_view bytes;
   bool sound = true;
@@ -63,7 +63,7 @@ struct Rest {
     if (name.size() % 2) take(1);
     return name.substr(0, end);
   }
-  /// The next chunk's name, and what is in it.
+  /// The next chunk's name and content.
   std::pair<std::string_view, std::string_view> take_chunk(size_t bytes_of_length) {
     const std::string_view kind = take(4);
     const std::uint32_t length = take_number(bytes_of_length);
@@ -73,7 +73,8 @@ struct Rest {
   }
 };
 
-/// Faces, and the surface of each. What follows a face whose surface's number is negative are faces that lie on it.
+/// Converts faces and the surface of each. A negative surface number means that a count and detail polygons, which lie on the
+/// face, follow.
 void convert_faces(Rest rest, std::string& faces, std::string& surfaces, bool& sound) {
   std::uint32_t count = 0;
   faces = "FACE";
@@ -94,7 +95,7 @@ void convert_faces(Rest rest, std::string& faces, std::string& surfaces, bool& s
   sound = sound && rest.sound;
 }
 
-/// A strength of 256 or 1, which stands for all.
+/// A strength, in LWOB an integer of which 256 is full or a float of which 1 is, in LWO2 a float.
 struct Strength {
   const char *whole, *fraction, *now;
 };
@@ -118,7 +119,7 @@ void convert_surface_part(std::string_view kind, std::string_view content, std::
     for (int i = 0; i < 3; ++i) put(made, float(rest.take_number(1)) / 255);
     put(made, 0, 2);
     put_chunk(to, kind, made, 2);
-  } else if (kind == "GLOS") {  // an exponent of 16, 64, 256 or 1024, there 2^(10 g + 2)
+  } else if (kind == "GLOS") {  // an exponent of 16, 64, 256 or 1024; in LWO2 it is 2^(10 g + 2)
     const std::uint32_t exponent = rest.take_number(2);
     put(made, exponent >= 1024 ? 0.8f : (exponent >= 256 ? 0.6f : (exponent >= 64 ? 0.4f : 0.2f)));
     put(made, 0, 2);
@@ -130,7 +131,7 @@ void convert_surface_part(std::string_view kind, std::string_view content, std::
     const std::uint32_t flags = rest.take_number(2);
     if (flags & double_sided) put_chunk(to, "SIDE", std::string("\0\3", 2), 2);
     if (flags & smooth) {
-      put(made, 1.56f);  // [rad], LightWave's own where none is stated
+      put(made, 1.56f);  // [rad], LightWave's default
       put_chunk(to, "SMAN", made, 2);
     }
   } else if (kind.size() == 4 && kind.substr(1) == "TEX") {

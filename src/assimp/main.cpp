@@ -1,6 +1,6 @@
-// etendue_assimp FILE [--unit=METRES] [--note=TEXT ...] [FOLDER ...]: reads a model of one of the many formats that Assimp
-// knows and writes it as .glb to standard output; what is wrong goes to standard error. It is a program of its own, so that a
-// fault in the library ends nothing else, and it may open only what lies in the file's folder and those that are named.
+// etendue_assimp FILE [--unit=METRES] [--note=TEXT ...] [FOLDER ...]: reads a model in one of the formats that Assimp supports
+// and writes it as .glb to standard output; errors are written to standard error. It is a separate program, so that a crash of
+// the library ends nothing else, and it may open only files in the model's folder and the given folders.
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -48,7 +48,7 @@ int run(const std::string& path, std::vector<std::string> folders) {
   const SecondReading second;
   Assimp::Importer importer;
   importer.SetIOHandler(new FilesWithin(folders));                      // the importer deletes it
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // it would make something to see of what has no mesh
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // else it invents meshes for models without any
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 60);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals |
@@ -56,7 +56,7 @@ int run(const std::string& path, std::vector<std::string> folders) {
                                                      aiProcess_JoinIdenticalVertices | aiProcess_ValidateDataStructure);
   if (!scene || !scene->mRootNode) {
     const std::string said = clean(importer.GetErrorString());
-    if (said.find("bad_alloc") != std::string::npos) throw std::bad_alloc();  // the library catches it
+    if (said.find("bad_alloc") != std::string::npos) throw std::bad_alloc();  // the library catches the exception
     if (said.find("mNumMeshes is 0") != std::string::npos || said.find("File came out empty") != std::string::npos)
       throw std::runtime_error("Assimp finds nothing in it that can be seen");
     std::fprintf(stderr, "%s\n", said.c_str());

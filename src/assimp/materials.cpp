@@ -1,4 +1,4 @@
-// Assimp's materials as those of glTF.
+// Converts Assimp's materials to glTF.
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
@@ -12,7 +12,7 @@
 namespace etendue::assimp_helper {
 namespace {
 
-/// Everything but letters, digits and a few marks as %xx: what the source says is to arrive as it is.
+/// Percent-encodes all but letters, digits and a few marks, so that the path arrives unchanged.
 std::string encoded(const std::string& path) {
   std::string uri;
   for (const char c : path) {
@@ -30,7 +30,7 @@ std::string encoded(const std::string& path) {
 
 double clamped(double x, double otherwise = 0) { return std::isfinite(x) ? std::clamp(x, 0.0, 1.0) : otherwise; }
 
-constexpr int repeat_code = 10497, clamp_code = 33071, mirror_code = 33648;  // glTF's ways to lay images beyond their edges
+constexpr int repeat_code = 10497, clamp_code = 33071, mirror_code = 33648;  // glTF's codes of wrap modes
 
 class MaterialWriter {
  public:
@@ -41,7 +41,7 @@ class MaterialWriter {
     Json pbr = Json::object();
     std::array<double, 3> base = color(m, AI_MATKEY_BASE_COLOR, color(m, AI_MATKEY_COLOR_DIFFUSE, {0.8, 0.8, 0.8}));
     Json base_texture = texture(m, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE});
-    // Exporters often leave the colour black where a texture stands for it.
+    // Exporters often leave the colour black when a texture replaces it.
     if (!base_texture.is_null() && *std::ranges::max_element(base) <= 0) base = {1, 1, 1};
     double metalness = number(m, AI_MATKEY_METALLIC_FACTOR, -1), roughness = number(m, AI_MATKEY_ROUGHNESS_FACTOR, -1);
     Json metal_texture = texture(m, {aiTextureType_METALNESS}), rough_texture = texture(m, {aiTextureType_DIFFUSE_ROUGHNESS});
@@ -54,7 +54,7 @@ class MaterialWriter {
       if (!metal_texture.is_null() && metal_texture == rough_texture) {
         pbr["metallicRoughnessTexture"] = metal_texture;
       } else {
-        Json own = Json::object();  // images of one number each, which glTF has no place for (importers/gltf/described.h)
+        Json own = Json::object();  // separate images of one number, which glTF lacks (importers/gltf/described.h)
         if (!metal_texture.is_null()) own["metalness"] = image_of_numbers(metal_texture, metalness, 0);
         if (!rough_texture.is_null()) own["roughness"] = image_of_numbers(rough_texture, roughness, 0.5);
         if (!own.empty()) extensions["ETENDUE_surface"] = own;
@@ -92,7 +92,7 @@ class MaterialWriter {
     return {usable(c.r), usable(c.g), usable(c.b)};
   }
 
-  /// An image whose numbers are a factor times its grey; where it cannot be read, `without`.
+  /// An image whose values are `factor` times its grey; `without` replaces it if the image cannot be read.
   Json image_of_numbers(const Json& texture, double factor, double without) const {
     const Json& t = glb_.json["textures"][texture["index"].get<size_t>()];
     const Json& sampler = glb_.json["samplers"][t["sampler"].get<size_t>()];
@@ -108,20 +108,20 @@ class MaterialWriter {
               {"wrap", {wrap("wrapS"), wrap("wrapT")}}}}};
   }
 
-  // The exponent of a highlight as a roughness: alpha^2 = 2 / (n + 2) (Walter et al. 2007), and alpha is the roughness squared.
+  // The roughness for a Phong exponent n: alpha^2 = 2 / (n + 2) (Walter et al. 2007), and alpha is the square of the roughness.
   static double roughness_of_exponent(const aiMaterial& m, double otherwise) {
     const double exponent = number(m, AI_MATKEY_SHININESS, -1);
     return exponent > 0 ? std::pow(2 / (exponent + 2), 0.25) : otherwise;
   }
 
-  /// Whether a file says that a surface has no highlights, whatever colour of them the library makes up.
+  /// Whether a file states that a surface has no highlight, even if Assimp invents a specular colour.
   bool is_matt(const aiMaterial& m) const {
     int model = 0;
     return (ending_ == "dae" || ending_ == "fbx") && m.Get(AI_MATKEY_SHADING_MODEL, model) == aiReturn_SUCCESS &&
            model == aiShadingMode_Gouraud;
   }
 
-  // A strength of 0.5 is what programs write for the four percent that most things reflect.
+  // Exporters write a strength of 0.5 for the reflectance of 4 % that most materials have.
   void phong(const aiMaterial& m, std::array<double, 3>& base, const Json& base_texture, double& metalness, double& roughness,
              Json& extensions) const {
     const std::array<double, 3> none{0, 0, 0};
@@ -141,7 +141,7 @@ class MaterialWriter {
       extensions["KHR_materials_specular"] = {{"specularFactor", exponent <= 0 ? 0 : std::min(2 * most, 1.0)}};
   }
 
-  /// Many exporters of Collada write 0 where they mean that nothing is transparent, against its text (1.4, "transparency").
+  /// Many Collada exporters write 0 for opaque materials, contrary to the specification (1.4, "transparency").
   double opacity_of(const aiMaterial& m) const {
     const double opacity = clamped(number(m, AI_MATKEY_OPACITY, 1), 1);
     if (opacity > 0 || ending_ != "dae") return opacity;
@@ -209,7 +209,7 @@ class MaterialWriter {
     return nullptr;
   }
 
-  /// The place of an equal element, or of a new one.
+  /// The index of an equal element in a list, or of a new one.
   size_t same(const char* list, const Json& element) {
     const Json& all = glb_.json[list];
     for (size_t i = 0; i < all.size(); ++i)
@@ -230,7 +230,7 @@ class MaterialWriter {
     return images_[path] = glb_.add("images", made);
   }
 
-  /// As a BMP of 32 bits a pixel, whose rows run upwards.
+  /// The image as a BMP file of 32 bits per pixel, whose rows run upwards.
   Json uncompressed(const aiTexture& t) {
     const std::uint32_t size = t.mWidth * t.mHeight * 4;
     std::string file = "BM";

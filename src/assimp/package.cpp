@@ -1,4 +1,5 @@
-// Archives of ZIP (PKWARE, APPNOTE 4.3): entries, each with a head of its own, and behind them a list of all with their places.
+// Rewrites ZIP archives (PKWARE, APPNOTE 4.3): entries, each with a local header, followed by a central directory with their
+// offsets.
 
 #include <cstdint>
 #include <cstring>
@@ -41,7 +42,8 @@ std::optional<std::string> package_without_images(std::string_view zip) {
           head + local_record + number_at<std::uint16_t>(zip, head + 26) + number_at<std::uint16_t>(zip, head + 28);
       if (head > zip.size() || begin > zip.size() || packed > zip.size() - begin || at + size > zip.size()) return std::nullopt;
       std::string local(zip.substr(head, local_record)), entry(zip.substr(at, list_record));
-      // The sizes are in the list; what a writer left to follow the data ("bit 3") is put where it belongs.
+      // The central directory states the sizes; if the writer left them to follow the data (flag bit 3), they are copied to the
+      // local header.
       constexpr std::uint32_t follows = 8;
       const std::uint32_t flags = number_at<std::uint16_t>(zip, at + 8) & ~follows;
       set_number(local, 6, flags, 2);

@@ -26,7 +26,7 @@ std::string bytes_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Whether the declaration at a document's beginning says that each byte is a character.
+/// Whether the XML declaration states an encoding of one byte per character.
 bool is_latin(std::string_view xml) {
   const std::string head = small(std::string(xml.substr(0, std::min<size_t>(xml.find("?>"), 200))));
   return head.find("encoding=") != std::string::npos &&
@@ -47,7 +47,7 @@ std::string from_latin(std::string_view text) {
   return made;
 }
 
-/// The value of an attribute in a tag; null: it has none of this name.
+/// The value of an attribute in a tag; nothing: the tag does not have it.
 std::optional<std::string> attribute(std::string_view tag, const std::string& name) {
   for (const char quote : {'"', '\''}) {
     for (size_t at = 0; (at = tag.find(name + "=" + quote, at)) != std::string_view::npos; ++at) {
@@ -59,7 +59,8 @@ std::optional<std::string> attribute(std::string_view tag, const std::string& na
   return std::nullopt;
 }
 
-/// Cameras of Collada, each with a name: Assimp 5.2 reads the optics of those alone that have one (ColladaParser::ReadCamera).
+/// Adds a name to unnamed Collada cameras: Assimp 5.2 reads the optics only of cameras that have a name
+/// (ColladaParser::ReadCamera).
 std::string with_named_cameras(const std::string& xml) {
   const std::string_view opening = "<camera";
   std::string made;
@@ -98,7 +99,7 @@ std::optional<std::string> prepared(const std::string& path) {
   return text;
 }
 
-// In a tag '>' may stand in quotation marks; comments, declarations and CDATA end as they begin.
+// A '>' may appear inside quotes in a tag; comments, declarations and CDATA sections have their own ends.
 std::string trimmed_xml(std::string_view xml) {
   const auto blank = [](char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; };
   std::string made;

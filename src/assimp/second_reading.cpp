@@ -14,10 +14,10 @@
 namespace etendue::assimp_helper {
 namespace {
 
-/// Fills memory before it is given out, and shifts all that is allocated from here on.
+/// Fills newly allocated memory with a pattern, and shifts all allocations from here on.
 void change_memory() {
   ::mallopt(M_PERTURB, 0x55);
-  constexpr std::size_t shift = 100'016;  // below what is mapped by itself
+  constexpr std::size_t shift = 100'016;  // below the threshold for separate mappings
   [[maybe_unused]] static void* volatile kept = nullptr;
   kept = std::malloc(shift);
   ::mmap(nullptr, 0x31000, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -38,7 +38,7 @@ SecondReading::SecondReading() {
     return;
   }
   here_ = true;
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody wants to know once the first has ended
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // the result is useless once the first process has ended
   if (::getppid() != first) std::_Exit(1);
   const int nothing = ::open("/dev/null", O_WRONLY);
   ::dup2(nothing, 1);

@@ -1,10 +1,9 @@
 #pragma once
-// A second reading of the same file, to find out whether the first one depends on memory that nobody wrote.
+// Reads the same file a second time, to detect results that depend on uninitialized memory.
 //
-// Of a damaged file the library may take values from beyond the end of a list, or from memory that it never filled: what is
-// read then is garbage that differs from run to run, and sometimes looks sound. So everything is done twice at once, in two
-// processes whose memory differs in what is there before anything is written, and in all addresses; where what they make is the
-// same, it comes from the file.
+// For a damaged file Assimp may read values beyond the end of a list, or memory that it never initialized: the result is
+// garbage that differs from run to run and sometimes looks valid. So two processes do everything at the same time, with
+// different initial memory contents and different addresses; if their results are equal, they depend on the file only.
 
 #include <cstdint>
 #include <optional>
@@ -13,17 +12,17 @@ namespace etendue::assimp_helper {
 
 class SecondReading {
  public:
-  /// Divides the process: both go on from here.
+  /// Forks the process: both continue from here.
   SecondReading();
   ~SecondReading();
   SecondReading(const SecondReading&) = delete;
   SecondReading& operator=(const SecondReading&) = delete;
 
-  /// Whether this is the second process: it has no output but `tell`.
+  /// Whether this is the second process, whose only output is `tell`.
   bool here() const { return here_; }
-  /// The second process tells the first what it has made, by a digest.
+  /// Called in the second process: sends the digest of its result to the first.
   void tell(std::uint64_t digest) const;
-  /// In the first: what it told; nothing: it failed.
+  /// Called in the first process: the digest from the second; nothing: it failed.
   std::optional<std::uint64_t> told() const;
 
  private:

@@ -23,7 +23,7 @@ std::optional<std::string> utf16_text(const std::string& path) {
   if (!file || !(marked || unmarked)) return std::nullopt;
   if (unmarked) file.seekg(0);
   std::string text;
-  std::uint32_t high = 0;  // the first half of a pair
+  std::uint32_t high = 0;  // first half of a surrogate pair
   for (;;) {
     const std::uint32_t a = byte(), b = byte();
     if (!file) return text;

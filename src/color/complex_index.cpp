@@ -26,7 +26,7 @@ class ComplexIndex final : public SpectralFunction {
   std::string expression_;
 };
 
-/// Those of all tables, in their order.
+/// The entries of all tables, in their order.
 std::span<const tables::Metal> all_metals() {
   static const std::vector<tables::Metal> all = [] {
     std::vector<tables::Metal> list;

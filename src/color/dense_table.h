@@ -1,5 +1,5 @@
 #pragma once
-// One value a nanometre over 360-830 nm, linear between: what most spectra are evaluated from.
+// A table of one value per nanometre over 360-830 nm, linearly interpolated; most spectra are evaluated from one.
 
 #include <array>
 #include <cstring>
@@ -12,7 +12,7 @@ namespace etendue {
 class DenseTable {
  public:
   DenseTable() = default;
-  /// From a function of the wavelength [nm].
+  /// Tabulates a function of the wavelength [nm].
   template <class F>
   explicit DenseTable(const F& f) {
     for (int i = 0; i < tables::size; ++i) values_[size_t(i)] = float(f(double(wavelength_low) + i));
@@ -38,7 +38,7 @@ class DenseTable {
   using Four = float __attribute__((vector_size(16)));
   using Eight = float __attribute__((vector_size(32)));
 
-  /// The entries before and behind each wavelength. (A template, so that what is for another number of lanes is not compiled.)
+  /// The table entries below and above each wavelength. (A template, so that code for other numbers of lanes is not compiled.)
   template <class Lanes>
   void entries(const Wavelengths& wavelengths, Lanes& a, Lanes& b) const {
     if constexpr (sizeof(Lanes) == sizeof(Four)) {
@@ -58,7 +58,7 @@ class DenseTable {
     }
   }
   void four_entries(const Wavelengths& wavelengths, int first, Four& a, Four& b) const {
-    // An entry and its neighbour are one load.
+    // An entry and its successor are loaded together.
     using Pair = float __attribute__((vector_size(8)));
     const auto pair = [&](int i) {
       Pair p;

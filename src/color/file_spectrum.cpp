@@ -71,7 +71,7 @@ class SpectrumFile {
 
  private:
   std::string contents() const {
-    constexpr std::uint64_t most = 64u << 20;  // bytes; real ones have some 10 kB
+    constexpr std::uint64_t most = 64u << 20;  // bytes; spectrum files have about 10 kB
     try {
       return read_regular_file(path_, most);
     } catch (const Error& e) {
@@ -95,7 +95,7 @@ class SpectrumFile {
     values.push_back(float(value));
   }
 
-  /// The column asked for, by its name in the header or its number, counted from 1; the second unless said.
+  /// The index of the requested column, by its name in the header or its number, counted from 1; without a request the second.
   size_t choose(const std::vector<std::string_view>& names, size_t count, int line) const {
     size_t index = 1;
     if (!column_.empty()) {
@@ -128,7 +128,7 @@ class SpectrumFile {
   }
 
   std::string path_, column_;
-  std::optional<size_t> index_;  // of the values' column; known after the first line that is no comment
+  std::optional<size_t> index_;  // of the values' column; set at the first line that is no comment
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ class GlassIndex final : public SpectralFunction {
   explicit GlassIndex(const tables::Glass& glass) : glass_(glass) {
     double constant = 1;
     for (int i = 0; i < 4; ++i) {
-      // A resonance at 0 is a constant term; a term without B is none.
+      // A resonance at 0 makes the term constant; a term with B = 0 vanishes.
       constant += glass.b[i];
       product_[i] = float(glass.b[i] * glass.c[i]);
       resonance_[i] = float(glass.c[i]);

@@ -1,5 +1,5 @@
 #pragma once
-// Texts of the render description language, and look-up of named data.
+// Number and string literals of the render description language, and look-up of named data.
 
 #include <span>
 #include <string>
@@ -8,15 +8,16 @@
 
 namespace etendue {
 
-/// The shortest text that reads back to the same number.
+/// The shortest literal that parses to the same number.
 std::string number_text(double);
 std::string number_text(float);
-/// A string of the language with its quotes.
+/// A string literal of the language, with its quotes.
 std::string quoted(std::string_view);
 
-/// Whether `given` is `name` or one of `aliases` (separated by commas), in capitals or not.
+/// Whether `given` is `name` or one of `aliases` (separated by commas), ignoring case.
 bool is_named(std::string_view given, std::string_view name, std::string_view aliases);
-/// Throws Error: "unknown glass 'BK8' (did you mean 'BK7'?); known are …". `others` may be suggested, too: lists by commas.
+/// Throws Error: "unknown glass 'BK8' (did you mean 'BK7'?); known are …". `others` (lists separated by commas) may be
+/// suggested but are not listed.
 [[noreturn]] void fail_unknown(const std::string& what, const std::string& given, const std::vector<std::string>& known,
                                const std::vector<std::string>& others = {});
 
@@ -27,7 +28,7 @@ std::vector<std::string> names_of(std::span<const T> table) {
   for (const T& entry : table) names.emplace_back(entry.name);
   return names;
 }
-/// The entry of this name; throws Error when there is none.
+/// The entry with this name or alias; throws Error if there is none.
 template <class T>
 const T& find_named(std::span<const T> table, const std::string& what, const std::string& given) {
   for (const T& entry : table)

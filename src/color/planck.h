@@ -13,7 +13,7 @@ inline double planck(double nanometres, double kelvin) {
   return 1e-9 * 2 * h * c * c / (lambda * lambda * lambda * lambda * lambda) / std::expm1(h * c / (lambda * k * kelvin));
 }
 
-/// Where it is highest, by Wien's displacement law: lambda T = 2.897771955e6 nm K.
+/// The maximum over wavelengths, at that of Wien's displacement law: lambda T = 2.897771955e6 nm K.
 inline double highest_planck(double kelvin) { return planck(2.897771955e6 / kelvin, kelvin); }
 
 }  // namespace etendue

@@ -18,7 +18,8 @@ namespace {
 
 constexpr int fine_step = 1;  // nm
 
-/// Fitted one by one with the 1 nm sum, so exact where a reflectance of the colour exists; no table is needed.
+/// A colour whose sigmoids are fitted individually with the 1 nm sum: exact where a reflectance of the colour exists, without a
+/// table.
 class RgbColor final : public SpectralFunction {
  public:
   RgbColor(const RgbSpace& space, const std::array<double, 3>& rgb, std::string expression)
@@ -61,7 +62,7 @@ class RgbColor final : public SpectralFunction {
     return *fit;
   }
 
-  Coefficients reflectance_, half_;  // of the colour, and of it scaled so that the largest component is 1/2
+  Coefficients reflectance_, half_;  // of the colour, and of the colour scaled so that its largest component is 1/2
   float scale_;                      // twice the largest component
   Color illuminant_;
   std::string expression_;

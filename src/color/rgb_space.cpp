@@ -1,4 +1,4 @@
-// RGB spaces: primaries, white, the matrices and the white's spectrum that follow from them.
+// RGB spaces: primaries, white point, and the matrices and illuminant that follow from them.
 
 #include <cmath>
 #include <memory>
@@ -27,9 +27,9 @@ Matrix inverse(const Matrix& m, const std::string& space) {
   return r;
 }
 
-/// A spectrum with Y = 1 of this white. That of a tabulated illuminant when its chromaticity is the white's; else the
-/// nearest of them times exp(a t + b t^2), t = (lambda - 595 nm) / 235 nm: smooth, positive, and for any real white there
-/// are a and b that meet x and y (Newton's method).
+/// An illuminant with Y = 1 and this white point. If the chromaticity of a tabulated illuminant is within 3e-4, it is returned;
+/// otherwise the nearest of them times exp(a t + b t^2), t = (lambda - 595 nm) / 235 nm: this is smooth and positive, and for
+/// any real white point there are a and b that match x and y (Newton's method).
 Color white_spectrum(const std::array<double, 2>& white, const std::string& space) {
   Color nearest;
   double nearest_distance = 1e9;

@@ -11,9 +11,9 @@ namespace etendue {
 namespace {
 
 constexpr int levels = 40, ratios = 32;
-constexpr double darkest = 1e-3;         // z of the first level
+constexpr double darkest = 1e-3;         // z of the lowest level
 constexpr int quadrature_step = 3;       // nm
-constexpr double coarse_error = 3.5e-4;  // of RGB, in the middle of a cell, that marks it
+constexpr double coarse_error = 3.5e-4;  // RGB error at the centre of a cell above which the cell is marked as coarse
 constexpr double improved_error = 1e-4;
 
 double level_z(int level) { return std::max(double(level) / (levels - 1), darkest); }
@@ -28,7 +28,7 @@ std::array<double, 3> rgb_of(int largest, double z, double x, double y) {
   rgb[size_t((largest + 2) % 3)] = z * y;
   return rgb;
 }
-/// Whether a cell, given by its lowest corner, has a part in the half of the cube that is looked up.
+/// Whether a cell, given by its lowest corner, overlaps the half of the cube that is used in look-ups.
 bool needed(int level, int iy, int ix) { return level_z(level) * (1 + node_ratio(std::max(0, std::min(ix, iy)))) <= 1; }
 
 }  // namespace
@@ -45,7 +45,7 @@ void RgbTable::compute(const RgbSpace& space) {
           Node& node = storage_[node_index(largest, level, iy, ix)];
           for (size_t i = 0; i < 3; ++i) node.c[i] = float(c[i] * std::sqrt(z));
         };
-        // From the middle, which is the easiest, to both ends, each from the solution before.
+        // From the middle level, where the fit is easiest, to both ends; each level starts from the solution of the one before.
         Coefficients middle{}, c;
         solve(levels / 2, middle);
         c = middle;
@@ -96,8 +96,8 @@ RgbTable::Place RgbTable::place_of(const float rgb[3]) {
   return place;
 }
 
-/// Between the eight nodes of a cell, whose neighbours along y and z are `row` and `sheet` nodes away; the largest component is
-/// `largest`.
+/// Interpolates between the eight nodes of a cell, whose neighbours along y and z are `row` and `sheet` nodes away. `largest`
+/// is the value of the largest component.
 RgbCoefficients RgbTable::between(const Node* corner, size_t row, size_t sheet, float x, float y, float z, float largest) {
   using Row = float __attribute__((vector_size(16)));
   const auto along_x = [&](const Node* node) {
@@ -115,7 +115,7 @@ RgbCoefficients RgbTable::between(const Node* corner, size_t row, size_t sheet, 
   return {c[0], c[1], c[2]};
 }
 
-/// What two threads make of a cell at once is the same: one of the two is kept.
+/// If two threads subdivide a cell at the same time, the results are equal and one of them is kept.
 const RgbTable::Divided& RgbTable::divided(const Node* nodes, const Place& place) {
   std::atomic<const Divided*>& slot = divided_[place.index()];
   if (const Divided* there = slot.load(std::memory_order_acquire)) return *there;
@@ -167,21 +167,21 @@ RgbCoefficients RgbTable::find(const RgbSpace& space, float r, float g, float b)
   const bool bright = largest + smallest > 1;
   if (bright)
     for (float& x : rgb) x = 1 - x;
-  // Black, and what has no finite reciprocal; bright ones have 1 - rgb well above that.
+  // Black, and values without a finite reciprocal. (Bright colours have 1 - rgb well above this.)
   if (!bright && largest < std::numeric_limits<float>::min()) return {0, 0, -1e9f};
   const RgbCoefficients found = look_up(nodes, rgb);
   if (bright) return {-found.c0, -found.c1, -found.c2};
   return found;
 }
 
-/// Of a colour whose largest and smallest component add up to 1 at most.
+/// Looks up a colour whose largest and smallest component sum to at most 1.
 RgbCoefficients RgbTable::look_up(const Node* nodes, const float rgb[3]) {
   const Place place = place_of(rgb);
   const Node* const corner = nodes + place.index();
   const float z = rgb[place.largest];
   if (corner->coarse == 0) return between(corner, ratios, size_t(ratios * ratios), place.x, place.y, place.z, z);
   const Divided& cell = divided(nodes, place);
-  // Below the darkest level the whole table goes by z^-1/2, as does its lowest level here.
+  // Below the lowest level the coefficients scale as z^-1/2, as at the cell's lowest nodes.
   const float at[3] = {
       place.x * parts, place.y * parts,
       clamp((z - float(level_z(place.level))) / float(level_z(place.level + 1) - level_z(place.level)), 0, 1) * parts};

@@ -128,7 +128,7 @@ bool solve_definite(const double a[3][3], const double b[3], double d[3]) {
 
 double SigmoidFit::solve(const std::array<double, 3>& rgb, Coefficients& c, double tolerance, int iterations) const {
   // Gauss-Newton with Marquardt's damping: (J^T J + damping diag(J^T J)) step = J^T (rgb - f(c)).
-  constexpr double bound = 300;  // slopes of a few nanometres: steeper ones change no colour by 1e-4
+  constexpr double bound = 300;  // limits slopes to a few nanometres; steeper ones change no colour by 1e-4
   Point point, trial;
   evaluate(c, point);
   const auto residual = [&](const Point& p) { return std::array{rgb[0] - p.rgb[0], rgb[1] - p.rgb[1], rgb[2] - p.rgb[2]}; };
@@ -167,7 +167,7 @@ double SigmoidFit::solve(const std::array<double, 3>& rgb, Coefficients& c, doub
 Coefficients SigmoidFit::solve(const std::array<double, 3>& rgb) const {
   if (rgb[0] == rgb[1] && rgb[1] == rgb[2]) return flat_coefficients(rgb[0]);
   constexpr double tolerance = 1e-8;
-  // From the grey of the same mean towards the colour, in steps that halve when one fails.
+  // Continuation from the grey of the same mean to the colour, with steps that are halved when a fit fails.
   const double mean = std::clamp((rgb[0] + rgb[1] + rgb[2]) / 3, 1e-6, 1 - 1e-6);
   Coefficients c = flat_coefficients(mean);
   double done = 0, step = 1;
@@ -182,7 +182,7 @@ Coefficients SigmoidFit::solve(const std::array<double, 3>& rgb) const {
       done = next;
       step *= 2;
     } else if (last_try) {
-      // On the border of what a reflectance can be, or beyond it.
+      // At or beyond the boundary of the colours that a reflectance can have.
       solve(rgb, c, tolerance, 300);
       return c;
     } else {

@@ -29,23 +29,24 @@ class SigmoidFit {
  public:
   SigmoidFit(const RgbSpace&, int step);
 
-  /// Improves `c` until the RGB error is below `tolerance` or cannot be lowered; returns the error left.
+  /// Improves `c` until the RGB error is below `tolerance` or does not decrease; returns the remaining error.
   double solve(const std::array<double, 3>& rgb, Coefficients& c, double tolerance, int iterations) const;
-  /// For any RGB in [0, 1]^3, from nothing. A colour no reflectance has becomes about the nearest that one has.
+  /// For any RGB in [0, 1]^3, without an initial guess. A colour that no reflectance has is replaced approximately by the
+  /// nearest one that a reflectance has.
   Coefficients solve(const std::array<double, 3>& rgb) const;
-  /// The RGB of a reflectance with these coefficients.
+  /// The RGB values of a reflectance with these coefficients.
   std::array<double, 3> rgb_of(const Coefficients&) const;
 
  private:
   struct Point {
     std::array<double, 3> rgb;
-    std::array<double, 9> derivative;  ///< of rgb by c, row major
+    std::array<double, 9> derivative;  ///< of rgb with respect to c, row major
   };
   void evaluate(const Coefficients&, Point&) const;
 
   int nodes_ = 0;                              // a multiple of 4
   std::vector<double> variable_;               // t at each node
-  std::array<std::vector<double>, 3> weight_;  // of each node in R, G and B; each sums to 1
+  std::array<std::vector<double>, 3> weight_;  // of each node for R, G and B; the weights of each sum to 1
 };
 
 }  // namespace etendue

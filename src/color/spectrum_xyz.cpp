@@ -1,4 +1,4 @@
-// The estimate of a path's colour, made once per path.
+// The estimate of a path's colour in XYZ, computed once per path.
 
 #include "etendue/core/spectrum.h"
 #include "tables.h"
@@ -10,7 +10,7 @@ Xyz to_xyz(const Spectrum& spectrum, const Wavelengths& wavelengths) {
   using Row = float __attribute__((vector_size(16)));
   Row sum{};
   const detail::Lanes& pdfs = wavelengths.pdfs();
-  // A wavelength that was never placed counts for nothing.
+  // Wavelengths without a pdf have the weight 0.
   const detail::Lanes weights = pdfs > 0 ? spectrum.lanes() / pdfs : detail::Lanes{};
   for (int i = 0; i < spectrum_size; ++i) {
     const tables::ObserverRow* row = &tables::observer_rows[size_t(wavelengths.table_index(i))];

@@ -42,7 +42,7 @@ float SteppedTable::in_cell(int cell, float wavelength) const {
 }
 
 void SteppedTable::find_bent_cells() {
-  // Less than this part of what is there is not worth the time: the turns of smooth data whose entries are not whole.
+  // Deviations below this fraction of the values are ignored: they come from kinks of smooth data at fractional wavelengths.
   constexpr double tolerance = 1e-3;
   std::array<bool, size_t(cells)> bent{};
   const size_t last = wavelengths_.size() - 1;
@@ -54,7 +54,7 @@ void SteppedTable::find_bent_cells() {
     const double dense = (1 - f) * low + f * high;
     if (std::abs(dense - value) > tolerance * std::max({std::abs(low), std::abs(high), std::abs(value)}))
       bent[size_t(cell)] = true;
-    // Beyond the ends there is nothing, which a cell that begins or ends there cannot tell.
+    // Outside of the table the value is 0; a cell at the end of the table must not interpolate towards it.
     const bool whole = x == std::floor(x);
     if (i == 0 && value != 0 && (!whole || x > 0)) bent[size_t(whole ? int(x) - 1 : cell)] = true;
     if (i == last && value != 0 && x < cells) bent[size_t(int(x))] = true;
@@ -70,7 +70,7 @@ void SteppedTable::find_bent_cells() {
                                    wavelengths_.begin()));
 }
 
-// Simpson's rule is exact between the corners of the product.
+// Simpson's rule is exact between the knots of the product, which is piecewise quadratic.
 double SteppedTable::hat_mean(double centre) const {
   const double low = std::max(centre - 1, double(wavelengths_.front())),
                high = std::min(centre + 1, double(wavelengths_.back()));

@@ -1,5 +1,5 @@
 #pragma once
-// Given values at given wavelengths, linear between, 0 outside: exactly that, steps included, nearly as fast as a DenseTable.
+// Values at given wavelengths, linearly interpolated and 0 outside: exact, steps included, yet nearly as fast as a DenseTable.
 
 #include <cmath>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace etendue {
 
-/// A DenseTable. Where an entry lies inside one of its cells of 1 nm, and the values turn or step there, or where the table
-/// begins or ends, a DenseTable cannot hold what is said: such a cell's first value is no number, which evaluation finds at
-/// once and asks the entries themselves.
+/// A DenseTable with exceptions. A DenseTable cannot represent a kink or step at a wavelength inside one of its cells of 1 nm,
+/// nor the ends of the table. The first value of such a cell is NaN; evaluation detects this and then interpolates the original
+/// entries.
 class SteppedTable {
  public:
   SteppedTable() = default;
@@ -29,7 +29,7 @@ class SteppedTable {
   /// See SpectralFunction.
   std::vector<float> corners() const;
 
-  /// In how many of its cells the entries themselves must be asked.
+  /// The number of cells in which evaluation interpolates the original entries.
   int bent_cells() const { return bent_cells_; }
   const std::vector<float>& wavelengths() const { return wavelengths_; }
   const std::vector<float>& values() const { return values_; }
@@ -38,7 +38,7 @@ class SteppedTable {
   static constexpr int cells = tables::size - 1;
 
   static bool is_number(const Spectrum& s) {
-    const detail::IntLanes equal = s.lanes() == s.lanes();  // NOLINT(misc-redundant-expression): no number equals nothing
+    const detail::IntLanes equal = s.lanes() == s.lanes();  // NaN equals nothing
     std::uint64_t all = ~std::uint64_t(0);
     for (const std::uint64_t part : std::bit_cast<std::array<std::uint64_t, spectrum_size / 2>>(equal)) all &= part;
     return all == ~std::uint64_t(0);
@@ -49,7 +49,7 @@ class SteppedTable {
 
   DenseTable dense_;
   std::vector<float> wavelengths_, values_;
-  std::vector<float> slopes_;         // behind each entry but the last [1/nm]; none when no cell is bent
+  std::vector<float> slopes_;         // from each entry to the next [1/nm]; empty if no cell has a kink or step
   std::vector<std::uint32_t> first_;  // the first entry above the beginning of each cell; likewise
   int bent_cells_ = 0;
   bool any_bent_ = false;

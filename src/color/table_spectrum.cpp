@@ -1,4 +1,4 @@
-// Measured values, linear between, 0 outside.
+// Measured values, linearly interpolated, 0 outside.
 
 #include "table_spectrum.h"
 
@@ -15,10 +15,10 @@ namespace etendue {
 
 namespace {
 
-// What is reflected, absorbed or refracted is a table's values themselves, steps included, as light depends on them by powers
-// and exponentials. Light may also come in lines that are far narrower than a nanometre: drawing wavelengths one would hardly
-// ever meet them. So the light of a table that has such lines, or that varies within many nanometres, is seen through a slit of
-// 2 nm: its mean under a hat, in which no line is lost or loses power.
+// For reflectances, absorption and refractive indices the table's values are used exactly, steps included, because radiance
+// depends on them by powers and exponentials. Emission spectra may have lines far narrower than a nanometre, which sampled
+// wavelengths would hardly ever hit. So the emission of a table that has such lines, or that has kinks inside many cells of a
+// nanometre, is averaged over a triangular slit function of 2 nm width, which neither misses a line nor changes its power.
 class TableSpectrum final : public SpectralFunction {
  public:
   TableSpectrum(std::vector<float> wavelengths, std::vector<float> values, std::string expression)
@@ -47,7 +47,7 @@ class TableSpectrum final : public SpectralFunction {
       if (w[i] - w[i - 1] < 0.999f) return true;
     return false;
   }
-  /// Whether anything stands out that is narrower than about a quarter of a nanometre.
+  /// Whether the table has peaks narrower than about a quarter of a nanometre.
   bool has_lines(const DenseTable& mean) const {
     const std::vector<float>& w = table_.wavelengths();
     for (size_t i = 0; i < w.size(); ++i) {
@@ -58,8 +58,8 @@ class TableSpectrum final : public SpectralFunction {
   }
 
   SteppedTable table_;
-  std::string expression_;             // empty: the table itself
-  std::unique_ptr<DenseTable> light_;  // of a table with lines
+  std::string expression_;             // empty: a literal of the table
+  std::unique_ptr<DenseTable> light_;  // of a table with lines: the averaged emission
 };
 
 }  // namespace

@@ -1,23 +1,23 @@
 #pragma once
-// The measured data of src/color/tables_*.cpp, which tools/make_color_tables.py and make_optical_constants.py make.
+// The measured data of src/color/tables_*.cpp, which tools/make_color_tables.py and make_optical_constants.py generate.
 
 #include <array>
 #include <span>
 
 namespace etendue::tables {
 
-/// Entries of a table of one value a nanometre over 360-830 nm.
+/// The number of entries of a table with one value per nanometre over 360-830 nm.
 inline constexpr int size = 471;
 
 /// CIE 1931 2 degree observer: xbar, ybar, zbar at 360 nm + row.
 extern const double observer[size][3];
-/// The same over the integral of ybar [1/nm], four floats a row so that a row is one load.
+/// The same divided by the integral of ybar [1/nm], with four floats per row, so that a row is loaded at once.
 struct alignas(16) ObserverRow {
   float x, y, z, padding;
 };
 extern const std::array<ObserverRow, size> observer_rows;
 
-/// Every table's `aliases` are separated by commas.
+/// `aliases` of all tables are separated by commas.
 struct Illuminant {
   const char* name;
   const char* aliases;
@@ -37,7 +37,7 @@ extern const std::span<const Glass> glasses;
 struct Metal {
   const char* name;
   const char* aliases;
-  std::span<const double[3]> rows;  ///< wavelength [nm], n, k, over all that is visible
+  std::span<const double[3]> rows;  ///< wavelength [nm], n, k, over the visible range
 };
 extern const std::span<const Metal> metals, plain_metals, transition_metals, alloys, semiconductors, compounds;
 

@@ -1,4 +1,4 @@
-// Transfer functions of image files. Odd, so that negative values pass; values above 1 follow the same formula.
+// Transfer functions of image files, extended to odd functions for negative values; values above 1 follow the same formula.
 
 #include <cmath>
 

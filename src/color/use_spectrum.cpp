@@ -1,4 +1,4 @@
-// A colour that is read for one use, whoever asks.
+// A colour that is always evaluated for one use, whatever use is requested.
 
 #include <fmt/format.h>
 

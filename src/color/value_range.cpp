@@ -1,4 +1,4 @@
-// The least and the largest value of a spectrum.
+// The minimum and maximum of a spectrum.
 
 #include "etendue/core/spectral_function.h"
 
@@ -11,7 +11,7 @@ ValueRange range_of(const SpectralFunction& f, ColorUse use) {
   const auto look = [&](float wavelength) {
     if (!(wavelength >= wavelength_low && wavelength <= wavelength_high)) return;
     const float value = f.at(wavelength, use);
-    // Written so that what is no number is taken for the least.
+    // The comparison is true for NaN, which thus becomes the minimum.
     if (!(value >= r.least)) r.least = value, r.least_at = wavelength;
     if (value > r.most) r.most = value, r.most_at = wavelength;
   };

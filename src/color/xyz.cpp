@@ -1,4 +1,4 @@
-// Spectra to colours of the CIE 1931 2 degree observer.
+// Colours of spectra for the CIE 1931 2 degree observer.
 
 #include <array>
 #include <numeric>

@@ -1,5 +1,5 @@
 #pragma once
-// A fast hash of 64 bits: it finds accidents, it does not protect against people.
+// A fast 64-bit hash against accidental changes; it is not cryptographic.
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace etendue {
 
-/// Four lanes take a word of eight bytes each. Every step maps a lane one to one for a given word, and words one to one
-/// for a given lane, and so does the end with each lane: no change within one word goes unseen. The value depends on the
-/// bytes alone, not on the pieces in which they come.
+/// Four lanes each take one word of eight bytes per block. For a given word each step is a bijection of the lane, and for a
+/// given lane a bijection of the word, and the final mix is a bijection of each lane: so every change within one word changes
+/// the hash. The value depends on the bytes alone, not on how they are split into calls.
 class Hash {
  public:
   void add(std::span<const std::byte> bytes) {

@@ -1,5 +1,5 @@
 #pragma once
-// A loop over many small things on several threads.
+// A parallel loop over many small items.
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -9,8 +9,8 @@
 
 namespace etendue {
 
-/// Does f(begin, end) for parts of [0, count), on several threads where there are many. Nothing else is begun by them
-/// meanwhile: who calls may hold a lock.
+/// Calls f(begin, end) for parts of [0, count), on several threads if count is large. The threads take up no other work
+/// meanwhile, so the caller may hold a lock.
 template <class F>
 void over_range(std::size_t count, F f, std::size_t grain = std::size_t(1) << 14) {
   if (count <= 2 * grain) return f(std::size_t(0), count);

@@ -99,7 +99,7 @@ Transform::Transform(const DoubleMatrix& matrix) : exact_(matrix) {
   const double det = determinant(a), largest = column_product(a);
   bool finite = true;
   for (float x : m_) finite = finite && std::isfinite(x);
-  // A determinant this far below what its columns allow is what rounding leaves of a singular matrix.
+  // A determinant so much smaller than the product of the column lengths is the rounding error of a singular matrix.
   valid_ = finite && largest > 0 && std::abs(det) > 1e-7 * largest;
   flips_ = det < 0;
   identity_ = exact_ == DoubleMatrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -110,7 +110,7 @@ Transform::Transform(const DoubleMatrix& matrix) : exact_(matrix) {
     for (size_t c = 0; c < 3; ++c) exact_inverse_[4 * r + c] = i[3 * r + c];
     exact_inverse_[4 * r + 3] = -(i[3 * r] * exact_[3] + i[3 * r + 1] * exact_[7] + i[3 * r + 2] * exact_[11]);
   }
-  // Beyond these, squares and products of a few are no floats any more.
+  // Above this bound, squares and products of several elements overflow floats.
   constexpr float most = 1e15f;
   for (size_t k = 0; k < 12; ++k) {
     inverse_[k] = float(exact_inverse_[k]);
@@ -136,7 +136,7 @@ Transform Transform::scale(const DoubleVector3& by) {
 }
 
 Transform Transform::look_at(const DoublePoint3& from, const DoublePoint3& to, const DoubleVector3& up) {
-  // Where the direction or the left axis vanishes the columns stay zero, and the transform is not valid.
+  // If the direction or the left axis vanishes, the columns stay zero and the transform is not valid.
   const auto unit = [](const DoubleVector3& v, double least) {
     const double l = length(v);
     return l > least ? 1 / l * v : DoubleVector3{};
@@ -182,7 +182,7 @@ AnimatedTransform::AnimatedTransform(std::vector<Key> keys) : keys_(std::move(ke
   if (!animated() || !valid()) return;
   for (const Key& key : keys_) {
     Parts parts = decompose(key.transform);
-    // q and -q are the same rotation: take the one nearer to the key before, which gives the shorter way.
+    // q and -q are the same rotation: the sign nearer to the previous key gives the shorter path.
     if (!parts_.empty() && dot4(parts_.back().rotation, parts.rotation) < 0)
       for (double& x : parts.rotation) x = -x;
     parts_.push_back(parts);
@@ -209,7 +209,7 @@ Transform AnimatedTransform::counted(const Transform& written, const DoublePoint
 }
 
 bool AnimatedTransform::valid() const {
-  // Between keys of which only one mirrors, the motion would pass through a flat state.
+  // Between two keys of which only one mirrors, the interpolated transform would become singular.
   for (const Key& key : keys_)
     if (!key.transform.valid() || key.transform.flips() != keys_.front().transform.flips()) return false;
   return true;
@@ -231,7 +231,7 @@ AnimatedTransform::Parts AnimatedTransform::decompose(const Transform& transform
     if (change < 1e-12) break;
   }
   if (determinant(r) < 0)
-    for (double& x : r) x = -x;  // a mirroring goes into the stretch
+    for (double& x : r) x = -x;  // a reflection becomes part of the stretch
   Parts parts;
   parts.translation = {transform.exact()[3], transform.exact()[7], transform.exact()[11]};
   parts.rotation = quaternion_of(r);
@@ -287,9 +287,9 @@ Transform AnimatedTransform::written(float time) const {
   return Transform(m);
 }
 
-// Between keys of one rotation every point moves in a straight line: both ends are all. Else the points of a box's corners
-// are sampled so often that the rotation turns by at most a twentieth of a radian in a step: a point in between is no
-// farther from the nearer sample than half the arc, of which the chord, a fiftieth longer, is a bound.
+// Between keys with the same rotation every point moves in a straight line, so the two ends bound it. Otherwise the box's
+// corners are sampled so often that the rotation angle per step is at most 1/20 rad. A point in between is no farther from the
+// nearer sample than half the arc; the chord, times 1.02, bounds the arc.
 Bounds3 AnimatedTransform::sweep(const Bounds3& box, float begin, float end) const {
   if (!animated()) return still()(box);
   if (!factors_.empty()) return factors_[0].sweep(factors_[1].sweep(box, begin, end), begin, end);

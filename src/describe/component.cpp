@@ -38,7 +38,7 @@ void Component::fail(std::string_view member, const std::string& message) const 
 
 namespace {
 
-/// Files are read by all threads at the same time; the rest of preparing is one after the other.
+/// Lets all components that read files do so in parallel; the rest of the preparation is sequential.
 void read_ahead(Component& root) {
   std::unordered_set<const Component*> seen{&root};
   std::vector<Component*> left{&root};
@@ -52,11 +52,11 @@ void read_ahead(Component& root) {
   }
   if (readers.size() < 2) return;
   tbb::parallel_for(size_t(0), readers.size(), [&](size_t i) {
-    // Who waits for tasks of its own must not begin to read another file, which might be the one it is reading.
+    // While a component waits for its own tasks, the thread must not begin to read another file, which might be the same one.
     tbb::this_task_arena::isolate([&] {
       try {
         readers[i]->read_ahead();
-      } catch (...) {  // `prepare` will say it
+      } catch (...) {  // `prepare` reports the error
       }
     });
   });
@@ -65,7 +65,7 @@ void read_ahead(Component& root) {
 }  // namespace
 
 void prepare_tree(Component& root) {
-  // Depth-first with a stack of its own: nothing here needs more room for a longer chain.
+  // Depth-first search with an explicit stack, so that long chains need no deep recursion.
   struct Step {
     Component* component;
     std::vector<Component*> rest;
@@ -93,7 +93,7 @@ void prepare_tree(Component& root) {
     try {
       c.prepare();
     } catch (...) {
-      // Helpers that know nothing of components throw without a place; the component's own is the nearest.
+      // Helpers without access to the component throw without a location; the component's own location is used then.
       blame(c, "preparing");
     }
   }
@@ -119,7 +119,7 @@ const char* intern(const std::string& text) {
 
 namespace {
 
-/// Insertions, deletions, replacements and exchanges of neighbours that turn a into b.
+/// The number of insertions, deletions, replacements and transpositions of neighbours that turn a into b.
 size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<size_t>> d(a.size() + 1, std::vector<size_t>(b.size() + 1));
   for (size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
@@ -149,7 +149,7 @@ std::string suggestion(const std::string& given, const std::vector<std::string>&
     if (name.size() > 100) continue;
     const size_t distance = edit_distance(given, name);
     size_t rank = distance <= most ? distance : 1000;
-    // Else a beginning, as "Path" of "PathTracer", or a part, as "depth" of "max_depth", or a whole with something about it.
+    // Otherwise accepts a prefix, as "Path" of "PathTracer", a part, as "depth" of "max_depth", or the reverse.
     const std::string a = small_letters(name), b = small_letters(given);
     const std::string &longer = a.size() > b.size() ? a : b, &shorter = a.size() > b.size() ? b : a;
     if (shorter.size() >= 3 && longer.starts_with(shorter)) rank = std::min<size_t>(rank, 2);

@@ -1,4 +1,4 @@
-// When a member matters: conditions on other members of the same component.
+// Conditions under which a member has an effect, as predicates on other members of the same component.
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@ namespace etendue {
 
 namespace {
 
-/// Whether a value is more than nothing: not false, 0, empty, none, nor a map or colour that is 0 everywhere.
+/// Whether a value is set: not false, 0, empty, none, nor a map or colour that is 0 everywhere.
 bool something(const Value& v) {
   if (v.none()) return false;
   if (const bool* b = v.as<bool>()) return *b;
@@ -35,7 +35,7 @@ bool is(const Value& v, const Member& member, const Condition::Wanted& wanted) {
     return std::holds_alternative<std::string>(wanted) && *s == std::get<std::string>(wanted);
   if (const auto* n = v.as<Number>()) {
     const Unit* unit = n->dimension == Dimension::none ? nullptr : find_unit(member.unit);
-    // Members mostly hold floats.
+    // Compared as floats, since most members are floats.
     return std::holds_alternative<double>(wanted) &&
            float(unit ? n->value / unit->factor : n->value) == float(std::get<double>(wanted));
   }

@@ -1,5 +1,4 @@
-// From values of the language to the C++ types of members and back: the only place where types, units and ranges are
-// checked.
+// Conversion between values of the language and the C++ types of members. Types, units and ranges are checked only here.
 
 #include <fmt/format.h>
 
@@ -17,7 +16,7 @@ namespace {
   throw Error("expects " + wanted + ", not " + v.kind(), v.location);
 }
 
-/// What one number in base units is in the member's unit.
+/// Converts a number from base units to the member's unit.
 double in_member_unit(double value, Dimension dimension, const Member& m, Location at) {
   if (dimension == Dimension::none) return value;
   const Unit* unit = find_unit(m.unit);
@@ -34,7 +33,7 @@ double in_member_unit(double value, Dimension dimension, const Member& m, Locati
 void check_range(double x, const Member& m, Location at) {
   if (!std::isfinite(x)) throw Error("must be a finite number", at);
   if (m.range && std::isfinite(m.range->high) && !m.range->contains(x)) {
-    // Its own range tells more than that of all floats.
+    // The error about the member's range, below, is more specific than that about the range of floats.
   } else if (std::abs(x) > double(std::numeric_limits<float>::max())) {
     throw Error(fmt::format("must be at most {:.6g} in size, not {:.9g}", double(std::numeric_limits<float>::max()), x), at);
   }
@@ -58,7 +57,7 @@ double unit_factor(const Member& m, Dimension& dimension) {
   return unit ? unit->factor : 1;
 }
 
-/// The call that takes a text such as "#ff8000", "paint.csv", "Au", "D65" or "N-BK7" for a colour; "" for any other.
+/// The function by which a text such as "#ff8000", "paint.csv", "Au", "D65" or "N-BK7" becomes a colour; "" for other texts.
 std::string color_call(const std::string& text) {
   if (text.starts_with("#")) return "srgb";
   for (const char* ending : {".csv", ".spd", ".txt"})
@@ -90,7 +89,7 @@ std::int64_t to_integer(const Value& v, const Member& m, std::int64_t low, std::
   if (x != std::floor(x)) throw Error(fmt::format("expects a whole number, not {:.9g}", x), v.location);
   if (x < double(low) || x > double(high))
     throw Error(fmt::format("must be from {} to {}, not {:.17g}", low, high, x), v.location);
-  // Numbers are doubles on their way here, which are 2^53 whatever whole number next to it was written.
+  // The language's numbers are doubles: an integer next to 2^53 may have been rounded to 2^53.
   if (std::abs(x) >= 0x1p53) throw Error(fmt::format("must be less than 2^53 = {:.0f}", 0x1p53), v.location);
   return std::int64_t(x);
 }
@@ -170,7 +169,7 @@ Ref<Component> to_component(const Value& v, const Member& m) {
     if (candidate->literal.empty()) continue;
     Ref<Component> made = registry.create(candidate->name);
     const Member& literal = *candidate->find(candidate->literal);
-    // A map of thicknesses in nm may be 0.4 um everywhere.
+    // A length for a map of numbers is converted to the member's unit: a map of thicknesses in nm may be 0.4 um everywhere.
     if (const auto* n = v.as<Number>(); n && n->dimension != Dimension::none)
       literal.store(*made, literal, Value(Number{in_member_unit(n->value, n->dimension, m, v.location)}, v.location));
     else

@@ -26,7 +26,7 @@ bool is_a(const Component& c, std::string_view interface) {
   return false;
 }
 
-/// All components below one, itself included, each once and before those that refer to it.
+/// All components reachable from one, itself included, each once, and before the components that refer to it.
 template <class Below>
 std::vector<const Component*> in_order(const Component& top, Below below) {
   struct Step {
@@ -79,13 +79,13 @@ void Expansion::check(const Component& c) {
   for (const Component* part : parts) count += parts_.at(part);
   parts_[&c] = count;
   if (count <= most || parts.size() < 2) return;
-  // One that is little larger than a part of it which was found right is right too, nearly: a long chain is not gone through
+  // A component with little more parts than an accepted part of it is accepted, too, so that a long chain is not traversed
   // again for each of its links.
   double right = 0;
   for (const Component* part : parts)
     if (const auto found = right_.find(part); found != right_.end()) right = std::max(right, found->second);
   if (count > 1.1 * right) {
-    // Twice as many: what is written out may well use something in two places.
+    // A factor of two is allowed: a written component may well be used in two places.
     const size_t written = in_order(c, asked).size();
     if (count > 2 * double(written)) fail(c, count, written);
     right = count;
@@ -96,7 +96,7 @@ void Expansion::check(const Component& c) {
 void Expansion::fail(const Component& c, double parts, size_t written) const {
   std::vector<const Component*> order = in_order(c, asked);
   std::unordered_map<const Component*, double> places = {{&c, 1}};
-  // Of those with a name, if there are any: what is a member's default was written by nobody.
+  // Prefers components with a name: unnamed defaults of members were not written by the user.
   const Component* most_used = nullptr;
   const auto named = [](const Component* part) { return part->origin && !part->origin->name.empty(); };
   for (auto user = order.rbegin(); user != order.rend(); ++user)

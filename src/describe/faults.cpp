@@ -14,7 +14,7 @@ bool is_numeric(const Member& m) {
          m.kind == Kind::point3;
 }
 
-/// A plain colour or map that may be drawn from a slider as well: one that says how its number is read.
+/// Whether a colour or map may have a slider: only if it states how its number is read.
 bool may_be_number(const Member& m) {
   return m.kind == Kind::color || (m.kind == Kind::component && m.meaning != Meaning::plain);
 }
@@ -55,7 +55,7 @@ std::string meaning_fault(const Member& m) {
   return fmt::format("is read as {}, and is no {}", name(m.meaning), m.meaning == Meaning::number ? "map" : "colour or map");
 }
 
-/// Of a value that a condition asks for.
+/// The fault of a value that a condition compares with.
 std::string wanted_fault(const Member& of, const Condition::Wanted& wanted) {
   if (of.list) return fmt::format("'{}' is a list", of.name);
   if (std::holds_alternative<bool>(wanted))
@@ -70,7 +70,7 @@ std::string wanted_fault(const Member& of, const Condition::Wanted& wanted) {
   return known ? "" : fmt::format("'{}' has no choice '{}'", of.name, text);
 }
 
-/// Whether a member can hold nothing, and something.
+/// Whether a member can be both set and not set (see `something` in conditions.cpp).
 bool may_be_nothing(const Member& m) {
   if (m.list) return !m.required;
   switch (m.kind) {

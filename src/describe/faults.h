@@ -1,5 +1,5 @@
 #pragma once
-// What may be wrong with a description: found when a class is registered, not when it is used.
+// Faults in the descriptions of classes, which are found when a class is registered, not when it is used.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace etendue {
 
-/// What is wrong with a class as it was described; empty when nothing is.
+/// The first fault in the description of a class; empty: there is none.
 std::string fault(const ClassInfo&);
 
 }  // namespace etendue

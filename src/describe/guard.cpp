@@ -43,7 +43,7 @@ Ref<Component> create(const ClassInfo& info) {
 
 namespace {
 
-/// Names of the classes of plugins that a component and all it refers to are of.
+/// Collects the plugin classes of a component and of all components it refers to.
 class Suspects {
  public:
   void visit(const Component& c) {
@@ -73,7 +73,7 @@ std::set<std::string> suspects(const Component& c) {
   return found.names;
 }
 
-/// The files that a component's own members name.
+/// The files named by a component's own members, as text for messages.
 std::string files_of(const Component& c) {
   std::string names;
   const auto add = [&](const Value& value) {
@@ -94,7 +94,7 @@ std::string files_of(const Component& c) {
 
 void blame(const Component& c, std::string_view doing) {
   const ClassInfo* known = Registry::instance().find(std::type_index(typeid(c)));
-  if (!known) throw;  // a helper that stands for others
+  if (!known) throw;  // an unregistered helper class
   const ClassInfo& info = *known;
   Location place = c.origin ? c.origin->location : Location{};
   std::string text;
@@ -112,7 +112,7 @@ void blame(const Component& c, std::string_view doing) {
     text = fmt::format("{}: there is not enough memory for {} it{}", info.name, doing, files_of(c));
   } catch (...) {
     const std::set<std::string> names = suspects(c);
-    if (names.empty()) throw;  // our own mistake, and no one else's
+    if (names.empty()) throw;  // not an exception of a plugin: passed on unchanged
     text = fmt::format("{}{}: {} failed: {}", names.size() > 1 ? "one of " : "", fmt::join(names, ", "), doing, thrown_text());
   }
   throw Error(text, place);

@@ -1,5 +1,5 @@
 #pragma once
-// Code of plugins may throw anything, anywhere. Where it is called, what comes out becomes an Error that names who threw it.
+// Guards calls of plugin code, which may throw exceptions of any type: they become an Error that names the plugin class.
 
 #include <string>
 #include <string_view>
@@ -9,14 +9,13 @@
 
 namespace etendue {
 
-/// What the exception says that is handled now: its own words, or its type when it is no std::exception. To be called in a
-/// catch block.
+/// The message of the current exception, or its type if it is no std::exception. To be called in a catch block.
 std::string thrown_text();
 
-/// "HShader", with " (of plugin 'libh.so')" when it comes from one.
+/// "HShader", with " (of plugin 'libh.so')" for a class of a plugin.
 std::string name_with_plugin(const ClassInfo&);
 
-/// A new object; what its constructor throws becomes an Error.
+/// A new object; exceptions of its constructor become Error.
 Ref<Component> create(const ClassInfo&);
 
 }  // namespace etendue

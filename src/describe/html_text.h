@@ -1,12 +1,12 @@
 #pragma once
-// Pages of HTML: their looks, and text within them.
+// Common parts of HTML pages: their style, and escaping of text.
 
 #include <string>
 #include <string_view>
 
 namespace etendue {
 
-/// As text or as the value of an attribute in double quotes.
+/// Escapes a text for use as HTML text or as an attribute value in double quotes.
 inline std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -21,7 +21,7 @@ inline std::string escaped(std::string_view text) {
   return out;
 }
 
-/// Colours, type and headings of every page; each adds what is its own.
+/// The style of colours, type and headings that all pages share; each page adds its own.
 inline constexpr std::string_view page_style = R"(
 :root {
   color-scheme: light dark;

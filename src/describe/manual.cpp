@@ -1,4 +1,4 @@
-// Classes in words: for a terminal, and as the pages of the manual.
+// Class descriptions as text: for a terminal, and as the pages of the manual.
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@ namespace etendue {
 
 namespace {
 
-/// Characters, not bytes.
+/// The number of characters, not bytes.
 size_t width_of(const std::string& text) {
   return size_t(std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
@@ -53,7 +53,7 @@ std::string range_text(const Member& member) {
   return member.range ? member.range->text() : "";
 }
 
-/// The ends of its slider; "" without.
+/// The range of a slider; "" without one.
 std::string slider_text(const Member& member) {
   return member.soft ? fmt::format("usually {:.6g} to {:.6g}", member.soft->low, member.soft->high) : "";
 }
@@ -70,7 +70,7 @@ std::string meaning_text(const Member& member) {
   return {};
 }
 
-/// When it matters; "" for always.
+/// The condition under which a member has an effect; "" for always.
 std::string condition_text(const ClassInfo& info, const Member& member) {
   std::vector<std::string> parts;
   for (const Condition& condition : member.conditions) parts.push_back(condition.text(info));
@@ -79,7 +79,7 @@ std::string condition_text(const ClassInfo& info, const Member& member) {
 
 std::string with_blank(const std::string& text) { return text.empty() ? text : " " + text; }
 
-/// Empty for a class that cannot be made: its children choose their own.
+/// The default of a member; empty for an abstract class, whose subclasses have their own defaults.
 std::string default_text(const ClassInfo& info, const Member& member) {
   if (member.required) return "must be given";
   return info.abstract() ? "" : value_text(member.default_value, member);
@@ -98,7 +98,7 @@ void add_tree(const ClassInfo& info, size_t depth, size_t column, std::string& o
 
 // ---- Markdown -------------------------------------------------------------------------------------------------------
 
-/// Bars would end a table's cell.
+/// Escapes vertical bars, which would end a cell of a table.
 std::string cell(const std::string& text) {
   std::string r;
   for (const char c : text) {
@@ -124,7 +124,7 @@ std::string member_row(const ClassInfo& info, const Member& member) {
                      cell(sentence(member.text) + with_blank(condition_text(info, member))), name(member.effect));
 }
 
-/// A table for each group of members, in the order in which they were first described; first those of none.
+/// A table for each group of members, in the order of their first members; members without a group come first.
 std::string members_tables(const ClassInfo& info) {
   std::vector<std::string> groups;
   if (std::ranges::any_of(info.members, [](const Member& m) { return m.group.empty(); })) groups.emplace_back();

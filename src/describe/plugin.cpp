@@ -54,7 +54,7 @@ std::vector<std::string> parts_of(const std::string& text) {
   return parts;
 }
 
-/// What to do about a part of the text of abi.h that differs.
+/// Advice for a difference in one part of the text of abi.h.
 std::string remedy(const std::string& theirs, const std::string& ours) {
   const auto about = [&](const char* word) { return theirs.starts_with(word) && ours.starts_with(word); };
   if (about("interfaces") || ours.ends_with("wavelengths")) return "with the headers of this program";
@@ -83,7 +83,7 @@ void compare_abi(const std::string& theirs) {
       fmt::format("it was built for '{}', this program is '{}'; build it again with the headers of this program", theirs, own));
 }
 
-/// Throws Error when the machine lacks one of the extensions of its instruction set.
+/// Throws Error if the machine lacks an instruction set extension in the list.
 void require_instructions(const std::string& list) {
 #if defined(__x86_64__)
   const auto known = [](const std::string& name) {
@@ -121,7 +121,7 @@ void check_plugin(const std::string& file, const std::function<void()>& use) {
 }
 
 void* open_plugin(const std::string& file) {
-  // Never closed: objects of its classes, and their code, may live until the end.
+  // The library is never closed: objects of its classes may live until the program ends.
   void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) throw Error(fmt::format("it cannot be opened: {}", dlerror()));
   return handle;

@@ -5,15 +5,16 @@
 
 namespace etendue {
 
-/// The plugin's file: in the folders of ETENDUE_PLUGIN_PATH when the path has no folder, else relative to the working folder.
-/// Throws Error when there is none, or it is no regular file.
+/// The file of a plugin: searched in the folders of ETENDUE_PLUGIN_PATH if the path has no folder, else relative to the working
+/// directory. Throws Error if there is none, or it is not a regular file.
 std::string find_plugin(const std::string& path);
 
-/// Throws Error, with the remedy, when a library is no plugin, was built for another program or machine, or crashes. It is
-/// opened in a process of its own, for opening a library runs code of it; `use` takes in, there, what it has enlisted.
+/// Throws Error, with advice, if a library is not a plugin, was built for another program or machine, or crashes. The library
+/// is opened in a child process, since opening a library runs code of it; `use` is called in this process to register its
+/// classes.
 void check_plugin(const std::string& file, const std::function<void()>& use);
 
-/// Opens the library; its classes enlist themselves.
+/// Opens the library, whose static initializers enlist its classes.
 void* open_plugin(const std::string& file);
 
 }  // namespace etendue

@@ -26,7 +26,7 @@ constexpr std::chrono::seconds time_limit{10};
 constexpr size_t longest_text = 4096;
 
 // ---- the child --------------------------------------------------------------------------------------------------------
-// It says 'A' when the library may be used, and 'D' when its classes could be taken in; or 'E' and what is wrong.
+// The child writes 'A' if the library may be used, and 'D' after its classes were registered; or 'E' and an error message.
 
 void say(int to, std::string_view all) {
   for (size_t sent = 0; sent < all.size();) {
@@ -38,7 +38,7 @@ void say(int to, std::string_view all) {
   }
 }
 
-/// The text that a function of the library gives; the one of a library it uses does not count. Null: there is none.
+/// The text returned by a function of the library itself, not of a library it uses. Null: there is no such function.
 const char* text_of(void* handle, const std::string& file, const char* name) {
   using TextFunction = const char* (*)();
   const auto function = reinterpret_cast<TextFunction>(dlsym(handle, name));
@@ -66,7 +66,7 @@ PluginAnswer ask(const std::string& file) {
   ::setrlimit(RLIMIT_CORE, &no_core);
   for (const int signal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGINT, SIGTERM, SIGHUP, SIGALRM})
     ::signal(signal, SIG_DFL);
-  // What the library prints, and what the loader says of it, is not for the user.
+  // Output of the library and messages of the dynamic loader are suppressed.
   const int nowhere = ::open("/dev/null", O_RDWR);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (standard != to) ::dup2(nowhere, standard);
@@ -83,7 +83,7 @@ PluginAnswer ask(const std::string& file) {
 
 // ---- the parent -------------------------------------------------------------------------------------------------------
 
-/// Reads until the other end is closed; false: the time was over before.
+/// Reads until the other end is closed; false: time limit exceeded.
 bool receive(int from, std::string& text) {
   const auto end = std::chrono::steady_clock::now() + time_limit;
   for (;;) {
@@ -128,7 +128,8 @@ void try_plugin(const std::string& file, const std::function<void(const PluginAn
   const bool accepted = said.starts_with('A');
   if (accepted) said.erase(0, 1);
   if (said.starts_with('E')) throw Error(said.substr(1));
-  // A child has none of the threads its parent had, so what constructors do with many may wait there for ever: no verdict.
+  // A forked child has only one thread, so constructors that use several threads may wait forever: this is not taken as a
+  // fault.
   if (said == "D" || (accepted && !in_time)) return;
   const char* when = accepted ? "its classes were described and made" : "it was opened and asked what it was built for";
   if (!in_time) throw Error(fmt::format("no answer within {} seconds when {}", time_limit.count(), when));

@@ -1,4 +1,4 @@
-// A member's type and value in words and in JSON.
+// The type and value of a member as text and as JSON.
 
 #include "reflection_values.h"
 
@@ -10,14 +10,14 @@ namespace etendue {
 
 namespace {
 
-/// From base units to the member's.
+/// Converts from base units to the member's unit.
 double in_unit(double value, Dimension dimension, const Member& member) {
   const Unit* unit = dimension == Dimension::none ? nullptr : find_unit(member.unit);
   return unit ? value / unit->factor : value;
 }
 
-/// Members mostly hold floats, which have been to base units and back: the shortest text that gives the same float back.
-/// Other numbers have the digits that survived.
+/// The text of a number after a conversion to base units and back. Most members are floats: the shortest text that gives the
+/// same float. Other numbers have the digits that remain exact.
 std::string number_text(double value) {
   if (std::floor(value) == value && std::abs(value) < 1e15) return fmt::format("{}", static_cast<std::int64_t>(value));
   const float narrow = static_cast<float>(value);
@@ -82,7 +82,7 @@ std::vector<std::pair<const Member*, Value>> chosen_members(const Component& com
 
 std::string component_text(const Component& component) {
   const ClassInfo& info = component.class_info();
-  // A class with a literal is written as that plain value: 0.5 rather than ConstantMap { value: 0.5 }.
+  // A component of a class with a literal is written as its plain value: 0.5 instead of ConstantMap { value: 0.5 }.
   if (!info.literal.empty()) {
     if (const Member* member = info.find(info.literal)) return value_text(member->get(component, *member), *member);
   }

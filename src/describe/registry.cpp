@@ -19,7 +19,7 @@
 namespace etendue {
 
 namespace {
-// Zero before any constructor runs, so that nodes can enlist in any order.
+// Constant-initialized to null before any constructor runs, so that nodes can enlist in any order.
 constinit RegistrationNode* pending = nullptr;
 }  // namespace
 
@@ -82,8 +82,8 @@ struct Registry::State {
   std::map<std::string, std::unique_ptr<ClassInfo>, std::less<>> by_name;
   std::unordered_map<std::type_index, const ClassInfo*> by_type;
   std::map<std::string, void*> plugins;
-  std::map<std::string, std::string> refused;  // plugins and the reason: opened once more, they would enlist nothing
-  std::string provider;                        // of what is adopted now
+  std::map<std::string, std::string> refused;  // rejected plugins and why: reopened, they would not enlist again
+  std::string provider;                        // of the classes being adopted
 };
 
 Registry::Registry() : s(new State) {}
@@ -95,8 +95,7 @@ Registry& Registry::instance() {
 
 namespace {
 
-/// Defaults come from a default-constructed object; such objects may hold others of the classes just added. Returns what is
-/// wrong with them.
+/// Takes defaults from default-constructed objects, which may contain objects of other new classes. Returns the faults found.
 std::string note_defaults(const std::vector<ClassInfo*>& added) {
   std::string faults;
   for (ClassInfo* info : added) {
@@ -144,7 +143,7 @@ void Registry::adopt() {
       defined_twice(detail::bare_class_name(n->type), s->provider);
   }
 
-  // Parents before children: a class begins with its parent's members.
+  // Parents come before children: a class starts with its parent's members.
   const std::function<const ClassInfo*(const std::type_info&)> take = [&](const std::type_info& type) -> const ClassInfo* {
     if (const auto known = s->by_type.find(type); known != s->by_type.end()) return known->second;
     const auto node = waiting.find(type);
@@ -208,7 +207,7 @@ const ClassInfo* Registry::find(std::type_index type) const {
 std::vector<const ClassInfo*> Registry::all() const {
   const_cast<Registry*>(this)->adopt();
   const std::lock_guard lock(s->mutex);
-  // What nothing can be made of by name is nothing to write: a scene that only checks make, say.
+  // Omits classes without a subclass that can be created by name, such as base classes used only in tests.
   std::set<const ClassInfo*> wanted;
   for (const auto& [name, info] : s->by_name)
     for (const ClassInfo* at = info->abstract() ? nullptr : info.get(); at; at = at->parent) wanted.insert(at);
@@ -253,7 +252,7 @@ void Registry::load_plugin(const std::string& path) {
   }
   const auto named = [&] { return Error("plugin '" + file + "': " + thrown_text()); };
   try {
-    // Without the lock: the child process could not take it once more.
+    // Without the lock, since the child process could not lock it again.
     check_plugin(file, [&] {
       s->provider = file;
       adopt();
@@ -264,7 +263,7 @@ void Registry::load_plugin(const std::string& path) {
   const std::lock_guard lock(s->mutex);
   s->provider = file;
   try {
-    s->plugins[file] = open_plugin(file);  // its static nodes enlist themselves; nothing of them is called yet
+    s->plugins[file] = open_plugin(file);  // its static nodes enlist themselves; their functions are not called yet
     adopt();
     s->provider.clear();
   } catch (...) {

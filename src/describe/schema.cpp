@@ -1,4 +1,4 @@
-// Classes as JSON, and the JSON Schema of everything that can be written.
+// Class descriptions as JSON, and the JSON Schema of render descriptions.
 
 #include <cctype>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A condition: the member, and what it is or is not, or whether it is given at all.
+/// A condition as JSON: the member, and the values it has or has not, or whether it is set at all.
 Json condition_json(const Condition& condition) {
   Json json;
   json["member"] = condition.member;
@@ -26,7 +26,8 @@ Json condition_json(const Condition& condition) {
   return json;
 }
 
-/// What a panel needs to know of a member, beside its type and range; `prefix` is for keywords that are not the schema's own.
+/// Adds what a user interface needs in addition to type and range; `prefix` is for keywords outside of the JSON Schema
+/// standard.
 void add_panel_facts(Json& json, const Member& member, const std::string& prefix) {
   if (!member.group.empty()) json[prefix + "group"] = member.group;
   if (member.meaning != Meaning::plain) json[prefix + "meaning"] = std::string(name(member.meaning));
@@ -79,7 +80,7 @@ Json reference(const std::string& definition) { return {{"$ref", "#/$defs/" + de
 
 Json either(const Json& one, const Json& other) { return {{"anyOf", Json::array({one, other})}}; }
 
-/// A number within the member's range; whole numbers that a double does not tell apart are refused.
+/// A number within the member's range; integers that a double cannot represent exactly are excluded.
 Json number_schema(const Member& member) {
   const bool whole = member.kind == Kind::integer;
   Json json;
@@ -96,7 +97,7 @@ Json number_schema(const Member& member) {
   return json;
 }
 
-/// Of strings: some that are open are told by what they begin with.
+/// Adds the choices of a string; open choices ("…") become a pattern with their prefix.
 void add_choices(Json& json, const std::vector<std::string>& choices) {
   Json closed = Json::array(), all = Json::array();
   for (const std::string& choice : choices) {
@@ -120,7 +121,7 @@ void add_choices(Json& json, const std::vector<std::string>& choices) {
   json["anyOf"] = all;
 }
 
-/// The value itself.
+/// The schema of a value itself, without expressions.
 Json plain_item_schema(const Member& member) {
   Json json;
   switch (member.kind) {
@@ -151,8 +152,8 @@ Json plain_item_schema(const Member& member) {
   return json;
 }
 
-/// What fits the member as a single value, its list left aside: the value, or an expression that gives it, where a string is
-/// not the value itself.
+/// The schema of a single value of the member, or of one entry of a list: the value, or an expression for it, unless a string
+/// is the value itself.
 Json item_schema(const Member& member) {
   const Json json = plain_item_schema(member);
   switch (member.kind) {
@@ -160,13 +161,13 @@ Json item_schema(const Member& member) {
     case Kind::file:
     case Kind::color:
     case Kind::transform:
-    case Kind::component: return json;  // a text, or expressions are among what is referred to
+    case Kind::component: return json;  // strings are texts, or the referenced schema includes expressions
     case Kind::choice: return either(json, {{"type", "string"}, {"description", "The name of a param."}});
     default: return either(json, reference("expression"));
   }
 }
 
-/// Rows may also be written flat.
+/// Whether the entries are rows of numbers, which may also be written as a flat list.
 bool is_row(const Member& member) {
   return member.kind == Kind::vector2 || member.kind == Kind::vector3 || member.kind == Kind::point3 ||
          member.kind == Kind::normal3;
@@ -176,7 +177,7 @@ Json member_schema(const Member& member) {
   Json json = item_schema(member);
   if (member.list) {
     if (is_row(member)) json = either(json, number_schema(member));
-    // Corners of triangles and the like, by threes.
+    // Vertex indices and the like may be grouped by threes.
     if (member.kind == Kind::integer)
       json = either(json, {{"type", "array"}, {"items", number_schema(member)}, {"minItems", 3}, {"maxItems", 3}});
     json = {{"type", "array"}, {"items", json}};
@@ -207,12 +208,12 @@ Json class_schema(const ClassInfo& info) {
   return json;
 }
 
-/// Anything that may stand where the class is expected.
+/// The schema of everything allowed where the class is expected.
 Json any_schema(const ClassInfo& info) {
   Json any = Json::array();
   for (const ClassInfo* other : makeable(info)) {
     any.push_back(reference(other->name));
-    // A plain value becomes an object of a class that says so.
+    // For a class with a literal, a plain value is allowed, too.
     if (other->literal.empty()) continue;
     if (const Member* member = other->find(other->literal)) any.push_back(member_schema(*member));
   }
@@ -221,7 +222,7 @@ Json any_schema(const ClassInfo& info) {
   return {{"description", info.summary}, {"anyOf", any}};
 }
 
-/// A Job, and what stands beside it in a file.
+/// The schema of the root: a Job, and the other keys of a file.
 Json root_schema() {
   const ClassInfo* job = Registry::instance().find("Job");
   Json root = job ? class_schema(*job) : Json{{"type", "object"}};

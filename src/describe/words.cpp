@@ -8,7 +8,7 @@ namespace etendue {
 
 namespace {
 
-/// As the tables write it: "Rough_Conductor" as "roughconductor".
+/// The spelling used in the tables: "roughconductor" for "Rough_Conductor".
 std::string bare(std::string_view word) {
   std::string text;
   for (const char c : word)
@@ -21,7 +21,7 @@ std::string told(const ForeignWord& word) {
                             : fmt::format(" ({}'s word; here it is {})", word.whose, word.here);
 }
 
-/// The first name in quotes.
+/// The first name in quotes in a text.
 std::string_view first_quoted(std::string_view text) {
   const size_t begin = text.find('\'') + 1;
   return begin == 0 ? std::string_view() : text.substr(begin, text.find('\'', begin) - begin);
@@ -33,14 +33,14 @@ bool is_of(const ClassInfo& info, std::string_view ancestor) {
   return false;
 }
 
-/// Whether what is told fits a class of the interface that the entry is of: it names another class, or a member of this one.
+/// Whether an entry about an interface applies to a class of it: it names another class, or a member of this class.
 bool speaks_of(const ForeignWord& entry, const ClassInfo& info) {
   for (size_t at = entry.here.find('\''); at != std::string_view::npos; at = entry.here.find('\'', at + 1))
     if (at + 1 < entry.here.size() && std::isupper(static_cast<unsigned char>(entry.here[at + 1]))) return true;
   return info.find(first_quoted(entry.here)) != nullptr;
 }
 
-/// The same but for the size of letters, '_' and blanks.
+/// The known name with the same spelling except for case, '_' and blanks; null: there is none.
 const std::string* same_but_for_spelling(const std::string& given, const std::vector<std::string>& known) {
   for (const std::string& name : known)
     if (bare(name) == bare(given)) return &name;
@@ -72,7 +72,7 @@ std::string no_member(const ClassInfo& info, const std::string& given) {
   for (const Member& m : info.members) known.push_back(m.name);
   if (const std::string* same = same_but_for_spelling(given, known)) return text + " (did you mean '" + *same + "'?)";
   const std::string word = bare(given);
-  // What is said of the class itself comes before what is said of its interface, and that before what is said of all.
+  // Entries for the class itself have priority over those for its interface, and these over general ones.
   const ForeignWord *general = nullptr, *of_interface = nullptr;
   for (const ForeignWord& entry : foreign_members()) {
     if (entry.word != word) continue;
@@ -89,7 +89,7 @@ std::string no_member(const ClassInfo& info, const std::string& given) {
 std::string meant_choice(const std::string& given, const Member& member) {
   if (const std::string* same = same_but_for_spelling(given, member.choices)) return " (did you mean '" + *same + "'?)";
   const std::string word = bare(given);
-  // What is said of members of this name comes before what is said of all.
+  // Entries for members with this name have priority over general ones.
   const ForeignWord* general = nullptr;
   for (const ForeignWord& entry : foreign_choices()) {
     if (entry.word != word || std::ranges::find(member.choices, first_quoted(entry.here)) == member.choices.end()) continue;

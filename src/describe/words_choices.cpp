@@ -1,5 +1,5 @@
-// What pbrt, Mitsuba, Blender and others call the choices of members. tests/language_words_test.cpp looks up every name on the
-// right.
+// Names of members' choices in pbrt, Mitsuba, Blender and others, with their equivalents here.
+// tests/language/language_words_test.cpp checks that every name on the right exists.
 
 #include "words.h"
 

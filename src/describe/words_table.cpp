@@ -1,5 +1,5 @@
-// What pbrt, Mitsuba and Blender call what is called otherwise here. tests/language/language_words_test.cpp looks up every name
-// on the right.
+// Names of classes and members in pbrt, Mitsuba and Blender, with their equivalents here.
+// tests/language/language_words_test.cpp checks that every name on the right exists.
 
 #include "words.h"
 

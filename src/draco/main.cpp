@@ -1,7 +1,7 @@
-// etendue_draco: reads compressed meshes from its standard input, a file, and writes their triangles to standard output (see
-// components/importers/gltf/compressed/draco_wire.h for both); what is wrong goes to standard error. It is a program of its
-// own, so that a fault in the library ends nothing else, and a few bytes that claim gigabytes take no more than this process
-// may.
+// etendue_draco: reads compressed meshes from its standard input, a file, and writes their triangles to standard output (the
+// formats are in components/importers/gltf/compressed/draco_wire.h); errors are written to standard error. It is a separate
+// program, so that a crash of the library ends nothing else, and a few bytes that claim gigabytes cannot use more memory than
+// this process is allowed.
 
 #include <draco/compression/decode.h>
 #include <sys/mman.h>
@@ -28,7 +28,7 @@ using namespace etendue::draco_wire;
 
 [[noreturn]] void refuse(const std::string& reason) { throw std::runtime_error(reason); }
 
-/// What is asked, read from its beginning.
+/// Reads the request from its beginning.
 class Asked {
  public:
   explicit Asked(std::span<const char> bytes) : rest_(bytes) {}
@@ -58,7 +58,7 @@ std::span<const char> standard_input() {
   return {static_cast<const char*>(bytes), size_t(status.st_size)};
 }
 
-/// Writes all it is given, some at a time.
+/// Buffers output and writes it in blocks; throws std::bad_alloc beyond `most` bytes.
 class Out {
  public:
   explicit Out(std::uint64_t most) : room_(most) {}
@@ -100,7 +100,7 @@ void write_numbers(const draco::PointAttribute& attribute, std::uint32_t vertice
   }
 }
 
-/// Of a number, by glTF's code of its type.
+/// Size of a number, by glTF's code of its component type.
 std::uint64_t bytes_of(std::uint32_t component) {
   switch (component) {
     case 5120:
@@ -161,8 +161,8 @@ void answer(Asked& asked, Out& out) {
 
 void run() {
   const std::span<const char> input = standard_input();
-  // Of what Draco makes in practice a triangle takes a byte or more, and a hundredth where a mesh is regular; up to 300 bytes
-  // while it is read.
+  // In practice Draco encodes a triangle in a byte or more, and in a hundredth of a byte for regular meshes; decoding takes up
+  // to 300 bytes per triangle.
   constexpr std::uint64_t mega = 1 << 20;
   const std::uint64_t memory = 384 * mega + 1024 * input.size();
   etendue::apart::limit_process(memory, 5 + input.size() / (100 << 10));

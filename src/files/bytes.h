@@ -1,6 +1,6 @@
 #pragma once
-// Numbers, lists and texts to bytes and back, for states that are saved. As they lie in memory: states are read by machines of
-// the same kind.
+// Serialization of numbers, lists and texts for saved states, in the memory layout of this machine: states are read only by
+// machines of the same kind.
 
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ class ByteWriter {
   void value(T v) {
     append(&v, sizeof v);
   }
-  /// Its length before it.
+  /// Writes a list, preceded by its length.
   template <class T>
   void list(const std::vector<T>& v) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -44,10 +44,10 @@ class ByteWriter {
   }
 };
 
-/// Throws Error when there is less than is asked for; takes no memory for what is not there.
+/// Throws Error if the bytes end too early; allocates no memory for missing bytes.
 class ByteReader {
  public:
-  /// `what` the bytes are, for errors: "the film's state".
+  /// `what` names the bytes in errors: "the film's state".
   ByteReader(std::span<const std::byte> bytes, std::string what) : rest_(bytes), what_(std::move(what)) {}
 
   template <class T>
@@ -72,7 +72,7 @@ class ByteReader {
     const auto size = value<std::uint64_t>();
     return {reinterpret_cast<const char*>(take(size)), size};
   }
-  /// How many elements of at least `least` bytes each follow.
+  /// Reads the number of elements that follow, each of at least `least` bytes.
   std::uint64_t count(size_t least) {
     const auto n = value<std::uint64_t>();
     if (n > rest_.size() / least) ends_early();

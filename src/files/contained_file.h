@@ -1,6 +1,6 @@
 #pragma once
-// Files that lie in another file: the images in a model. Their path is that of the container, '#' and their name within it,
-// such as "model.glb#images[3].png", and RegularFile opens them like any other.
+// Files contained in another file, such as the images in a model. Their path is the path of the container, '#' and their name
+// within it, such as "model.glb#images[3].png"; RegularFile opens them like any other file.
 
 #include <memory>
 #include <optional>
@@ -9,20 +9,20 @@
 
 namespace etendue {
 
-/// The bytes of what has a name in a container that is a file. Throws Error with the reason alone. From any thread.
+/// Returns the bytes of a named item of a container file. Throws Error with the reason alone. Thread-safe.
 using Unpack = std::string (*)(const std::string& container, const std::string& name);
-/// Says who knows containers with these endings (without dots, small letters). At the program's start.
+/// Registers the unpacking function of containers with these extensions (without dots, lower case). Called at program start.
 bool register_container(const std::vector<std::string>& endings, Unpack);
 
 struct ContainedFile {
-  std::string container;  ///< its path
-  std::string name;       ///< within it
+  std::string container;  ///< path of the container
+  std::string name;       ///< within the container
   Unpack unpack;
 };
-/// None when the path is that of a file of its own, or of no known container.
+/// Splits a path into container and name. Nothing if the path is that of a file of its own, or of no known container.
 std::optional<ContainedFile> contained_file(const std::string& path);
 
-/// The file that holds what the path names: the container, or the path itself.
+/// The file on disk for a path: the container, or the path itself.
 std::string file_on_disk(const std::string& path);
 
 }  // namespace etendue

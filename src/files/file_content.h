@@ -1,5 +1,5 @@
 #pragma once
-// By what two versions of a file are told apart.
+// The size and hash of a file, by which versions of it are distinguished.
 
 #include <cstdint>
 #include <string>
@@ -11,7 +11,7 @@ struct FileContent {
   std::uint64_t hash = 0;
 };
 
-/// Reads a whole file; one that cannot be read has a size that none has.
+/// Reads a whole file. For a file that cannot be read, the size is 2^64 - 1.
 FileContent content_of(const std::string& path);
 
 }  // namespace etendue

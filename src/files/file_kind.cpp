@@ -15,7 +15,7 @@ namespace etendue {
 
 namespace {
 
-constexpr size_t looked_at = 8192;  // bytes of a file
+constexpr size_t looked_at = 8192;  // bytes of a file that are inspected
 
 struct Magic {
   std::string_view bytes;
@@ -24,7 +24,7 @@ struct Magic {
 
 using namespace std::string_view_literals;
 
-/// What begins with the same bytes always. The longer ones of those that begin alike come first.
+/// Formats that always begin with the same bytes. Among those with a common beginning, the longer ones come first.
 const std::vector<Magic>& magics() {
   static const std::vector<Magic> all{
       {"version https://git-lfs.github.com/spec/"sv,
@@ -83,13 +83,13 @@ const std::vector<Magic>& magics() {
   return all;
 }
 
-std::uint32_t number_at(std::string_view bytes, size_t place) {  // lowest byte first
+std::uint32_t number_at(std::string_view bytes, size_t place) {  // little endian
   std::uint32_t n = 0;
   for (size_t i = 4; i-- > 0;) n = n << 8 | static_cast<unsigned char>(bytes[place + i]);
   return n;
 }
 
-/// What tells its own length, or has a second word behind the first.
+/// Formats that are recognized by a length field, or by a second word after the first.
 const FileKind* by_numbers(std::string_view b, std::uint64_t size) {
   static const FileKind webp{"a WebP image", {"webp"}}, bmp{"a BMP image", {"bmp"}}, lwo{"a LightWave model", {"lwo"}},
       autodesk{"a 3DS model", {"3ds"}}, stl{"an STL mesh", {"stl"}};
@@ -111,7 +111,7 @@ std::string_view without_blanks(std::string_view text) {
   return first == text.npos ? std::string_view() : text.substr(first);
 }
 
-/// The name of the outermost element.
+/// The name of the outermost XML element.
 std::string_view element_of(std::string_view text) {
   for (size_t at = text.find('<'); at != text.npos; at = text.find('<', at + 1)) {
     const std::string_view from = text.substr(at + 1);
@@ -140,7 +140,7 @@ const FileKind* by_markup(std::string_view text) {
   return text.starts_with("<?xml") ? &xml : nullptr;
 }
 
-/// Calls for the words that lines begin with, and what follows them, until one says so. Lines of comments are left out.
+/// Calls `call` with the first word of each line and the rest of the line, until it returns false. Comment lines are skipped.
 template <class Call>
 void for_lines(std::string_view text, Call call) {
   while (!text.empty()) {
@@ -155,7 +155,7 @@ void for_lines(std::string_view text, Call call) {
 
 bool is_digit(char c) { return (c >= '0' && c <= '9') || c == '-' || c == '.'; }
 
-/// Texts without any mark, by what their lines begin with.
+/// Text formats without a magic number, by the first words of their lines.
 const FileKind* by_lines(std::string_view text) {
   static const FileKind pbrt{"a scene of pbrt", {"pbrt"}}, obj{"an OBJ mesh", {"obj"}},
       mtl{"materials of an OBJ mesh", {"mtl"}}, own{"a render description", {"etd"}}, dxf{"a DXF drawing", {"dxf"}},
@@ -232,7 +232,7 @@ std::string mistaken_contents(const std::string& path) {
     const FileKind* kind = kind_of(beginning, file.size());
     return kind && !std::ranges::count(kind->endings, ending_of_contents(path)) ? in_words(*kind) : std::string();
   } catch (const Error&) {
-    return {};  // who failed to read it says why
+    return {};  // the caller that failed to read the file reports why
   }
 }
 

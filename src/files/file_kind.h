@@ -1,5 +1,5 @@
 #pragma once
-// What a file holds, by its first bytes: files get wrong names, and some are not there but only something that stands for them.
+// The kind of a file by its first bytes: files may have a wrong extension, or be placeholders of the real file.
 
 #include <cstdint>
 #include <string>
@@ -10,18 +10,18 @@ namespace etendue {
 
 struct FileKind {
   std::string_view what;                  ///< "a PNG image"
-  std::vector<std::string_view> endings;  ///< that such files have, without dots, in small letters; the usual one first
-  std::string_view advice = {};           ///< for what is no format that anything should be read from
+  std::vector<std::string_view> endings;  ///< extensions of such files, without dots, in lower case; the usual one first
+  std::string_view advice = {};           ///< for a kind that no reader should be used for
 };
 
-/// Of a file of this size that begins so; null: it is nothing that is known. A text may begin like several things, and is
-/// taken for one of them when nothing else begins like that.
+/// The kind of a file of this size with this beginning; null: unknown. For texts this is a guess, since several formats may
+/// begin alike.
 const FileKind* kind_of(std::string_view beginning, std::uint64_t size);
 
-/// What is wrong with a file whose contents are not of the kind that its name says, in words that go on "'name': "; empty: it
-/// is what it says, or nobody knows. For those who failed to read it.
+/// A message, to follow "'name': ", for a file whose contents are not of the kind that its extension says. Empty: they match,
+/// or the kind is unknown. To be called after reading the file has failed.
 std::string mistaken_contents(const std::string& path);
-/// The same of a text that was read, from a file with this ending.
+/// The same for a text already read from a file with this extension.
 std::string mistaken_contents(std::string_view contents, const std::string& ending);
 
 }  // namespace etendue

@@ -45,12 +45,13 @@ void write_to(int file, const char* bytes, size_t count) {
 }
 
 void unpack_gzip(int from, int to) {
-  // Meshes shrink to a fifth, text to a tenth. Zeros shrink to a thousandth, and nobody's scene is made of zeros.
+  // Typical meshes shrink to a fifth, text to a tenth. Only data such as zeros shrink to a thousandth, and no real scene is
+  // made of zeros.
   constexpr std::uint64_t most_times = 64, always = 256 << 20;
   struct stat status{};
   if (::fstat(from, &status) != 0) throw Error(std::strerror(errno));
   const std::uint64_t most = std::max(always, most_times * std::uint64_t(status.st_size));
-  const int own = ::dup(from);  // which gzclose closes
+  const int own = ::dup(from);  // gzclose closes the duplicate
   const std::unique_ptr<gzFile_s, Close> file(own < 0 ? nullptr : gzdopen(own, "rb"));
   if (!file) {
     if (own >= 0) ::close(own);

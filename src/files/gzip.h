@@ -1,5 +1,5 @@
 #pragma once
-// Files compressed by gzip, such as the meshes `mesh.ply.gz` of pbrt's scenes. RegularFile opens them as what they hold.
+// Files compressed by gzip, such as the meshes `mesh.ply.gz` of pbrt's scenes. RegularFile opens their uncompressed contents.
 
 #include <string>
 
@@ -7,12 +7,12 @@ namespace etendue {
 
 /// Whether the name ends in ".gz".
 bool named_gzip(const std::string& path);
-/// What a name ends in without a ".gz": "ply" of "Mesh.PLY.gz"; small letters, empty when there is none.
+/// The extension of a name without a ".gz": "ply" for "Mesh.PLY.gz"; in lower case, empty if there is none.
 std::string ending_of_contents(const std::string& path);
-/// Writes what an open compressed file holds to another open file; what is not compressed is copied. Throws Error with the
-/// reason alone: when it is damaged, or holds so many times its own size that it was made to fill the memory.
+/// Uncompresses one open file to another; uncompressed data are copied. Throws Error with the reason alone: the data are
+/// damaged, or so much larger than the compressed file that it must be a decompression bomb.
 void unpack_gzip(int from, int to);
-/// Writes all of it. Throws Error with the system's reason.
+/// Writes all bytes. Throws Error with the system's reason.
 void write_to(int file, const char* bytes, size_t count);
 
 }  // namespace etendue

@@ -24,7 +24,7 @@ extern char** environ;
 namespace etendue {
 namespace {
 
-/// Of silence, by the clock; the processor's time is limited by the helper itself.
+/// Limit of the elapsed time; the helper limits its CPU time itself.
 constexpr int most_seconds = 300;
 
 struct Pipe {
@@ -47,7 +47,7 @@ struct Pipe {
   }
 };
 
-/// Bytes as a file in memory alone.
+/// An anonymous file in memory that contains the bytes.
 class Input {
  public:
   explicit Input(std::string_view bytes) {
@@ -72,7 +72,7 @@ class Input {
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
-  /// Negative: there is none.
+  /// Negative: there is no input.
   int file() const { return file_; }
 
  private:
@@ -99,7 +99,7 @@ pid_t spawn(const std::string& path, const std::vector<std::string>& arguments, 
   return child;
 }
 
-/// Reads both pipes until they end; false: it took too long or was too much.
+/// Reads both pipes until they end; false: it took too long, or the output was too large.
 bool collect(const Pipe& out, const Pipe& said, std::string& bytes, std::string& words) {
   const auto begin = std::chrono::steady_clock::now();
   constexpr std::uint64_t most = std::uint64_t(1) << 32;
@@ -124,18 +124,18 @@ bool collect(const Pipe& out, const Pipe& said, std::string& bytes, std::string&
   return true;
 }
 
-/// What the helper said, in one line of printable characters.
+/// The helper's error output, in one line of printable characters.
 std::string one_line(std::string words) {
   while (!words.empty() && (words.back() == '\n' || words.back() == ' ')) words.pop_back();
   for (char& c : words)
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
-  constexpr size_t half = 200;  // what is wrong may stand first, or behind what led to it
+  constexpr size_t half = 200;  // the cause may be at the beginning, or after the messages that led to it
   if (words.size() > 2 * half) words = words.substr(0, half) + " … " + words.substr(words.size() - half);
   return words;
 }
 
-/// That a program ended by a signal says nothing of the file that it read: the libraries in it are other people's, and have
-/// faults that right files meet too.
+/// The message for a helper that was ended by a signal. This does not prove the file wrong: the third-party libraries in the
+/// helper have faults that correct files can trigger, too.
 std::string fault(const std::string& program, int signal) {
   std::string text = fmt::format(
       "its reader {}, which calls other people's code, was ended by signal {} ({}): the file may well be right. Another format "

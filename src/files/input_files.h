@@ -1,23 +1,23 @@
 #pragma once
-// Files that are read: no output may take their place.
+// The set of input files, which no output may overwrite.
 
 #include <set>
 #include <string>
 
 namespace etendue {
 
-/// Notes that this program reads a file, or will. RegularFile does for all it opens; who knows earlier, or lets a library of
-/// the system open a file, calls it. Thread-safe.
+/// Adds a file that this program reads or will read. RegularFile calls this for all files it opens; code that has the path
+/// earlier, or lets a system library open the file, calls it as well. Thread-safe.
 void note_input(const std::string& path);
 
-/// The files that are noted, by any thread, as long as this is there.
+/// Records the files noted by any thread during its lifetime.
 class InputsRead {
  public:
   InputsRead();
   ~InputsRead();
   InputsRead(const InputsRead&) = delete;
   InputsRead& operator=(const InputsRead&) = delete;
-  /// As full paths.
+  /// Absolute paths.
   std::set<std::string> paths() const;
 
  private:
@@ -25,7 +25,7 @@ class InputsRead {
   friend void note_input(const std::string&);
 };
 
-/// The noted file that stands at a path, by whatever name: through links of both kinds, "..", other spellings. Empty: none.
+/// The noted file at this path, under any name: through hard and symbolic links, "..", other spellings. Empty: none.
 std::string input_at(const std::string& path);
 
 }  // namespace etendue

@@ -17,7 +17,7 @@ constexpr std::string_view blanks = " \t\r\n";
 
 void skip_blanks(std::string_view& text) { text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size())); }
 
-/// Whether a text begins as descriptions do: with a definition, an include, a component.
+/// Whether a text begins like a description: with a definition, an include or a component.
 bool begins_as_description(std::string_view text, bool main) {
   const bool has_job = text.find("Job") != text.npos;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);

@@ -1,5 +1,5 @@
 #pragma once
-// Files that are no render descriptions, told before they are taken for one.
+// Recognizes files that are not render descriptions before they are parsed as such.
 
 #include <string>
 #include <string_view>
@@ -7,9 +7,9 @@
 
 namespace etendue {
 
-/// Why a file that was to be read as a description is none, as its contents or its name say: "'model.dxf': files ending in .dxf
-/// are not read; these are: …". Empty: it may be one. `main`: it is rendered itself, and not included. `others`: endings of the
-/// files of other programs that are read.
+/// The reason, from its contents or name, why a file is not a render description: "'model.dxf': files ending in .dxf are not
+/// read; these are: …". Empty: it may be one. `main`: the file is rendered itself, not included. `others`: extensions of other
+/// programs' files that can be read.
 std::string why_no_description(const std::string& path, std::string_view text, bool main,
                                const std::vector<std::string>& others);
 

@@ -11,8 +11,8 @@
 namespace etendue {
 namespace {
 
-/// Equal for all names of one file. One that is not there yet is told by its folder and its name in it. Empty: not known, or
-/// something to which several may write, such as a terminal.
+/// Equal for all names of one file. A file that does not exist yet is identified by its folder and its name in it. Empty:
+/// unknown, or a file that several outputs may write to, such as a terminal.
 std::string identity_of_file(const std::string& path) {
   struct stat status{};
   if (::stat(path.c_str(), &status) == 0)

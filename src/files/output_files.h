@@ -1,5 +1,6 @@
 #pragma once
-// Files that a command will write: refused, before anything is computed, where that could not be done or would do harm.
+// The files that a command will write. Outputs that cannot be written, or would do harm, are refused before anything is
+// computed.
 
 #include <string>
 #include <vector>
@@ -10,10 +11,11 @@ namespace etendue {
 
 class OutputFiles {
  public:
-  /// Adds a file that is named at a place. Noted as wrong: that it cannot be written, that it is one of the files that are
-  /// read (see files/input_files.h) other than `continued`, that it was added before; all by whatever name.
+  /// Adds a file that is named at a location of a description or command line. Collects errors: the file cannot be written; it
+  /// is an input (see files/input_files.h) other than `continued`; it was added before. Files are compared by identity, not by
+  /// name.
   void add(const std::string& path, Location at, const std::string& continued = {});
-  /// Throws Errors when anything was wrong.
+  /// Throws Errors if there were any.
   void raise() const;
 
  private:

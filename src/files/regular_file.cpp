@@ -47,7 +47,7 @@ void read_all(RegularFile& file, char* to) {
   if (file.read_some(to, file.size()) < file.size()) throw Error("it became shorter while it was read");
 }
 
-/// A file in memory alone that holds what `fill` writes to it.
+/// An anonymous file in memory with the contents that `fill` writes.
 int file_in_memory(const std::function<void(int)>& fill) {
   const int descriptor = ::memfd_create("contained", MFD_CLOEXEC);
   if (descriptor < 0) refuse(errno);
@@ -109,7 +109,7 @@ void require_regular_file(const std::string& named) {
 }
 
 RegularFile::RegularFile(const std::string& path) : path_(path) {
-  // Looked at before it is opened, for opening a device may do something; and after, for it may have been exchanged.
+  // Checked before it is opened, because opening a device may have effects; and after, because the file may have been replaced.
   require_regular_file(path);
   const auto contained = contained_file(path);
   const bool in_memory = contained || named_gzip(path);

@@ -1,7 +1,7 @@
 #pragma once
-// Files that are read. All of them are opened here: a named pipe, a device or a socket would be waited for without end or fill
-// the memory, and a file that another program shortens would end this one if it were mapped into memory. What is opened is
-// noted as an input (input_files.h), which no output may replace.
+// RegularFile: all input files are opened here. Named pipes, devices and sockets are refused, since reading them could wait
+// forever or fill the memory. Files are not mapped into memory, because a mapped file that another program shortens would crash
+// this one. Each opened file is noted as an input (input_files.h), which no output may replace.
 
 #include <cstdint>
 #include <cstdio>
@@ -11,20 +11,20 @@
 
 namespace etendue {
 
-/// A regular file, open for reading. Errors are the reason alone; who knows what the file is for adds its name.
+/// A regular file, open for reading. Errors contain the reason alone; the caller adds the name.
 class RegularFile {
  public:
-  /// Throws Error with the system's reason, or with what the path is when it is no regular file. Never waits.
+  /// Throws Error with the system's reason, or with the type of a path that is no regular file. Never blocks.
   explicit RegularFile(const std::string& path);
 
-  /// A name by which a library can open the same bytes, as long as this is there.
+  /// A name by which a library can open the same bytes, as long as this object exists.
   std::string path_to_open() const;
-  /// In bytes, when it was opened.
+  /// Size when the file was opened [bytes].
   std::uint64_t size() const { return size_; }
   void seek(std::uint64_t offset);
-  /// Throws Error when that many bytes are not there.
+  /// Throws Error if there are fewer bytes.
   void read(void* to, std::uint64_t bytes);
-  /// As many bytes as are there, at most these; 0 at the end.
+  /// Reads as many bytes as there are, at most `bytes`; returns their number, 0 at the end.
   std::uint64_t read_some(void* to, std::uint64_t bytes);
 
  private:
@@ -36,10 +36,10 @@ class RegularFile {
   std::string path_;
 };
 
-/// For what other libraries open by its name: throws what RegularFile would.
+/// Checks a file that another library will open by name: throws what RegularFile would throw.
 void require_regular_file(const std::string& path);
 
-/// All bytes of a regular file, as they were when it was opened. Throws Error with the reason alone; what is larger than `most`
+/// All bytes of a regular file, of the size at its opening. Throws Error with the reason alone; a file larger than `most`
 /// bytes, or than the memory, is refused before anything is read.
 class FileContents {
  public:
@@ -50,13 +50,14 @@ class FileContents {
   std::unique_ptr<char[]> bytes_;
   std::uint64_t size_ = 0;
 };
-/// The same as a string.
+/// The same, as a string.
 std::string read_regular_file(const std::string& path, std::uint64_t most = UINT64_MAX);
 
-/// Throws Error("<what> takes 12.5 GB, more than …") when that much memory cannot be had whatever else is freed.
+/// Throws Error("<what> takes 12.5 GB, more than …") if the machine does not have that much memory, or the process may not use
+/// it.
 void require_memory(double bytes, const std::string& what);
 
-/// What is said when memory ran out while a file was read.
+/// The error message when memory ran out while a file was read.
 inline constexpr const char* no_memory_to_read = "there is not enough memory to read it";
 
 }  // namespace etendue

@@ -1,5 +1,5 @@
 #pragma once
-// What several components read from one file, in memory once.
+// File contents that several components share, loaded once.
 
 #include <map>
 #include <memory>
@@ -7,15 +7,15 @@
 
 namespace etendue {
 
-/// Contents of files by keys, kept for as long as somebody has them. From any thread: different files are read at the same
-/// time, and who asks for one that is being read waits for it. Whoever reads must not take up other work meanwhile (tbb's
-/// `isolate`), for that might ask for the same.
+/// Contents of files by key, kept for as long as they are in use. Thread-safe: different files are read concurrently, and a
+/// request for a file that is being read waits. `read` must not take up other tbb tasks (use tbb's `isolate`), since such a
+/// task might request the same file.
 template <class Key, class Version, class Contents>
 class SharedContents {
  public:
   using Shared = std::shared_ptr<const Contents>;
 
-  /// What `read()` returns, or has returned before for that key and version. What it throws is passed on.
+  /// The contents for this key and version, from `read()` unless they are in memory. Exceptions of `read` are passed on.
   template <class Read>
   Shared get(const Key& key, const Version& version, Read read) {
     const std::shared_ptr<Entry> entry = entry_of(key);
@@ -37,7 +37,7 @@ class SharedContents {
 
   std::shared_ptr<Entry> entry_of(const Key& key) {
     const std::lock_guard lock(guard_);
-    if (all_.size() > many_) {  // twice as many as were kept: some may be nobody's
+    if (all_.size() > many_) {  // twice as many as remained the last time: some may be unused
       std::erase_if(all_, [](const auto& e) { return e.second.use_count() == 1 && e.second->contents.expired(); });
       many_ = 2 * all_.size() + 64;
     }

@@ -18,7 +18,7 @@ std::string as_utf8(std::string_view text) {
   std::string out;
   for (size_t i = 2; i + 1 < text.size(); i += 2) {
     std::uint32_t c = unit(i);
-    if ((c & 0xfc00) == 0xd800 && i + 3 < text.size() && (unit(i + 2) & 0xfc00) == 0xdc00) {  // a pair
+    if ((c & 0xfc00) == 0xd800 && i + 3 < text.size() && (unit(i + 2) & 0xfc00) == 0xdc00) {  // a surrogate pair
       c = 0x10000 + ((c & 0x3ff) << 10) + (unit(i + 2) & 0x3ff);
       i += 2;
     }

@@ -1,12 +1,13 @@
 #pragma once
-// Texts in other encodings than UTF-8.
+// Conversion of texts in other Unicode encodings to UTF-8.
 
 #include <string>
 #include <string_view>
 
 namespace etendue {
 
-/// A text that begins with a byte order mark as UTF-8 without one: UTF-16 of either order, or UTF-8. Any other: nothing.
+/// Texts with a byte order mark, in UTF-16 of either byte order or UTF-8, are converted to UTF-8 without the mark. Texts
+/// without one are returned unchanged.
 bool has_byte_order_mark(std::string_view);
 std::string as_utf8(std::string_view);
 

@@ -23,7 +23,7 @@ namespace {
 
 std::string reason(int code) { return std::generic_category().message(code); }
 
-/// 0 or what went wrong.
+/// Returns 0 or the error number.
 int write_all(int descriptor, std::span<const std::span<const std::byte>> pieces) {
   for (std::span<const std::byte> rest : pieces)
     while (!rest.empty()) {
@@ -35,28 +35,28 @@ int write_all(int descriptor, std::span<const std::span<const std::byte>> pieces
   return 0;
 }
 
-/// Where the bytes go.
+/// Where the bytes are written.
 struct Place {
-  std::filesystem::path target;  ///< a link is followed: it stays, and its file is replaced
+  std::filesystem::path target;  ///< symbolic links are followed: the link stays, its target is replaced
   std::filesystem::path folder;
   bool existed = false;
   struct stat old{};
 
   bool plain() const { return !existed || S_ISREG(old.st_mode); }
-  /// The new file, until it is whole.
+  /// The temporary file, until it is complete.
   std::string beside() const { return (folder / fmt::format(".{}.part-{}", target.filename().string(), ::getpid())).string(); }
 };
 
 constexpr int most_links = 40;
 
-/// Throws when nothing can be written there.
+/// Throws Error if nothing can be written to the path.
 Place place_of(const std::string& path) {
   namespace fs = std::filesystem;
   if (path.empty()) refuse(path, "the file has no name");
   Place place;
   std::error_code code;
   place.target = path;
-  // A link to what is not there yet, step by step.
+  // A chain of links to a file that does not exist yet is followed step by step.
   for (int links = 0; !fs::exists(place.target, code) && fs::is_symlink(fs::symlink_status(place.target, code)); ++links) {
     if (links == most_links) refuse(path, reason(ELOOP));
     place.target = place.target.parent_path() / fs::read_symlink(place.target, code);
@@ -65,7 +65,7 @@ Place place_of(const std::string& path) {
   code.clear();
   if (fs::exists(place.target, code)) {
     const fs::path canonical = fs::canonical(place.target, code);
-    if (!code) place.target = canonical;  // /dev/stdout of a pipe is there, but has no path
+    if (!code) place.target = canonical;  // a pipe as /dev/stdout exists, but has no canonical path
     code.clear();
   }
   if (code) refuse(path, code.message());
@@ -78,7 +78,8 @@ Place place_of(const std::string& path) {
   return place;
 }
 
-/// What is no regular file. A pipe without a reader would hold the program for ever: it is given a few seconds. -1: see errno.
+/// Opens a target that is no regular file. Opening a pipe without a reader would block forever: the reader gets a few seconds.
+/// -1: see errno.
 int open_special(const std::filesystem::path& target) {
   constexpr int tries = 50;
   constexpr std::chrono::milliseconds between(100);
@@ -88,7 +89,7 @@ int open_special(const std::filesystem::path& target) {
     descriptor = ::open(target.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor < 0 && errno != ENXIO) return -1;
   }
-  if (descriptor >= 0) ::fcntl(descriptor, F_SETFL, O_WRONLY);  // it may be slow to read
+  if (descriptor >= 0) ::fcntl(descriptor, F_SETFL, O_WRONLY);  // blocking writes, since the reader may be slow
   return descriptor;
 }
 
@@ -106,15 +107,15 @@ void require_writable(const std::string& path) {
   if (place.plain()) {
     const int descriptor = open_beside(place, path);
     ::unlink(place.beside().c_str());
-    // A block is more than what file systems find room for beside a file's name.
+    // Writes one block: file systems may store a few bytes together with the file's name even when the disk is full.
     const std::vector<std::byte> block(4096);
     const std::span<const std::byte> piece(block);
     failure = write_all(descriptor, std::span(&piece, 1));
     if (::close(descriptor) != 0 && !failure) failure = errno;
-  } else if (S_ISCHR(place.old.st_mode) || S_ISBLK(place.old.st_mode)) {  // of the others opening may wait, or be noticed
+  } else if (S_ISCHR(place.old.st_mode) || S_ISBLK(place.old.st_mode)) {  // opening the other types may block or have effects
     const int descriptor = ::open(place.target.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     if (descriptor < 0) refuse(path, reason(errno));
-    if (::write(descriptor, "", 0) < 0 && errno != EAGAIN) failure = errno;  // no bytes, but a full device says so
+    if (::write(descriptor, "", 0) < 0 && errno != EAGAIN) failure = errno;  // no bytes, but a full device reports an error
     ::close(descriptor);
   }
   if (failure) refuse(path, reason(failure));
@@ -149,7 +150,7 @@ void write_whole_file(const std::string& path, std::span<const std::span<const s
     ::unlink(beside.c_str());
     refuse(path, reason(failure));
   }
-  // The new name itself reaches the disk with its folder; not all file systems can say so, hence no error.
+  // The new directory entry reaches the disk with its folder; some file systems cannot sync folders, hence no error.
   const int folder_descriptor = ::open(place.folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder_descriptor >= 0) {
     ::fsync(folder_descriptor);

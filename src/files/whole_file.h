@@ -1,5 +1,5 @@
 #pragma once
-// Files that are either whole or as they were before.
+// Writes files atomically: a file is either complete or unchanged.
 
 #include <cstddef>
 #include <span>
@@ -7,16 +7,16 @@
 
 namespace etendue {
 
-/// Writes the bytes beside the path, has them reach the disk and renames; keeps the permissions of a file that was
-/// there. Devices and pipes are written straight. Throws Error naming the path and the reason; the path then holds what
-/// it held before and nothing is left beside it.
+/// Writes the bytes to a temporary file, flushes it to the disk and renames it; keeps the permissions of an existing file.
+/// Devices and pipes are written directly. Throws Error with the path and the reason; then the old file is unchanged and no
+/// temporary file is left.
 void write_whole_file(const std::string& path, const void* data, size_t size);
-/// Of a text.
+/// The same for a text.
 void write_whole_file(const std::string& path, const std::string& text);
-/// Throws the same Error now, as far as it can be known before there is something to write: no such folder, no permission, a
-/// folder, a name too long, a disk without room for anything. The path stays as it is.
+/// Throws the same Error in advance, as far as possible: no such folder, no permission, a folder, a name too long, a full disk.
+/// The file stays unchanged.
 void require_writable(const std::string& path);
-/// The same as write_whole_file for bytes that lie in several places, one after the other.
+/// The same as write_whole_file for bytes in several pieces, which are concatenated.
 void write_whole_file(const std::string& path, std::span<const std::span<const std::byte>> pieces);
 
 }  // namespace etendue

@@ -1,15 +1,15 @@
 #pragma once
-// Sums that depend on what is added, not on the order: binned summation (Demmel & Nguyen 2013; Ahrens, Demmel & Nguyen 2020),
-// here with integers. docs/decisions/023-exact-sums.md has the reasons.
+// Exact sums: sums that depend only on the set of addends, not on their order, by binned summation (Demmel & Nguyen 2013;
+// Ahrens, Demmel & Nguyen 2020), here with integers. docs/decisions/023-exact-sums.md has the reasons.
 //
-// Numbers are written with digits of 40 bits at fixed places: digit j counts units of 2^(40 j - 960). They are those of
-// rounding to nearest, so they have signs: with N(x, j) = x / unit_j rounded to the nearest integer (ties to even), digit j of
-// x is N(x, j) - 2^40 N(x, j + 1). They depend on x alone. A sum keeps the sums of the digits at the two highest places that
-// any addend reached. These follow from the set of addends: when a larger one comes, the lower place is left out, and what the
-// earlier addends have at the place above is already there (or is zero). Digits are at most 2^39 and sums of them have 63 bits,
-// so 2^24 - 1 addends can do no harm.
+// Numbers are written with digits of 40 bits at fixed places: digit j counts units of 2^(40 j - 960). Digits are signed, since
+// they result from rounding to nearest: with N(x, j) = x / unit_j rounded to the nearest integer (ties to even), digit j of x
+// is N(x, j) - 2^40 N(x, j + 1). So digits depend on x alone. A sum stores the sums of the digits at the two highest places
+// that any addend has reached. These follow from the set of addends: when a larger addend comes, the lower place is dropped,
+// and the digits of the earlier addends at the new upper place are already there (or are zero). Digits are at most 2^39 and
+// their sums have 63 bits, so 2^24 - 1 addends cannot overflow.
 //
-// Precision: an addend is rounded to the lower place, which errs by at most 2^-40 of the largest addend.
+// Precision: an addend is rounded to the lower place, an error of at most 2^-40 of the largest addend.
 
 #include <array>
 #include <cmath>
@@ -34,11 +34,12 @@ struct ExactUnits {
 };
 inline constexpr ExactUnits exact_units;
 
-/// An array of groups of sums. A group (X, Y and Z, say) has its places in common, those of its largest addend.
+/// An array of groups of sums. The sums of a group (X, Y and Z, say) have the same two places, those of the group's largest
+/// addend.
 class ExactSums {
  public:
   static constexpr std::uint32_t most_addends = (1u << 24) - 1;
-  /// Of an addend; magnitudes below 2^-961 count as zero.
+  /// The largest magnitude of an addend; magnitudes below 2^-961 count as zero.
   static constexpr double largest_addend = 0x1p959;
 
   ExactSums() = default;
@@ -46,20 +47,20 @@ class ExactSums {
 
   bool empty() const { return places_.empty(); }
 
-  /// Adds to groups [begin, end): that of group i is at from[(i - begin) * stride].
+  /// Adds to the groups [begin, end): the addends of group i start at from[(i - begin) * stride].
   void add(size_t begin, size_t end, const double* from, size_t stride) {
     if (size_ == 3)
       add_range<3>(begin, end, from, stride);
     else
       add_range<1>(begin, end, from, stride);
   }
-  /// Adds other sums, of as many groups.
+  /// Adds the sums of another array with as many groups.
   void add(const ExactSums& other) {
     for (size_t i = 0; i < places_.size(); ++i) {
       std::int64_t* to = &digits_[2 * size_ * i];
       raise(to, places_[i], other.places_[i]);
       const std::int64_t* from = &other.digits_[2 * size_ * i];
-      const int lower = places_[i] - other.places_[i];  // places by which the other's digits are too low here
+      const int lower = places_[i] - other.places_[i];  // number of places by which the other's digits are lower
       for (size_t c = 0; c < size_ && lower <= 1; ++c) {
         if (lower == 0) {
           to[c] += from[c];
@@ -77,12 +78,12 @@ class ExactSums {
     return double((Wide(digits[c]) << place_bits) + digits[size_ + c]) * exact_units.unit[places_[i]];
   }
 
-  // For states.
+  // Access for saving and loading states.
   std::vector<std::int64_t>& digits() { return digits_; }
   const std::vector<std::int64_t>& digits() const { return digits_; }
   std::vector<std::uint8_t>& places() { return places_; }
   const std::vector<std::uint8_t>& places() const { return places_; }
-  /// Whether the digits can be those of so many addends.
+  /// Whether the digits can be sums of this many addends.
   bool possible(std::uint32_t addends) const {
     const auto most = std::int64_t(addends) << (place_bits - 1);
     for (const std::uint8_t place : places_)
@@ -96,7 +97,7 @@ class ExactSums {
   __extension__ using Wide = __int128;
   static constexpr int place_bits = ExactUnits::place_bits, highest_place = ExactUnits::places - 3;
 
-  /// Moves a group's places up.
+  /// Moves a group to higher places.
   void raise(std::int64_t* digits, std::uint8_t& place, std::uint8_t to) const {
     if (to <= place) return;
     for (size_t c = 0; c < size_; ++c) {
@@ -131,8 +132,8 @@ class ExactSums {
   }
 
   size_t size_ = 1;
-  std::vector<std::int64_t> digits_;  // of each group the higher ones, then the lower ones
-  std::vector<std::uint8_t> places_;  // of the lower digits
+  std::vector<std::int64_t> digits_;  // for each group the upper digits, then the lower digits
+  std::vector<std::uint8_t> places_;  // place of the lower digits, for each group
 };
 
 }  // namespace etendue

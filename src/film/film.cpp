@@ -1,4 +1,4 @@
-// Film: what comes in, step by step.
+// Film: collects the samples of each step.
 
 #include "etendue/film/film.h"
 
@@ -17,7 +17,7 @@ namespace etendue {
 
 namespace {
 
-/// What every render of a picture takes at least [bytes]: the light of the step at hand and the exact sums of it.
+/// The least memory that a render of a picture needs [bytes]: the light of the current step and its exact sums.
 double least_memory(const PictureFormat& format) {
   const auto pixels = double(format.area.width()) * double(format.area.height());
   return pixels * double(2 * list_stride(light_list, format) * sizeof(double));
@@ -49,7 +49,7 @@ void Film::clear() {
   members_->empty();
 }
 
-// Memory is taken when it is first needed: a picture that is only described costs nothing.
+// Memory is allocated when it is first needed: a picture that is only described costs nothing.
 void Film::Members::empty() {
   totals = {};
   before_step.reset();
@@ -69,7 +69,7 @@ namespace {
 
 }  // namespace
 
-/// A list of the step at hand, with room for all pixels.
+/// A list of the current step, allocated for all pixels.
 std::vector<double>& Film::Members::list(List which) {
   std::vector<double>& list = step.lists[which];
   if (list.empty()) list.resize(format->pixels() * list_stride(which, *format));
@@ -79,7 +79,7 @@ std::vector<double>& Film::Members::list(List which) {
 void Film::merge(const ImageTile& tile) {
   Members& m = *members_;
   const std::lock_guard lock(m.mutex);
-  if (!tile.format_) return;  // never begun
+  if (!tile.format_) return;  // begin was never called
   if (tile.format_ != m.format && !tile.format_->collects_as(*m.format)) throw Error("the tile is of another picture");
   try {
     if (m.step.begun && tile.block_ != m.step.block) {
@@ -135,7 +135,7 @@ void Film::add_tile(const ImageTile& tile) {
 
 namespace {
 
-bool summable(double value) { return std::abs(value) <= ExactSums::largest_addend; }  // no for what is no number
+bool summable(double value) { return std::abs(value) <= ExactSums::largest_addend; }  // false for NaN
 
 }  // namespace
 
@@ -145,14 +145,14 @@ void Film::Members::complain(std::span<const double> values, size_t stride, int 
                           values[std::min(i, values.size() - 1)]));
 }
 
-// The splats of one sample are one outcome: what they bring to a pixel is added before it is squared, as (a + b)^2 =
-// a^2 + b (b + 2 a) when b comes to a.
+// All splats of one sample are one random outcome: their sum in a pixel is squared, not each of them. Adding b to a sum a adds
+// b (b + 2 a) to the square, as (a + b)^2 = a^2 + b (b + 2 a).
 void Film::add_splats(const ImageTile& tile) {
   Members& m = *members_;
   const PictureFormat& format = *m.format;
   std::vector<double>& sums = m.list(splat_list);
   double* parts = format.parts() > 0 ? m.list(part_splat_list).data() : nullptr;
-  std::vector<double>& of_path = m.splatted;  // what the path at hand brought so far; zero but in the pixels it reached
+  std::vector<double>& of_path = m.splatted;  // sum of the current path so far; zero except in pixels it has reached
   if (of_path.empty()) of_path.resize(format.pixels());
   std::vector<size_t> reached;
   const auto end_path = [&] {
@@ -220,13 +220,14 @@ void Film::end_step() {
 void Film::drop_step() {
   Members& m = *members_;
   const std::lock_guard lock(m.mutex);
-  if (!m.step.begun && !m.before_step) return;  // keeps the memory for the next one
+  if (!m.step.begun && !m.before_step) return;  // the lists keep their memory for the next step
   if (m.before_step) m.totals = std::move(*m.before_step);
   m.before_step.reset();
   m.step = {};
 }
 
-/// The squares that batches are judged by: for each pixel the step's mean, squared, times its samples.
+/// Computes the batch squares for the variance of correlated samples: for each pixel the square of the step's mean, times the
+/// step's samples.
 void Film::Members::note_batch(FilmSnapshot::Values& values) const {
   std::vector<double>& batches = values.lists[batch_list];
   batches.assign(format->pixels(), 0);
@@ -239,7 +240,7 @@ void Film::Members::note_batch(FilmSnapshot::Values& values) const {
     }
 }
 
-/// Adds the step at hand, or the part of it that is of one block, to the sums. Throws before anything changes.
+/// Adds the current step, or its current block, to the sums. Throws before anything changes.
 void Film::Members::add_step() {
   if (totals.steps >= ExactSums::most_addends)
     throw Error(fmt::format("a film cannot take more than {} steps", ExactSums::most_addends));

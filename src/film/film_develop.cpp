@@ -1,4 +1,4 @@
-// From what the film collected to a picture, and how exact it is.
+// Develops the collected sums to a picture, and estimates its error.
 
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// A channel beside the light's.
+/// A channel besides the light.
 struct Layer {
   enum class Source { mean, hit_mean, first, variance, count } source;
   size_t offset;  // among the features
@@ -64,19 +64,19 @@ bool FilmSnapshot::Values::even() const {
 }
 
 // A pixel estimates the mean of the radiance on the film, weighted by the filter f around it, over the film F: I = int_F f L /
-// int_F f. F is that of the whole picture, in a crop as well, since samples are taken around it as far as f reaches. Let F_i
-// be the integral of f over pixel i of F.
-//   Samples of the camera, n_i of them, are spread evenly over each pixel i:   I ~ sum_k f(x_k) L_k / sum_i n_i F_i.
-//   Splats arrive with a density of their own, each already divided by it:     I ~ scale * sum_k f(x_k) s_k / sum_i F_i,
-// where the scale is the number of pixels of the whole picture (the film's area) over the number of paths. With samples of both
-// kinds the two are parts of one sum, weighted against each other by whoever made them.
-// Camera samples are divided by the sum of weights that is to be expected, not by the one that came, sum_k f(x_k): the quotient
-// of two sums that vary together is not in expectation the quotient of what is expected of each (decision 013).
+// int_F f. F is that of the whole picture, for a crop as well, since samples are taken around the crop as far as f reaches. Let
+// F_i be the integral of f over pixel i of F.
+//   Camera samples, n_i of them, are spread evenly over each pixel i:        I ~ sum_k f(x_k) L_k / sum_i n_i F_i.
+//   Splats s_k have a pdf of their own, by which each is already divided:    I ~ scale * sum_k f(x_k) s_k / sum_i F_i,
+// where the scale is the number of pixels of the whole picture (the film's area) over the number of paths. If a renderer has
+// samples of both kinds, its MIS weights make the two estimates parts of one sum. Camera samples are divided by the expected
+// sum of weights, not by the actual one, sum_k f(x_k): the expected value of a quotient of two correlated sums is not the
+// quotient of their expected values (decision 013).
 FilmSnapshot::Values::Scales FilmSnapshot::Values::scales(int x, int y, bool even) const {
   Scales s;
   s.filter = format->over_film(x, y);
   const size_t pixel = format->index(x, y);
-  // A box of one pixel gives each sample to its own pixel, with weight 1.
+  // With a box filter of one pixel each sample counts for its own pixel only, with weight 1.
   const double expected = format->box ? weight(pixel)
                           : even      ? weight(pixel) * s.filter.filter
                                       : format->expected(x, y, [&](size_t i) { return weight(i); });
@@ -122,7 +122,7 @@ Image FilmSnapshot::develop() const {
   return image;
 }
 
-// ---- how exact it is --------------------------------------------------------------------------------------------------------
+// ---- error estimation ------------------------------------------------------------------------------------------------------
 
 double FilmSnapshot::Values::luminance(size_t pixel, const Scales& scales) const {
   const auto& light = lists[light_list];
@@ -136,12 +136,12 @@ double FilmSnapshot::Values::variance(size_t pixel, const Scales& scales) const 
   return variance_of_samples(pixel, scales) + variance_of_splats(pixel, scales);
 }
 
-// Values L_k of n samples a pixel, independent and with the filter's weights f_k: the variance of sum f_k L_k is that of the
+// For n samples L_k per pixel, independent and with the filter weights f_k, the variance of sum f_k L_k is the spread of the
 // values around the mean m in the pixel's neighbourhood, sum f_k^2 (L_k - m)^2, in expectation
 //   sum (f_k L_k)^2 - n m^2 int f^2   with   m = sum f_k L_k / (n int f).
-// The m found varies itself, so this comes out too small by the factor 1 - noise / n with noise = int f^2 / (int f)^2; for a
-// box of one pixel that is the usual (n - 1) / n. Film points are taken to be spread evenly: the unevenness of the f_k that
-// independent ones would have does not count as noise, but edges within the filter's reach do.
+// The estimated m varies itself, which makes the result too small by the factor 1 - noise / n with noise = int f^2 / (int f)^2;
+// for a box of one pixel that is the usual (n - 1) / n. Film points are assumed to be evenly spread: the variation of the f_k
+// that independent film points would have does not count as noise, but edges within the filter's radius do.
 double FilmSnapshot::Values::variance_of_samples(size_t pixel, const Scales& scales) const {
   const double n = weight(pixel), noise = scales.filter.noise();
   if (counts.samples[pixel] < 2 || !(n > noise)) return unknown;
@@ -150,7 +150,7 @@ double FilmSnapshot::Values::variance_of_samples(size_t pixel, const Scales& sca
   return scales.light * scales.light * std::max(0.0, sum[3] - sum[1] * sum[1] * noise / n) / (1 - noise / n);
 }
 
-// Each of N samples, wherever its own pixel is, brings s_k to this one, mostly nothing; the s_k are independent.
+// Each of N samples, wherever its own pixel is, contributes s_k to this one, mostly zero; the s_k are independent.
 double FilmSnapshot::Values::variance_of_splats(size_t pixel, const Scales& scales) const {
   if (lists[splat_list].empty()) return 0;
   const auto n = double(counts.paths);
@@ -159,7 +159,7 @@ double FilmSnapshot::Values::variance_of_splats(size_t pixel, const Scales& scal
   return scales.splat * scales.splat * std::max(0.0, sum[3] - sum[1] * sum[1] / n) * n / (n - 1);
 }
 
-// Steps of n_b samples with means v_b: their spread is sum n_b (v_b - mean)^2 / (steps - 1), for one sample.
+// For steps of n_b samples with means v_b, the variance of one sample is estimated as sum n_b (v_b - mean)^2 / (steps - 1).
 double FilmSnapshot::Values::variance_of_steps(size_t pixel, const Scales& scales) const {
   constexpr std::uint64_t enough = 8;
   const auto n = double(counts.paths);
@@ -183,7 +183,7 @@ double FilmSnapshot::relative_error() const {
       errors.push_back(std::sqrt(v.variance(pixel, scales)));
       total += means.back();
     }
-  // A picture still black may only have found no light yet.
+  // In a picture that is still black, no light may have been found yet.
   if (!(total > 0)) return unknown;
   const double pixels = double(means.size()), floor = 1e-3 * total / pixels;
   double sum = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// What is inside a Film.
+// The members of a Film.
 
 #include <mutex>
 
@@ -7,7 +7,7 @@
 
 namespace etendue {
 
-/// Sums of the step at hand, or of one block of it.
+/// The sums of the current step, or of its current block.
 struct Film::Step {
   Lists lists;
   FilmCounts counts;
@@ -21,9 +21,9 @@ struct Film::Members {
   std::shared_ptr<const PictureFormat> format;
   Estimator estimator = Estimator::independent;
   Totals totals;
-  std::unique_ptr<Totals> before_step;  ///< where a step has several blocks: the sums before it
+  std::unique_ptr<Totals> before_step;  ///< the sums before the current step, if the step has several blocks
   Step step;
-  std::vector<double> splatted;  ///< zero, between splats
+  std::vector<double> splatted;  ///< luminance of the current path's splats per pixel; zero between paths
   std::vector<LargeSample> largest;
   size_t largest_wanted = 0;
 

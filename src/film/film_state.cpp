@@ -16,12 +16,12 @@ constexpr const char* what = "the film's state";
 
 static_assert(std::has_unique_object_representations_v<FeatureCount>, "written as bytes");
 
-/// What a state must have in common with the film that takes it.
+/// The properties that a state must have in common with the film that loads it.
 std::array<std::int32_t, 9> kind_of_film(const PictureFormat& f, Estimator estimator) {
   return {f.width, f.height, f.area.x0, f.area.y0, f.area.x1, f.area.y1, int(f.wants_features), int(f.parts()), int(estimator)};
 }
 
-constexpr size_t place_of_estimator = 8;  // in those numbers
+constexpr size_t place_of_estimator = 8;  // index of the estimator in kind_of_film
 
 void write_counts(ByteWriter& w, const FilmCounts& counts) {
   w.list(counts.samples);
@@ -82,7 +82,7 @@ std::vector<std::byte> Film::save_state() const {
   return std::move(w.bytes);
 }
 
-// All is read and checked before anything changes.
+// Everything is read and checked before anything changes.
 Film::Totals Film::read_state(std::span<const std::byte> bytes) const {
   const PictureFormat& format = *members_->format;
   ByteReader r(bytes, what);
@@ -105,7 +105,7 @@ Film::Totals Film::read_state(std::span<const std::byte> bytes) const {
     if (sums.places().empty() != sums.digits().empty()) throw Error("the film's state lacks a part");
     if (!sums.possible(totals.steps)) throw Error("the film's state holds impossible sums");
     if (!kept(planes[p], members_->estimator)) continue;
-    // Planes of one list are all there or none of them.
+    // Either all planes of a list are present or none.
     const bool first = planes[p].offset == 0;
     if (first) there[planes[p].list] = !sums.empty();
     if (!first && there[planes[p].list] == sums.empty()) throw Error("the film's state lacks a part");
@@ -128,7 +128,7 @@ void Film::add_state(std::span<const std::byte> bytes) {
   Members& m = *members_;
   const std::lock_guard lock(m.mutex);
   Totals other = read_state(bytes);
-  // A step at hand goes on: what comes to the sums meanwhile stays when it is dropped.
+  // The current step continues: the sums before it get the addition, too, so that it stays if the step is dropped.
   std::array<Totals*, 2> all = {&m.totals, m.before_step.get()};
   for (const Totals* totals : all)
     if (totals) totals->require_room_for(other);
@@ -136,7 +136,7 @@ void Film::add_state(std::span<const std::byte> bytes) {
     if (totals) totals->add(other);
 }
 
-/// Throws Error when sums of both would be of too many steps or samples.
+/// Throws Error if the sums of both would have too many steps or samples.
 void Film::Totals::require_room_for(const Totals& other) const {
   if (other.steps > ExactSums::most_addends - steps)
     throw Error(fmt::format("a film cannot take more than {} steps", ExactSums::most_addends));

@@ -1,5 +1,5 @@
 #pragma once
-// What can be told of a film's saved state before there is a film for it.
+// Queries on a film's saved state that are possible without a film.
 
 #include <span>
 
@@ -7,7 +7,7 @@
 
 namespace etendue {
 
-/// Of which kind of algorithm a state is. Throws Error when it is no film's.
+/// The Estimator of the algorithm that made a state. Throws Error if it is not the state of a film.
 Estimator estimator_of(std::span<const std::byte> state);
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// What a film holds, as plain numbers.
+// The values of a film as plain numbers.
 
 #include "film_values.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a film keeps for each pixel: as plain numbers (of the step at hand, and to develop), and as exact sums.
+// The values that a film stores for each pixel: as plain numbers (of the current step, and for development), and as exact sums.
 
 #include <array>
 
@@ -10,26 +10,26 @@
 
 namespace etendue {
 
-/// The numbers of each pixel, in lists of their own: those a render has nothing for stay empty.
+/// The values of each pixel, in separate lists; lists that a render does not use stay empty.
 enum List : std::uint8_t {
-  light_list,    ///< X, Y, Z and Y^2 of samples by the filter
-  splat_list,    ///< X, Y, Z of splats by the filter, and the squared Y of all splats of a sample
+  light_list,    ///< filtered X, Y, Z of samples, and filtered Y^2
+  splat_list,    ///< filtered X, Y, Z of splats, and the squared Y of all splats of one sample
   feature_list,  ///< albedo, normal, depth
   part_list,     ///< X, Y, Z for each path length, and then for each light group
   part_splat_list,
-  weight_list,  ///< what samples count for beyond their number
+  weight_list,  ///< the weight of samples minus their number
   batch_list,   ///< squares of steps' means, times their samples (Estimator::correlated)
   list_count
 };
 using Lists = std::array<std::vector<double>, list_count>;
 
-/// How many numbers a list has for each pixel.
+/// Values per pixel in a list.
 inline size_t list_stride(List list, const PictureFormat& format) {
   constexpr std::array<size_t, list_count> strides = {4, 4, 7, 3, 3, 1, 1};
   return strides[list] * (list == part_list || list == part_splat_list ? format.parts() : 1);
 }
 
-/// Numbers of a list that are summed in groups; a list may hold several groups side by side.
+/// Values of a list that are summed as one group of an ExactSums; a list may hold several groups side by side.
 struct Plane {
   List list;
   size_t offset, group;
@@ -45,30 +45,30 @@ inline constexpr std::array<Plane, 11> planes = {{{light_list, 0, 3},
                                                   {part_splat_list, 0, 3},
                                                   {weight_list, 0, 1},
                                                   {batch_list, 0, 1}}};
-/// Squares of samples say nothing where samples are correlated.
+/// Whether a plane is stored. Squares of correlated samples give no variance, so they are not.
 inline bool kept(const Plane& plane, Estimator estimator) {
   return estimator == Estimator::independent || !((plane.list == light_list || plane.list == splat_list) && plane.group == 1);
 }
-/// Groups that follow each other in a pixel: one for each part of the light, or one.
+/// Consecutive groups of a pixel: one for each part of the light, or one.
 inline size_t groups_per_pixel(const Plane& plane, const PictureFormat& format) {
   return plane.list == part_list || plane.list == part_splat_list ? format.parts() : 1;
 }
 
-/// What is counted, or chosen by order of pixels and samples: exact in any order of adding.
+/// Counters, and values that are chosen by the order of pixels and samples: exact in any order of addition.
 struct FilmCounts {
   std::vector<std::uint32_t> samples;  ///< per pixel
   std::vector<FeatureCount> features;
   std::uint64_t paths = 0, bad_count = 0;
-  std::vector<BadSample> bad;  ///< the first, sorted
+  std::vector<BadSample> bad;  ///< the first ones, sorted
   static constexpr size_t bad_kept = 32;
 
   void add(const FilmCounts&);
-  /// Throws Error when a pixel would have too many samples.
+  /// Throws Error if a pixel would have too many samples.
   void require_room_for(const FilmCounts&) const;
   void add_bad(const std::vector<BadSample>&);
 };
 
-/// The film as plain numbers.
+/// The film's values as plain numbers.
 struct FilmSnapshot::Values {
   std::shared_ptr<const PictureFormat> format;
   Estimator estimator = Estimator::independent;
@@ -76,21 +76,21 @@ struct FilmSnapshot::Values {
   FilmCounts counts;
   std::uint64_t steps = 0;
 
-  /// How many samples a pixel counts for.
+  /// The sum of the sample weights of a pixel.
   double weight(size_t pixel) const {
     const auto& more = lists[weight_list];
     return double(counts.samples[pixel]) + (more.empty() ? 0 : more[pixel]);
   }
-  /// Whether that is the same for all pixels, as all our renderers leave it.
+  /// Whether that sum is the same for all pixels, as for all our renderers.
   bool even() const;
-  /// What sums of a pixel are multiplied by.
+  /// The factors by which sums of a pixel are multiplied.
   struct Scales {
     double light = 0, splat = 0;
     PictureFormat::Integral filter;
   };
   Scales scales(int x, int y, bool even) const;
   double luminance(size_t pixel, const Scales&) const;
-  /// Of luminance as developed.
+  /// The variance of the developed luminance.
   double variance(size_t pixel, const Scales&) const;
 
  private:
@@ -99,7 +99,7 @@ struct FilmSnapshot::Values {
   double variance_of_steps(size_t pixel, const Scales&) const;
 };
 
-/// Exact sums of whole steps.
+/// The exact sums of whole steps.
 struct Film::Totals {
   std::array<ExactSums, planes.size()> sums;
   FilmCounts counts;

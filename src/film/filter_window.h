@@ -1,5 +1,6 @@
 #pragma once
-// Which pixels a film point reaches along one axis, and where their weights stand in the film's filter table.
+// FilterWindow: the pixels that a film point contributes to along one axis, and the cells of the film's filter table with their
+// weights.
 
 #include <algorithm>
 #include <array>
@@ -11,12 +12,12 @@ inline constexpr float maximum_filter_radius = 16;
 
 struct FilterWindow {
   int first = 0, count = 0;
-  std::array<int, 2 * int(maximum_filter_radius) + 2> cells;  ///< table cell of each pixel from the first
+  std::array<int, 2 * int(maximum_filter_radius) + 2> cells;  ///< table cell for each pixel, starting at `first`
 
   /// The pixels of [low, high) whose centres lie closer than the radius to a film coordinate. The coordinate must be
   /// finite and of ordinary size.
   FilterWindow(float film, float radius, int table_size, int low, int high) {
-    const float x = film - 0.5f;  // pixel i has its centre at i here
+    const float x = film - 0.5f;  // in this coordinate pixel i has its centre at i
     first = std::max(low, int(std::floor(x - radius)) + 1);
     const int end = std::min(high, int(std::ceil(x + radius)));
     const float cells_per_pixel = float(table_size) / radius;

@@ -17,7 +17,7 @@ const std::vector<std::string>& known_layers() {
   return names;
 }
 
-/// Those, and light groups of whatever name.
+/// The known layers, and a pattern for light groups of any name.
 std::vector<std::string> offered_layers() {
   std::vector<std::string> names = known_layers();
   names.push_back(PictureFormat::light_prefix + std::string("…"));

@@ -15,7 +15,7 @@ namespace {
 
 using BadKind = BadSample::Kind;
 
-// X Y Z and a weight, added at once.
+// X, Y, Z and a fourth value, added at once.
 using Sums = double __attribute__((vector_size(32)));
 inline void add(double* sum, const Sums& more) {
   Sums s;
@@ -24,7 +24,7 @@ inline void add(double* sum, const Sums& more) {
   std::memcpy(sum, &s, sizeof s);
 }
 
-/// Values below zero by no more than this part of the largest are rounding.
+/// Negative values up to this fraction of the largest one are rounding errors.
 constexpr float negative_tolerance = 1e-5f;
 
 bool regular(const Spectrum& s) {
@@ -34,8 +34,8 @@ bool regular(const Spectrum& s) {
   return all;
 }
 
-/// What is wrong with a spectrum, and the spectrum with what is not wrong put right: values at wavelengths that were
-/// dropped mean nothing, and negative ones by rounding are zero.
+/// Checks a spectrum and repairs harmless faults: values at dropped wavelengths are meaningless and set to zero, and slightly
+/// negative values from rounding become zero. Returns false, with the kind, if the spectrum is bad.
 [[gnu::noinline]] bool repair(Spectrum& s, const Wavelengths& wavelengths, BadKind& kind) {
   if (wavelengths.single())
     for (int i = 1; i < spectrum_size; ++i) s.set(i, 0);
@@ -60,7 +60,7 @@ bool regular(const Spectrum& s) {
   return true;
 }
 
-/// The colour of a sample; false with the kind when it is bad.
+/// The colour of a sample; returns false, with the kind, if the sample is bad.
 [[gnu::always_inline]] inline bool to_color(const Spectrum& value, const Wavelengths& wavelengths, Xyz& color, BadKind& kind) {
   if (regular(value)) [[likely]] {
     color = to_xyz(value, wavelengths);
@@ -69,7 +69,7 @@ bool regular(const Spectrum& s) {
     if (!repair(repaired, wavelengths, kind)) return false;
     color = to_xyz(repaired, wavelengths);
   }
-  // A density of zero or one that is no number makes a colour that is no number from a spectrum that is one.
+  // A wavelength pdf of zero or NaN makes a NaN or infinite colour from a finite spectrum.
   const double sum = color.x + color.y + color.z;
   if (std::isfinite(sum)) [[likely]]
     return true;
@@ -83,8 +83,8 @@ bool regular(const Spectrum& s) {
       "cannot be kept");
 }
 
-/// Throws an Error when light groups are wanted and those of a sample do not add up to its colour: a renderer that tells of
-/// a part of its light only, or of none, would bring layers that are too dark.
+/// Throws Error if light groups are wanted and those of a sample do not add up to its colour: a renderer that reports only a
+/// part of its light by group, or none, would make layers that are too dark.
 void require_groups(const PictureFormat& format, const Xyz& color, std::span<const Spectrum> parts,
                     const Wavelengths& wavelengths) {
   if (format.light_groups.empty()) return;
@@ -100,7 +100,7 @@ void require_groups(const PictureFormat& format, const Xyz& color, std::span<con
   if (apart > rounding * (color.x + color.y + color.z)) refuse_groups();
 }
 
-/// Also false for what is no number.
+/// Whether a film point is finite and of ordinary size; false for NaN.
 bool ordinary(Point2 film) { return std::abs(film.x) < 1e7f && std::abs(film.y) < 1e7f; }
 
 size_t pixels(const PixelArea& a) { return size_t(std::max(a.width(), 0)) * size_t(std::max(a.height(), 0)); }
@@ -167,7 +167,7 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
   if (!sampled_.contains(px, py)) [[unlikely]]
     return;
 
-  if (area_.contains(px, py)) [[likely]] {  // beside a crop a sample counts for the pixels of the crop alone
+  if (area_.contains(px, py)) [[likely]] {  // a sample outside of a crop contributes to the crop's pixels, but is not counted
     ++samples_[own_pixel(px, py)];
     if (weight != 1) [[unlikely]] {
       if (weights_.empty()) weights_.assign(pixels(area_), 0);
@@ -240,7 +240,7 @@ void ImageTile::note_large(const LargeSample& s) {
 }
 
 void ImageTile::keep_larger(std::vector<LargeSample>& kept, const LargeSample& s, size_t most) {
-  // A heap with the least of them in front; ties are broken by place, so that the order of merging does not matter.
+  // A heap with the smallest one in front; ties are broken by position, so that the order of merging does not matter.
   const auto larger = [](const LargeSample& a, const LargeSample& b) {
     return std::tuple(-a.luminance, a.y, a.x, a.sample, a.film.y, a.film.x) <
            std::tuple(-b.luminance, b.y, b.x, b.sample, b.film.y, b.film.x);
@@ -257,8 +257,8 @@ void ImageTile::keep_larger(std::vector<LargeSample>& kept, const LargeSample& s
 void ImageTile::splat(Point2 film, int px, int py, std::uint32_t sample, const Spectrum& value, const Wavelengths& wavelengths,
                       int length) {
   const PixelArea& all = format_->sampled_area;
-  // Light beside the pixels that are sampled is left out, as camera samples have none from there either: at the picture's
-  // edge both estimate the same mean over the part of the filter that lies inside.
+  // Splats outside of the sampled pixels are dropped, since there are no camera samples either: at the picture's edge both
+  // estimate the same mean over the part of the filter that lies inside.
   if (!(film.x >= float(all.x0) && film.x < float(all.x1) && film.y >= float(all.y0) && film.y < float(all.y1))) return;
   Xyz color;
   BadKind kind = BadKind::not_a_number;

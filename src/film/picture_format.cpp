@@ -6,7 +6,7 @@
 
 namespace etendue {
 
-// Exactly those of the table, which is constant in each of its cells.
+// Computes the exact integrals of the table, which is constant in each of its cells.
 void PictureFormat::set_filter(std::vector<float> weights, float filter_radius) {
   table = std::move(weights);
   radius = filter_radius;
@@ -15,7 +15,7 @@ void PictureFormat::set_filter(std::vector<float> weights, float filter_radius) 
   const int side = filter_reach + 1;
   shares.assign(size_t(side) * size_t(side), {});
   const double cell = double(radius) / table_size;
-  // The length of a cell of the table within the pixel `away` pixels from the filter's own, on one side of its centre.
+  // The length of a table cell within the pixel `away` pixels from the filter's own pixel, on one side of the centre.
   const auto covered = [&](int i, int away) {
     const auto up_to = [&](double distance) { return std::clamp(distance / cell - i, 0.0, 1.0) * cell; };
     return away == 0 ? 2 * up_to(0.5) : up_to(away + 0.5) - up_to(away - 0.5);
@@ -42,7 +42,7 @@ void PictureFormat::set_filter(std::vector<float> weights, float filter_radius) 
     }
 }
 
-/// Whether a pixel's filter reaches nothing beside the film.
+/// Whether the filter of a pixel lies within the film.
 bool PictureFormat::within_reach(int x, int y) const {
   const int r = filter_reach;
   return x - r >= 0 && x + r < width && y - r >= 0 && y + r < height;

@@ -1,5 +1,6 @@
 #pragma once
-// What follows from an ImageBuffer's description once it is prepared: pixels, layers, and the filter as a table.
+// PictureFormat: the values derived from an ImageBuffer's description when it is prepared: pixels, layers, and the tabulated
+// filter.
 
 #include <cstdint>
 #include <string>
@@ -11,13 +12,13 @@ namespace etendue {
 
 struct PictureFormat {
   int width = 0, height = 0;
-  PixelArea area, sampled_area;  ///< as ImageBuffer's functions of these names
+  PixelArea area, sampled_area;  ///< as the functions of ImageBuffer with these names
   bool cropped = false;
   std::vector<std::string> layers;
   bool wants_features = false;
   int path_lengths = 0;
-  /// Names of the groups that light is divided in by its luminaires, as ImageBuffer::layers has them without "light."; the last
-  /// holds what belongs to no other. Empty: it is not divided.
+  /// Names of the light groups, as in ImageBuffer::layers without "light."; the last group holds the light of luminaires in no
+  /// other group. Empty: there are no light groups.
   std::vector<std::string> light_groups;
   static constexpr const char* light_prefix = "light.";
   static constexpr const char* rest_group = "rest";
@@ -27,29 +28,29 @@ struct PictureFormat {
   static constexpr int table_size = 64;
   std::vector<float> table;
   float radius = 0.5f;
-  bool box = false;      ///< radius 0.5, constant: each sample counts for its own pixel alone
-  int filter_reach = 0;  ///< how many pixels to each side the filter of a pixel covers
+  bool box = false;      ///< radius 0.5, constant: each sample contributes to its own pixel only
+  int filter_reach = 0;  ///< pixels to each side that the filter of a pixel covers
 
-  /// Integrals of the filter around a pixel's centre over a part of the film, exactly those of the table.
+  /// Integrals of the tabulated filter, centred at a pixel, over a part of the film; exact for the table.
   struct Integral {
     double filter = 0, square = 0;  ///< [pixel^2]
-    /// The variance of a mean by the filter in relation to that of the mean of as many values as lie in a pixel.
+    /// The variance of a filtered mean relative to the variance of the unfiltered mean of as many samples as lie in one pixel.
     double noise() const { return filter != 0 ? square / (filter * filter) : 0; }
   };
-  std::vector<Integral> shares;  ///< over the pixels around its own, over one quadrant of (filter_reach + 1)^2 pixels
-  Integral whole;                ///< over all
+  std::vector<Integral> shares;  ///< over the pixels around its own, one quadrant of (filter_reach + 1)^2 pixels
+  Integral whole;                ///< over all pixels
 
-  /// The parts that light is kept in beside the whole: by path length, then by group.
+  /// Parts of the light that are stored besides the whole: by path length, then by group.
   size_t parts() const { return size_t(path_lengths) + light_groups.size(); }
   size_t pixels() const { return size_t(area.width()) * size_t(area.height()); }
   size_t index(int x, int y) const { return size_t(y - area.y0) * size_t(area.width()) + size_t(x - area.x0); }
-  /// How many pixels to each side a sample anywhere in a pixel may count for: at the edge of its pixel it lies half a pixel
-  /// from the centre, and counts for what is closer than the radius.
+  /// Pixels to each side that a sample anywhere in a pixel may contribute to: a sample at the edge of its pixel lies half a
+  /// pixel from the centre, and contributes to pixels whose centres are nearer than the radius.
   int reach() const { return box ? 0 : filter_reach; }
-  /// Of a pixel's filter, over the film.
+  /// The integral of a pixel's filter over the film.
   Integral over_film(int x, int y) const;
-  /// The weight sum to be expected of camera samples in a pixel, where pixel i has `weight(i)` of them. Around a crop each
-  /// pixel has as many as this one.
+  /// The expected sum of the filter weights of camera samples at a pixel, where pixel i has `weight(i)` samples. Pixels outside
+  /// of a crop are assumed to have as many samples as this pixel.
   template <class Weight>
   double expected(int x, int y, Weight weight) const {
     double sum = 0;
@@ -58,9 +59,9 @@ struct PictureFormat {
     });
     return sum;
   }
-  /// FNV-1a over the filter and the names of light groups: sums made with others must not be added to.
+  /// FNV-1a hash of the filter and the names of light groups: sums with different hashes must not be added.
   std::uint64_t hash() const;
-  /// Whether sums collected for one are valid for the other.
+  /// Whether sums collected with one format are valid for the other.
   bool collects_as(const PictureFormat&) const;
 
   void set_filter(std::vector<float> weights, float filter_radius);

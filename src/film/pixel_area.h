@@ -11,7 +11,7 @@ inline PixelArea intersection(const PixelArea& a, const PixelArea& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
-/// With so many pixels more on each side.
+/// The rectangle enlarged by so many pixels on each side.
 inline PixelArea widened(const PixelArea& a, int by) { return {a.x0 - by, a.y0 - by, a.x1 + by, a.y1 + by}; }
 
 }  // namespace etendue

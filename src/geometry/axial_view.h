@@ -1,13 +1,14 @@
 #pragma once
-// What stands around the z axis, as seen from a point: directions in which it is seen, chosen almost uniformly.
+// Samples directions from a point towards an object of revolution around the z axis, almost uniformly in solid angle.
 //
-// Directions are told by their azimuth psi around the line through the point along z, from the direction to the axis, and by
-// w, which changes with the elevation so that solid angle is dpsi dw: the sine of the elevation, or for a point beyond an end
-// 1 less the sine's size, which keeps its digits where the object is seen along its axis from afar. At one azimuth the object
-// is cut by a half plane along its axis: what is seen of it there are one or two intervals of w, known exactly. An azimuth is
-// chosen with a density that is linear between five, where it goes with the length of these; and w uniformly within.
-// (Gamito 2016, "Solid angle sampling of disk and cylinder lights", samples a rectangle that covers a cylinder's side, and
-// rejects what misses it; here little or nothing misses, of ends and cones neither.)
+// A direction is given by its azimuth psi around the line through the point parallel to z, counted from the direction to the
+// axis, and by w, a function of the elevation such that solid angle is dpsi dw: w is the sine of the elevation, or for a point
+// beyond an end of the object 1 minus the absolute value of the sine, which keeps its digits where the object is seen along its
+// axis from afar. At one azimuth a half plane parallel to the axis cuts the object, and the object's visible part fills one or
+// two intervals of w there, known exactly. An azimuth is sampled with a piecewise linear pdf over five nodes, proportional at
+// the nodes to the total length of these intervals; w is uniform within the intervals. (Gamito 2016, "Solid angle sampling of
+// disk and cylinder lights", samples a rectangle that covers a cylinder's side, and rejects directions that miss it; here few
+// or no directions miss, and end discs and cones are covered too.)
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,7 @@
 
 namespace etendue {
 
-/// A density on [0, 1] that is linear between equally spaced nodes, given by its values there.
+/// A pdf on [0, 1] that is linear between equally spaced nodes, given by its values at the nodes.
 template <int pieces>
 struct PiecewiseLinear {
   double nodes[pieces + 1]{};
@@ -26,13 +27,13 @@ struct PiecewiseLinear {
     for (int k = 0; k < pieces; ++k) sum += nodes[k] + nodes[k + 1];
     return sum / (2 * pieces);
   }
-  /// Not normalized.
+  /// The value at x, not normalized.
   double at(double x) const {
     x = std::clamp(x, 0.0, 1.0) * pieces;
     const int k = std::min(int(x), pieces - 1);
     return nodes[k] + (x - k) * (nodes[k + 1] - nodes[k]);
   }
-  /// Where a share of the whole lies below.
+  /// The inverse of the cumulative distribution function: the x below which the fraction `share` of the integral lies.
   double inverse(double share) const {
     double rest = share * 2 * pieces * mean();
     int k = 0;
@@ -40,7 +41,7 @@ struct PiecewiseLinear {
       rest -= nodes[k] + nodes[k + 1];
       ++k;
     }
-    // From a to b a share q lies below x with a x + (b - a) x^2 / 2 = q (a + b) / 2.
+    // In a piece from a to b, the fraction q of its integral lies below x with a x + (b - a) x^2 / 2 = q (a + b) / 2.
     const double a = nodes[k], b = nodes[k + 1], q = rest / (a + b);
     const double x = rest / (a + std::sqrt(a * a + q * (b * b - a * a)));
     return (k + std::clamp(x, 0.0, 1.0)) / pieces;
@@ -50,7 +51,7 @@ struct PiecewiseLinear {
 /// One or two intervals of w.
 class Elevations {
  public:
-  /// Its ends in any order; at most two intervals that do not overlap.
+  /// Adds an interval, with its ends in any order. After overlapping intervals are merged there may be at most two.
   void add(double a, double b) {
     if (a > b) std::swap(a, b);
     if (count_ == 1 && a <= high_[0] && b >= low_[0]) {
@@ -62,7 +63,7 @@ class Elevations {
     high_[count_++] = b;
   }
   double extent() const { return (high_[0] - low_[0]) + (high_[1] - low_[1]); }
-  /// Uniform within them.
+  /// Maps `share` in [0, 1] uniformly to the intervals.
   double at(double share) const {
     const double first = high_[0] - low_[0], x = share * extent();
     return x < first || count_ < 2 ? std::min(low_[0] + x, high_[0]) : std::min(low_[1] + (x - first), high_[1]);
@@ -73,10 +74,10 @@ class Elevations {
   int count_ = 0;
 };
 
-/// The point, and the coordinates of directions there.
+/// The point from which the object is seen, and the coordinates psi and w of directions at this point.
 class AxialView {
  public:
-  /// Of an object of that radius between two heights [m].
+  /// For an object of the given radius between the heights `low` and `high` [m].
   AxialView(const Point3& from, double low, double high, double radius)
       : x_(double(from.x)), y_(double(from.y)), height_(double(from.z)), low_(low), high_(high), radius_(radius) {
     around_ = std::sqrt(x_ * x_ + y_ * y_);
@@ -88,25 +89,28 @@ class AxialView {
   double around() const { return around_; }      ///< distance from the axis [m]
   double height() const { return height_; }      ///< [m]
   int side() const { return side_; }             ///< 1: above the object, -1: below, 0: between its heights
-  double greatest() const { return greatest_; }  ///< beyond this azimuth to either side nothing is seen [rad]
+  double greatest() const { return greatest_; }  ///< the object lies within this azimuth to either side [rad]
 
-  /// w of what lies at a distance from the point, horizontally, and a height [m].
+  /// w of the direction to a point at the horizontal distance `distance` from the view point and at height z [m].
   double elevation(double distance, double z) const {
     const double rise = z - height_, l = std::sqrt(distance * distance + rise * rise);
     if (!(l > 0)) return 0;
     return side_ == 0 ? rise / l : distance * distance / (l * (l + std::abs(rise)));
   }
-  /// w straight up (1) or down (-1); of a point beyond an end only one of the two is asked for.
+  /// w of the direction straight up (1) or down (-1). For a point beyond an end only the direction towards the object is
+  /// queried; its w is 0.
   double pole(int sign) const { return side_ == 0 ? sign : 0; }
 
-  /// Whether the way to a point leads through the disc of a radius at a height, which lies between the two.
+  /// Whether the segment to a point crosses the disc with the given radius at height z, a height between those of the two
+  /// points.
   bool through(const Point3& to, double z, double radius) const {
     const double part = (z - height_) / (double(to.z) - height_);
     const double x = x_ + part * (double(to.x) - x_), y = y_ + part * (double(to.y) - y_);
     return x * x + y * y < radius * radius;
   }
 
-  /// A ray in a direction that begins just before the object: from afar a float's direction would be too coarse.
+  /// A ray in a direction that begins just before the object: over a long distance the rounding of a float direction would
+  /// displace the ray too much.
   Ray ray(double azimuth, double w) const {
     const double cosine = std::sqrt(side_ == 0 ? (1 - w) * (1 + w) : w * (2 - w)), rise = side_ == 0 ? w : side_ * (w - 1);
     const double in = cosine * std::cos(azimuth), aside = cosine * std::sin(azimuth);
@@ -120,7 +124,7 @@ class AxialView {
     return r;
   }
 
-  /// Where a point lies: horizontal distance along and across the direction to the axis.
+  /// Horizontal distances of a point from the view point: along (`in`) and across (`aside`) the direction to the axis.
   void locate(const Point3& to, double& in, double& aside) const {
     const double x = double(to.x) - x_, y = double(to.y) - y_;
     in = x * inward_x_ + y * inward_y_;
@@ -137,10 +141,10 @@ class AxialView {
   int side_ = 0;
 };
 
-/// The directions from a place in which an object is seen. `Seen` is the object as seen from there:
+/// The sampler of directions from a point in which an object is seen. `Seen` is the object as seen from this point:
 ///   AxialView view;
-///   Elevations at(double sine, double cosine) const;   at an azimuth, alike to both sides
-///   bool sees(const Point3& from, const Vector3& direction, const SurfacePoint&) const;   nothing lies before the point
+///   Elevations at(double sine, double cosine) const;   the visible intervals at an azimuth; symmetric
+///   bool sees(const Point3& from, const Vector3& direction, const SurfacePoint&) const;   whether the point is visible
 template <class Seen>
 class AxialDirections {
  public:
@@ -150,12 +154,13 @@ class AxialDirections {
       const double psi = view_.greatest() * k / pieces;
       most = std::max(most, azimuths_.nodes[k] = seen.at(std::sin(psi), std::cos(psi)).extent());
     }
-    // What vanishes at one of the five need not do so beside it.
+    // The intervals may vanish at one of the five nodes but not beside it, so the pdf at a node is at least a tenth of the
+    // largest.
     for (double& node : azimuths_.nodes) node = std::max(node, 0.1 * most);
     scale_ = most > 0 ? 1 / (2 * view_.greatest() * azimuths_.mean()) : 0;
   }
 
-  /// The point met in such a direction.
+  /// Samples a direction and returns the point that a ray in this direction hits.
   SurfaceSample sample(const SceneObject& object, const Transform& t, const Point3& from, Point2 u, float time) const {
     SurfaceSample s;
     const double x = 2 * double(u.x) - 1;
@@ -177,7 +182,7 @@ class AxialDirections {
   }
 
   /// [1/sr]. A linear map M of directions v -> M v / |M v| enlarges solid angles by |det M| / |M v|^3, and |M v| is the
-  /// distance outside over that inside.
+  /// distance in world space divided by the distance in object space.
   float pdf(const Transform& t, const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
     if (!seen_.sees(from, direction, p)) return 0;
     const double inside = own_pdf(p.object_position);
@@ -189,7 +194,7 @@ class AxialDirections {
  private:
   static constexpr int pieces = 4;
 
-  /// [1/sr] in own coordinates.
+  /// The pdf in object space [1/sr].
   double own_pdf(const Point3& to) const {
     double in = 0, aside = 0;
     view_.locate(to, in, aside);

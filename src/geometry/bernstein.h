@@ -1,15 +1,15 @@
 #pragma once
-// Where a polynomial changes its sign for the first time, by its Bernstein coefficients.
+// Finds the first sign change of a polynomial on an interval from its Bernstein coefficients.
 
 #include <cmath>
 
 namespace etendue::bernstein {
 
-// f(s) = sum b_i C(n, i) s^i (1 - s)^(n - i) on [0, 1]. It has no more roots in (0, 1) than its coefficients have changes
-// of sign, and as many but for an even number (Descartes' rule): no change is none, one is one. With more, de Casteljau's
-// algorithm halves the interval, and few steps separate roots that are apart (Lane & Riesenfeld 1981, "Bounds on a
-// polynomial"). Zero counts as positive throughout, so that ends with signs that differ have a change between them, and
-// ends that agree have none or a pair.
+// f(s) = sum b_i C(n, i) s^i (1 - s)^(n - i) on [0, 1]. It has no more roots in (0, 1) than its coefficients have changes of
+// sign, and the two counts differ by an even number (Descartes' rule): no sign change means no root, one sign change means one
+// root. With more, de Casteljau's algorithm halves the interval, and few steps separate roots that are apart (Lane & Riesenfeld
+// 1981, "Bounds on a polynomial"). Zero counts as positive throughout, so that between ends of different sign the number of
+// changes is odd, and between ends of the same sign it is even.
 
 template <int N>
 int sign_changes(const double (&b)[N + 1]) {
@@ -18,7 +18,7 @@ int sign_changes(const double (&b)[N + 1]) {
   return changes;
 }
 
-/// Its value, and its derivative.
+/// Returns the value at s; `slope` receives the derivative.
 template <int N>
 double evaluate(const double (&b)[N + 1], double s, double& slope) {
   double c[N + 1];
@@ -29,7 +29,8 @@ double evaluate(const double (&b)[N + 1], double s, double& slope) {
   return c[0] + s * (c[1] - c[0]);
 }
 
-/// The root between ends of different sign, with one change of sign: Newton's steps, and halving where they lead astray.
+/// The root of a polynomial with one sign change between ends of different sign: Newton's method, with bisection where a step
+/// leaves the bracket.
 template <int N>
 double only_root(const double (&b)[N + 1]) {
   const bool negative = b[0] < 0;
@@ -47,7 +48,7 @@ double only_root(const double (&b)[N + 1]) {
   return s;
 }
 
-/// The first s in [0, 1] behind which the sign is another one than at 0; false when there is none.
+/// The first s in [0, 1] behind which the sign differs from that at 0; returns false if there is none.
 template <int N>
 bool first_sign_change(const double (&b)[N + 1], double& s, double low = 0, double high = 1, int depth = 44) {
   const int changes = sign_changes<N>(b);
@@ -57,7 +58,7 @@ bool first_sign_change(const double (&b)[N + 1], double& s, double low = 0, doub
     return true;
   }
   const double middle = 0.5 * (low + high);
-  if (depth == 0) {  // a root of higher order
+  if (depth == 0) {  // a multiple root
     s = middle;
     return (b[0] < 0) != (b[N] < 0);
   }
@@ -75,9 +76,9 @@ bool first_sign_change(const double (&b)[N + 1], double& s, double low = 0, doub
   return first_sign_change<N>(right, s, middle, high, depth - 1);
 }
 
-/// The first t in [from, to] behind which f is on another side of 0 than told, of a polynomial over that range; then `inside`
-/// is the new side. What is told and what rounding makes of f at `from` may differ: a change there and then, so that
-/// changes remain alternate from piece to piece of a ray.
+/// The first t in [from, to] behind which f is on the other side of 0 than `inside` says, for a polynomial over that range;
+/// `inside` is then set to the new side. If rounding gives f at `from` a sign that contradicts `inside`, a crossing is returned
+/// at `from`, so that crossings still alternate from piece to piece of a ray.
 template <int N>
 bool crosses(const double (&b)[N + 1], double from, double to, bool& inside, double& t) {
   double s = 0;

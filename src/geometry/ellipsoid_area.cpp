@@ -6,9 +6,9 @@
 namespace etendue {
 namespace {
 
-/// Carlson's symmetric integral R_G of the second kind, of positive numbers, to about 1e-14. By duplication (Carlson 1995,
-/// "Numerical computation of real or complex elliptic integrals"): the theorem brings the arguments of R_F and R_D
-/// together, where a Taylor series holds. With the middle argument as z no term of
+/// Carlson's symmetric integral R_G of the second kind, of positive numbers, to about 1e-14. By the duplication theorem
+/// (Carlson 1995, "Numerical computation of real or complex elliptic integrals"): each step brings the arguments of R_F and R_D
+/// closer together, until a Taylor series around their mean is accurate. With the middle argument as z no term of
 ///   2 R_G = z R_F - (x - z) (y - z) R_D / 3 + sqrt(x y / z)                                      (DLMF 19.21.10)
 /// is negative.
 double carlson_g(double x, double z, double y) {
@@ -41,9 +41,9 @@ double carlson_g(double x, double z, double y) {
 
 }  // namespace
 
-/// The area after a transform, for any affine image is an ellipsoid: 4 pi R_G of the squares of the products of its half
-/// axes, two by two (DLMF 19.33.1). These are the eigenvalues of C^T C, where C has the cofactors of the map from the
-/// unit sphere; by trigonometry (Smith 1961, "Eigenvalues of a symmetric 3 x 3 matrix").
+/// Any affine image of an ellipsoid is an ellipsoid; its area is 4 pi R_G of the squared pairwise products of its half axes
+/// (DLMF 19.33.1). These squares are the eigenvalues of C^T C, where C is the cofactor matrix of the map from the unit sphere;
+/// they are computed trigonometrically (Smith 1961, "Eigenvalues of a symmetric 3 x 3 matrix").
 double ellipsoid_area(const Transform& t, const Vector3& radii) {
   const Transform::Matrix& m = t.matrix();
   double l[3][3], c[3][3], g[3][3], scale = 0;

@@ -5,7 +5,8 @@
 
 namespace etendue {
 
-/// Of an ellipsoid with these half axes [m] along x, y and z, after a transform [m^2]; exact to double precision.
+/// The area [m^2], after a transform, of an ellipsoid with the half axes `radii` [m] along x, y and z; exact to double
+/// precision.
 double ellipsoid_area(const Transform&, const Vector3& radii);
 
 }  // namespace etendue

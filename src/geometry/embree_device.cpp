@@ -21,7 +21,7 @@ const char* reason(RTCError code) {
 }  // namespace
 
 RTCDevice embree_device() {
-  // Never released: scenes may outlive any order in which a program's statics are destroyed.
+  // Never released: at the program's end statics may be destroyed in any order, and scenes after the device.
   static const RTCDevice device = [] {
     RTCDevice d = rtcNewDevice(nullptr);
     if (!d) throw Error(std::string("Embree cannot start: ") + reason(rtcGetDeviceError(nullptr)));
@@ -44,13 +44,13 @@ unsigned attach_triangles(RTCScene scene, const TriangleView& view, RTCBuildQual
                              3 * sizeof(std::uint32_t), view.triangles.size());
   rtcCommitGeometry(geometry);
   const unsigned id = rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);  // the scene holds it
+  rtcReleaseGeometry(geometry);  // the scene keeps a reference to it
   check_embree("taking in triangles");
   return id;
 }
 
-// Embree's keys are evenly spaced in time. Where these are not, each step between two is a geometry of its own, which is
-// there in that time only.
+// Embree's motion keys are evenly spaced in time. If the view's keys are not, each interval between two keys becomes a separate
+// geometry that exists only in this interval's time range.
 void attach_moving_triangles(RTCScene scene, const MovingTriangleView& view, RTCBuildQuality quality,
                              const std::function<void(unsigned)>& attached) {
   const size_t steps = view.times.size() - 1;
@@ -71,7 +71,7 @@ void attach_moving_triangles(RTCScene scene, const MovingTriangleView& view, RTC
                                3 * sizeof(std::uint32_t), view.triangles.size());
     rtcCommitGeometry(geometry);
     attached(rtcAttachGeometry(scene, geometry));
-    rtcReleaseGeometry(geometry);  // the scene holds it
+    rtcReleaseGeometry(geometry);  // the scene keeps a reference to it
   }
   check_embree("taking in moving triangles");
 }
@@ -92,7 +92,7 @@ EmbreeTriangles::EmbreeTriangles(const MovingTriangleView& view) : scene_(rtcNew
     clock_ = {view.times.front(), view.times.back()};
     attach_moving_triangles(scene_.get(), view, RTC_BUILD_QUALITY_MEDIUM, [](unsigned) {});
   }
-  // Isolated: a thread that waits here within a parallel loop must not take up another part of that loop.
+  // Isolated: a thread that waits here within a parallel loop must not execute other iterations of that loop.
   tbb::this_task_arena::isolate([this] { rtcCommitScene(scene_.get()); });
   check_embree("building over triangles");
 }

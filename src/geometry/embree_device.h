@@ -1,5 +1,6 @@
 #pragma once
-// What is shared by the users of Embree: the device, errors, and triangles with a structure of their own.
+// Shared by all code that uses Embree: the device, error checks, and EmbreeTriangles, a set of triangles with its own
+// hierarchy.
 
 #include <embree3/rtcore.h>
 
@@ -13,7 +14,7 @@ namespace etendue {
 
 /// The one device of the process; it builds with all threads. Throws Error when Embree cannot start.
 RTCDevice embree_device();
-/// Throws Error when an Embree call before this one, on this thread, went wrong.
+/// Throws Error if an earlier Embree call on this thread failed; `doing` completes the message.
 void check_embree(const char* doing);
 
 /// Owns an Embree scene.
@@ -35,35 +36,36 @@ class EmbreeSceneHandle {
   RTCScene scene_ = nullptr;
 };
 
-/// Adds triangles to a scene that is being built, sharing their arrays; returns the geometry's number. Twelve bytes a
-/// position, and sixteen are read at the last: what owns them keeps one more.
+/// Adds triangles to a scene that is being built and returns the geometry's ID. Embree shares the arrays. A position has twelve
+/// bytes, but Embree reads sixteen, so the owner of the positions allocates one more as padding.
 unsigned attach_triangles(RTCScene, const TriangleView&, RTCBuildQuality);
 
-/// The distance t at which a ray that hits a triangle does so, in double from the triangle's plane where it is at the ray's
-/// time. Embree's own, in its robust mode, lies beside the plane by more than SurfacePoint::error counts with: a ray that
-/// leaves a triangle would meet it again.
+/// The distance t at which a ray hits a triangle, computed in double from the triangle's plane at the ray's time. Embree's own
+/// t, in its robust mode, is further from the plane than SurfacePoint::error allows: a ray that leaves a triangle would hit it
+/// again.
 float exact_distance(const MovingTriangleView&, std::uint32_t triangle, const Ray&);
 
-/// Embree's time runs from 0 to 1: how it follows from the true one.
+/// Maps time [s] to Embree's time, which runs from 0 to 1.
 struct EmbreeClock {
-  float begin = 0, end = 0;  ///< [s]; equal: nothing moves
+  float begin = 0, end = 0;  ///< [s]; equal if nothing moves
   float operator()(float time) const { return end > begin ? clamp((time - begin) / (end - begin), 0, 1) : 0; }
   bool operator==(const EmbreeClock&) const = default;
   bool runs() const { return end > begin; }
 };
 
-/// The same for moving ones, whose first and last keys are where the clock begins and ends: `attached` is told the numbers
-/// of all geometries that were made.
+/// The same for moving triangles; the clock of the scene must begin and end at their first and last keys. `attached` is called
+/// with the ID of each geometry created.
 void attach_moving_triangles(RTCScene, const MovingTriangleView&, RTCBuildQuality,
                              const std::function<void(unsigned)>& attached);
 
-/// Embree ends the program when a ray is not made of numbers below 1.8e18 (FLT_LARGE in its math.h): such a ray becomes one
-/// without length, which meets nothing.
+/// Embree ends the program if a ray's numbers are not below 1.8e18 (FLT_LARGE in its math.h): such a ray is replaced by a ray
+/// of length zero, which hits nothing.
 inline void set_embree_ray(RTCRay& to, const Ray& ray, const EmbreeClock& clock = {}) {
   to.org_x = ray.origin.x;
   to.org_y = ray.origin.y;
   to.org_z = ray.origin.z;
-  // A ray that leaves a plane through the origin of coordinates begins exactly on it: at 0 Embree would find that again.
+  // A ray that leaves a plane through the origin of coordinates begins exactly on it: with tnear = 0 Embree would hit the plane
+  // again.
   to.tnear = std::numeric_limits<float>::min();
   to.dir_x = ray.direction.x;
   to.dir_y = ray.direction.y;
@@ -79,13 +81,13 @@ inline void set_embree_ray(RTCRay& to, const Ray& ray, const EmbreeClock& clock 
   to.dir_z = 1;
 }
 
-/// Makes a query find what lies behind the hit that it found.
+/// Moves the start of a query behind the hit that it found, to search for the next one.
 inline void go_on_behind(RTCRay& query, const Ray& ray) {
   query.tnear = std::nextafter(query.tfar, infinity);
   query.tfar = ray.maximum;
 }
 
-/// Triangles that are searched on their own, in their own coordinates.
+/// Triangles with their own Embree scene, intersected in object space.
 class EmbreeTriangles {
  public:
   explicit EmbreeTriangles(const MovingTriangleView&);

@@ -6,8 +6,8 @@
 
 namespace etendue {
 
-/// Whether a ray is made of numbers small enough that squares of their sums are floats. What is searched by slabs or with
-/// Embree answers others as it likes, or ends the program: such a ray meets nothing.
+/// Finite-ray check: whether a ray's numbers are so small that squares of their sums are finite floats. For other rays slab
+/// tests and Embree return arbitrary results, and Embree may end the program, so callers treat such a ray as hitting nothing.
 inline bool has_finite_squares(const Ray& ray) {
   bool small = true;
   for (int k = 0; k < 3; ++k) small &= std::abs(ray.origin[k]) < 1e18f && std::abs(ray.direction[k]) < 1e18f;

@@ -1,12 +1,12 @@
 #pragma once
-// What several objects share: going in and out of an object's coordinates, and bounds of rounding errors.
+// Functions that several shapes share: transforms between world space and object space, and bounds of rounding errors.
 
 #include "etendue/scene_object.h"
 #include "etendue/shader.h"  // objects own shaders
 
 namespace etendue {
 
-/// The transform at a time; `scratch` holds it when the object moves.
+/// The transform at a time; `scratch` stores it if the object moves.
 inline const Transform& placed(const AnimatedTransform& transform, float time, Transform& scratch) {
   if (!transform.animated()) [[likely]]
     return transform.still();
@@ -14,13 +14,13 @@ inline const Transform& placed(const AnimatedTransform& transform, float time, T
   return scratch;
 }
 
-/// Where what an object counts from its own `inner` point is in its own coordinates.
+/// Converts a point given relative to the transform's `inner` point to object space.
 inline Point3 own_place(const AnimatedTransform& transform, const Point3& counted) {
   return transform.inner() == DoublePoint3{} ? counted : Point3(transform.inner() + (DoublePoint3(counted) - DoublePoint3{}));
 }
 
-/// Lets an object count its own places from where the scene counts from: a transform that does nothing does nothing then
-/// either, and what several objects say to be in one place is in one place.
+/// Sets the transform's `inner` point to the scene's origin of coordinates, carried into object space. An identity transform
+/// then remains an identity, and points that several objects place at the same position round to the same floats.
 inline void count_with_scene(AnimatedTransform& transform) {
   const Transform& first = transform.keys().front().transform;
   const bool far = transform.outer() != DoublePoint3{};
@@ -28,12 +28,12 @@ inline void count_with_scene(AnimatedTransform& transform) {
   transform.count_from(transform.outer(), is_finite(own) ? own : DoublePoint3{});
 }
 
-/// A box over the whole time an object moves.
+/// The bounding box of a box over the whole motion of its object.
 inline Bounds3 swept(const AnimatedTransform& transform, const Bounds3& box) {
   return transform.sweep(box, transform.keys().front().time, transform.keys().back().time);
 }
 
-/// The bounds of what has no end.
+/// The bounding box of an unbounded object.
 inline Bounds3 endless_box() {
   Bounds3 box;
   box.add(Point3{-SceneObject::endless, -SceneObject::endless, -SceneObject::endless});
@@ -41,7 +41,7 @@ inline Bounds3 endless_box() {
   return box;
 }
 
-/// The ray in the object's coordinates. The direction is not normalized, so that t stays the same.
+/// The ray in object space. The direction is not normalized, so that t stays the same.
 inline Ray ray_into(const Transform& transform, const Ray& ray) {
   Ray local = ray;
   local.origin = transform.back(ray.origin);
@@ -49,13 +49,14 @@ inline Ray ray_into(const Transform& transform, const Ray& ray) {
   return local;
 }
 
-/// The object's normal for a normal outside (by the transpose of the matrix), not normalized.
+/// A world-space normal transformed to object space (by the transpose of the matrix), not normalized.
 inline Normal3 normal_into(const Transform& transform, const Normal3& n) {
   const auto& m = transform.matrix();
   return {m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z};
 }
 
-/// Fills object_position and object_normal of a point that is known outside; `now` is the object's transform at its time.
+/// Fills object_position and object_normal of a point whose world-space fields are set; `now` is the object's transform at the
+/// point's time.
 inline void fill_object_coordinates(const AnimatedTransform& transform, const Transform& now, SurfacePoint& p) {
   if (now.shifts_only()) [[likely]] {
     p.object_position = own_place(transform, p.position + now.shift_back());
@@ -66,19 +67,20 @@ inline void fill_object_coordinates(const AnimatedTransform& transform, const Tr
   }
 }
 
-/// How far from a surface's own border its points stay, in parts of the largest coordinate there. A point nearer to an edge may
-/// be rounded to the other side of the surface that joins there, and a ray that leaves it would be outside of a closed room.
-/// Rounding moves it by 3 units of 2^-24 along each axis; the other surface is found, and a ray's origin moved off this one,
-/// within as much: twice their sum, which allows for surfaces that meet at 30 degrees.
+/// The least distance of a surface's points from the surface's edges, relative to the largest coordinate at the point. A point
+/// nearer to an edge may be rounded to the far side of the adjacent surface, and a ray that leaves it would start outside a
+/// closed room. Rounding moves the point by 3 units of 2^-24 along each axis; the hit distance of the adjacent surface, and the
+/// offset of a ray's origin from this surface, have errors of the same size. The value is twice the sum of these errors, which
+/// allows for surfaces that meet at 30 degrees.
 constexpr float border = rounding_bound(16);
 
-/// sum |n_k| x_k: how far an error of x_k along each axis moves a point along the normal.
+/// sum |n_k| x_k: the displacement along the normal that errors of x_k along the axes cause at most.
 inline float along(const Normal3& n, const Vector3& x) {
   return std::abs(n.x) * x.x + std::abs(n.y) * x.y + std::abs(n.z) * x.z;
 }
 
-/// Carries a point out through a transform. A distance e along the normal becomes e / |M^-T n| along the new one; to
-/// that come the rounding of this step and of taking the next ray back in.
+/// Transforms a point from object space to world space. An error e along the normal becomes e / |M^-T n| along the new normal;
+/// the rounding errors of this transform and of transforming the next ray back into object space are added.
 inline void carry_out(const Transform& transform, SurfacePoint& p) {
   const Point3 inside = p.position;
   p.position = transform(inside);
@@ -93,13 +95,13 @@ inline void carry_out(const Transform& transform, SurfacePoint& p) {
   p.error = p.error / stretch + 2 * along(p.normal, transform.error_bound(inside, back));
 }
 
-/// By how much a transform enlarges volumes; negative when it mirrors.
+/// The determinant of the linear part: the factor by which a transform enlarges volumes; negative if it mirrors.
 inline float linear_determinant(const Transform& transform) {
   const auto& m = transform.matrix();
   return dot(cross(Vector3{m[0], m[4], m[8]}, Vector3{m[1], m[5], m[9]}), Vector3{m[2], m[6], m[10]});
 }
 
-/// By how much a similarity enlarges; 0 when the transform is none.
+/// The scale factor of a similarity transform; 0 if the transform is not a similarity.
 inline float similarity_scale(const Transform& transform) {
   const auto& m = transform.matrix();
   const Vector3 x{m[0], m[4], m[8]}, y{m[1], m[5], m[9]}, z{m[2], m[6], m[10]};
@@ -109,7 +111,7 @@ inline float similarity_scale(const Transform& transform) {
   return similar ? std::sqrt(xx) : 0;
 }
 
-/// Direction, distance and the density [1/sr] of a point chosen with a density per area [1/m^2].
+/// Fills direction, distance and the pdf [1/sr] of a point sampled with the pdf `area_pdf` per area [1/m^2].
 inline void complete_by_area(SurfaceSample& s, const Point3& from, float area_pdf) {
   const Vector3 to = s.point.position - from;
   const float d2 = length_squared(to);
@@ -117,7 +119,8 @@ inline void complete_by_area(SurfaceSample& s, const Point3& from, float area_pd
     s.pdf = 0;
     return;
   }
-  // cosine / d^2 of the angle with the normal, with nothing in it that waits for the square root.
+  // d^2 / cosine is computed as (d^2 / across) * distance, where only the last factor depends on the square root: this shortens
+  // the dependency chain.
   const float across = std::abs(dot(s.point.normal, to));
   const float inverse = inverse_sqrt(d2);
   s.distance = d2 * inverse;
@@ -125,7 +128,7 @@ inline void complete_by_area(SurfaceSample& s, const Point3& from, float area_pd
   s.pdf = across > 0 ? area_pdf * (d2 / across) * s.distance : 0;
 }
 
-/// Direction and distance of a point chosen with a density [1/sr].
+/// Fills direction and distance of a point sampled with the pdf `pdf` [1/sr].
 inline void complete_by_angle(SurfaceSample& s, const Point3& from, float pdf) {
   const Vector3 to = s.point.position - from;
   s.distance = length(to);
@@ -133,8 +136,8 @@ inline void complete_by_angle(SurfaceSample& s, const Point3& from, float pdf) {
   s.direction = s.distance > 0 ? to / s.distance : Vector3{0, 0, 1};
 }
 
-/// atan2(y, x) in [0, 2 pi), error below 1e-6; a quarter of the time of the library's. Polynomial: Abramowitz & Stegun
-/// 1964, 4.4.49.
+/// atan2(y, x) in [0, 2 pi), error below 1e-6; it takes a quarter of the time of the standard library's function. Polynomial:
+/// Abramowitz & Stegun 1964, 4.4.49.
 inline float positive_atan2(float y, float x) {
   const float ax = std::abs(x), ay = std::abs(y);
   const float high = std::max(ax, ay), low = std::min(ax, ay);

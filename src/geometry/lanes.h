@@ -1,5 +1,5 @@
 #pragma once
-// Eight floats side by side. Comparisons give a bit for each lane; those that a not-a-number takes part in are false.
+// SIMD vectors of eight floats. Comparisons return one bit per lane; a comparison with NaN is false.
 
 #include <bit>
 #include <cmath>
@@ -16,7 +16,7 @@ using Floats = float __attribute__((vector_size(lanes * sizeof(float))));
 /// Lane i of a comparison is bit i.
 using LaneBits = unsigned;
 
-/// The same number in all lanes. (To subtract zero changes nothing, and compilers leave it out; to add it changes minus zero.)
+/// The same number in all lanes. (Subtracting zero changes no value, so compilers remove it; adding zero would turn -0 into 0.)
 inline Floats spread(float x) { return x - Floats{}; }
 
 #if defined(__AVX__)
@@ -35,7 +35,7 @@ inline LaneBits compare(Floats a, Floats b) {
 inline LaneBits less(Floats a, Floats b) { return compare<_CMP_LT_OQ>(a, b); }
 inline LaneBits at_most(Floats a, Floats b) { return compare<_CMP_LE_OQ>(a, b); }
 
-/// The smaller and the larger one; b where a is not a number.
+/// Minimum and maximum per lane; b where a is NaN.
 inline Floats smaller(Floats a, Floats b) { return lanes_of(_mm256_min_ps(raw(a), raw(b))); }
 inline Floats larger(Floats a, Floats b) { return lanes_of(_mm256_max_ps(raw(a), raw(b))); }
 
@@ -59,9 +59,9 @@ inline Floats larger(Floats a, Floats b) { return a > b ? a : b; }
 inline double smaller(double a, double b) { return a < b ? a : b; }
 inline double larger(double a, double b) { return a > b ? a : b; }
 
-// a b - c d with the sign that the exact value has (or zero): with fused operations the error is at most 1.5 units in the
-// last place (Kahan; Jeannerod, Louvet & Muller 2013), which leaves the sign no choice. Without them each product is rounded
-// on its own; rounding keeps order, so the difference of two that are not equal may become zero but not change its sign.
+// a b - c d with the sign that the exact value has (or zero): with fused operations the error is at most 1.5 units in the last
+// place (Kahan; Jeannerod, Louvet & Muller 2013), so the sign cannot be wrong. Without fused operations each product is rounded
+// separately; rounding is monotonic, so the difference of two unequal products may become zero but cannot change its sign.
 #if defined(__FMA__)
 inline Floats signed_difference(Floats a, Floats b, Floats c, Floats d) {
   const __m256 cd = _mm256_mul_ps(raw(c), raw(d));

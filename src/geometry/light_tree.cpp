@@ -5,7 +5,7 @@
 namespace etendue {
 namespace {
 
-/// The cone around two cones.
+/// A cone that contains two cones.
 NormalCone around(const NormalCone& a, const NormalCone& b) {
   if (a.cosine <= -1 || b.cosine <= -1) return {};
   const float angle_a = std::acos(clamp(a.cosine, -1, 1)), angle_b = std::acos(clamp(b.cosine, -1, 1));
@@ -14,7 +14,7 @@ NormalCone around(const NormalCone& a, const NormalCone& b) {
   if (between + angle_a <= angle_b) return b;
   const float angle = 0.5f * (angle_a + between + angle_b) + 1e-5f;
   if (angle >= pi) return {};
-  // The axis of a, turned towards that of b.
+  // The axis of a, rotated towards the axis of b.
   const Vector3 across = b.axis - dot(a.axis, b.axis) * a.axis;
   const float l = length(across);
   if (!(l > 1e-6f)) return dot(a.axis, b.axis) > 0 ? NormalCone{a.axis, std::cos(angle)} : NormalCone{};
@@ -22,7 +22,8 @@ NormalCone around(const NormalCone& a, const NormalCone& b) {
   return {std::cos(turn) * a.axis + (std::sin(turn) / l) * across, std::cos(angle)};
 }
 
-/// The solid angle into which the cluster emits, weighed by the cosine (equation 1 there, with 90 degrees of emission).
+/// The solid angle into which the cluster emits, weighted by the cosine (Conty Estevez & Kulla 2018, eq. 1, with 90 degrees of
+/// emission).
 float emission_measure(const NormalCone& cone) {
   const float o = std::acos(clamp(cone.cosine, -1, 1)), w = std::min(o + pi / 2, pi);
   return 2 * pi * (1 - std::cos(o)) + pi / 2 * (2 * w * std::sin(o) - std::cos(o - 2 * w) - 2 * o * std::sin(o) + std::cos(o));
@@ -30,16 +31,16 @@ float emission_measure(const NormalCone& cone) {
 
 float surface_area(const Vector3& d) { return 2 * (d.x * d.y + d.y * d.z + d.z * d.x); }
 
-/// What it costs to have these emitters in one node (the surface area orientation heuristic, equation 2 there).
+/// The cost of a node with these emitters: the surface area orientation heuristic (Conty Estevez & Kulla 2018, eq. 2).
 float cost(const LightBounds& l) {
   if (l.empty()) return 0;
   const Vector3 d = l.bounds.diagonal();
   const float longest = std::max({d.x, d.y, d.z});
-  // A flat or thin box still has a size: that of its longest side.
+  // The squared longest side keeps the cost of a flat or thin box above zero.
   return l.power * emission_measure(l.normals) * (surface_area(d) + 1e-3f * longest * longest);
 }
 
-/// cos(max(a - b, 0)) from sines and cosines.
+/// cos(max(a - b, 0)) from the sines and cosines of a and b.
 float cosine_of_rest(float sin_a, float cos_a, float sin_b, float cos_b) {
   return cos_a > cos_b ? 1 : cos_a * cos_b + sin_a * sin_b;
 }
@@ -146,7 +147,7 @@ size_t LightTree::partition(std::span<Item> items, int depth) {
 float LightTree::importance(const Node& node, const Point3& point, const Normal3& normal) {
   const float value = mean(node, point, normal);
   if (!(value > 0)) return 1e-3f * bound(node, point, normal);
-  // What the rule's points hardly see may still be there.
+  // A cluster whose emission the quadrature points nearly miss keeps a minimum importance.
   return value + 1e-3f * node.power / (distance_squared(point, node.centre) + length_squared(node.half) + 1e-30f);
 }
 
@@ -157,11 +158,11 @@ float LightTree::mean(const Node& node, const Point3& point, const Normal3& norm
   const Vector3 d = point - node.centre;
   const Floats x = d.x - sx * node.half.x, y = d.y - sy * node.half.y, z = d.z - sz * node.half.z;
   const Floats d2 = x * x + y * y + z * z;
-  // A point of the rule stands for an eighth of the box: closer than that it says nothing of the distance.
+  // A quadrature point represents an eighth of the box: distances below that octant's size are clamped.
   const float least = 0.25f * length_squared(node.half) + 1e-30f;
   const Floats distance2 = d2 > least ? d2 : Floats{} + least;
 
-  // Cosines times distance, and over how many powers of it.
+  // The product of the cosines times distance, and the power of the distance by which it is divided.
   Floats product = Floats{} + 1;
   int powers = 2;
   if (normal != Normal3{}) {
@@ -217,7 +218,7 @@ float LightTree::bound(const Node& node, const Point3& point, const Normal3& nor
   const Vector3 towards = point - node.centre;
   const float distance2 = length_squared(towards), radius2 = length_squared(node.half);
   float value = node.power / std::max(std::max(distance2, radius2), 1e-30f);
-  if (distance2 <= radius2) return value;  // inside: any angle
+  if (distance2 <= radius2) return value;  // inside the bounding sphere any angle is possible
   const Vector3 direction = towards / std::sqrt(distance2);
   const float sin_b = std::sqrt(radius2 / distance2), cos_b = safe_sqrt(1 - radius2 / distance2);
   if (node.cosine > -1) {
@@ -227,7 +228,7 @@ float LightTree::bound(const Node& node, const Point3& point, const Normal3& nor
     const float cos_x = cosine_of_rest(sin_theta, cos_theta, sin_o, node.cosine);
     const float sin_x = sine_of_rest(sin_theta, cos_theta, sin_o, node.cosine);
     const float cos_rest = cosine_of_rest(sin_x, cos_x, sin_b, cos_b);
-    if (!(cos_rest > -1e-6f)) return 0;  // all of it faces away, by more than rounding
+    if (!(cos_rest > -1e-6f)) return 0;  // the whole cluster faces away, by more than rounding errors
     value *= std::max(cos_rest, 1e-4f);
   }
   if (normal != Normal3{}) {

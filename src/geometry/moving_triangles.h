@@ -1,5 +1,5 @@
 #pragma once
-// Triangles that may change their shape with time, as structures over them see them.
+// A view of triangles with optional vertex motion, from which acceleration structures are built.
 
 #include <algorithm>
 
@@ -8,13 +8,14 @@
 
 namespace etendue {
 
-/// Triangles whose corners move in straight lines between the times of keys, and rest before the first and after the last.
-/// The positions of all corners at the first key come first, then those at the second; sixteen bytes are read at the last.
+/// Triangles whose vertices move linearly between keyframes and rest before the first and after the last. `positions` stores
+/// all vertices at the first key, then all at the second, and so on; it needs padding, since sixteen bytes are read at the last
+/// position.
 struct MovingTriangleView {
   std::span<const Point3> positions;
   size_t vertices = 0;
   std::span<const std::array<std::uint32_t, 3>> triangles;
-  std::span<const float> times;  ///< [s], increasing; two at least, or none: nothing moves
+  std::span<const float> times;  ///< [s], increasing; at least two, or none if nothing moves
 
   MovingTriangleView() = default;
   MovingTriangleView(const TriangleView& still)
@@ -23,7 +24,7 @@ struct MovingTriangleView {
                      std::span<const float> keys)
       : positions(at_keys), vertices(count), triangles(corners), times(keys) {}
 
-  /// Two keys, as where their corners begin among the positions, and how far it is from one to the other.
+  /// The two keys around a time, given by the index of each key's first position, and the interpolation parameter between them.
   struct Moment {
     size_t first = 0, second = 0;
     float part = 0;

@@ -1,14 +1,14 @@
 #pragma once
-// Objects whose hits name one of many parts.
+// Shapes that consist of many parts, whose hits return the number of the part.
 
 #include <cstdint>
 
 namespace etendue {
 
-/// What a solid must know of an operand to keep its parts apart from those of others.
+/// Interface by which a CSG solid queries an operand's number of parts, to give the parts of all its operands distinct numbers.
 class NumberedParts {
  public:
-  /// Hits and points name parts below this number in `primitive`.
+  /// The `primitive` of hits and surface points is below this number.
   virtual std::uint64_t part_count() const = 0;
 
  protected:

@@ -1,5 +1,5 @@
 #pragma once
-// The point that an object counts places of its own from: floats are fine near to it.
+// Chooses the point relative to which a shape stores its points, so that floats are precise near the shape.
 
 #include <algorithm>
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace etendue {
 
-/// The middle of some places when they lie far from the origin, else the origin: floats near to zero are finer than elsewhere,
-/// and what has its own zero shall keep that.
+/// The centre of the points' bounding box if they lie far from the origin, else the origin: floats are most precise near zero,
+/// and a shape modelled around its own origin keeps it.
 inline DoublePoint3 own_centre(std::span<const DoublePoint3> places) {
   DoublePoint3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   for (const DoublePoint3& p : places)
@@ -24,12 +24,12 @@ inline DoublePoint3 own_centre(std::span<const DoublePoint3> places) {
     away = std::max(away, std::abs(high[k] + low[k]) / 2);
     extent = std::max(extent, high[k] - low[k]);
   }
-  // Nearer than this, floats lose no more than two bits.
+  // For points nearer to the origin than this, floats lose at most two bits.
   if (!(away > 4 * extent) || !(extent >= 0)) return {};
   return {(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
 }
 
-/// Places counted from a point, in floats.
+/// The points relative to `centre`, in floats.
 inline std::vector<Point3> counted_from(const DoublePoint3& centre, std::span<const DoublePoint3> places) {
   std::vector<Point3> counted;
   counted.reserve(places.size() + 1);  // one more, for the padding that meshes add

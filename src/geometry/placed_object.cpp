@@ -10,11 +10,12 @@ void PlacedObject::place() {
   }
   const Bounds3 own = own_bounds();
   bounds_ = transform.animated() ? swept(transform, own) : transform.still()(own);
-  // What rounding may put outside.
+  // Rounding may move points out of the exact box.
   const Vector3 margin = rounding_bound(8) * (bounds_.diagonal() + abs(bounds_.centre() - Point3{}));
   bounds_.low = bounds_.low - margin;
   bounds_.high = bounds_.high + margin;
-  // Of what own coordinates round, and those of the scene: |M^-T n| is 1 / how much wider slabs across n get.
+  // The margin covers the rounding of object-space and of world-space coordinates. |M^-T n| is the reciprocal of the factor by
+  // which the transform widens slabs across n.
   const auto largest = [](const Bounds3& b) { return max_component(abs(b.centre() - Point3{}) + 0.5f * b.diagonal()); };
   float shrunk = 0;
   for (const Normal3& axis : {Normal3(1, 0, 0), Normal3(0, 1, 0), Normal3(0, 0, 1)})
@@ -98,8 +99,8 @@ float PlacedObject::area_pdf(const SurfacePoint& p) const {
 PlacedObject::Area PlacedObject::area_of(const Transform& t) const {
   const double own = own_area();
   if (const float s = similarity_scale(t); s > 0) return {float(own * double(s) * double(s)), own_area_error()};
-  // The integral of stretch over the own area, piece by piece in the coordinates of own_sample: between the seams both are
-  // smooth, and Gauss's rule converges fast.
+  // Integrates the stretch factor over the object-space area, piece by piece in the coordinates of own_sample: between the
+  // seams, stretch and map are smooth, so Gauss-Legendre quadrature converges fast.
   const Seams seams = own_seams();
   double sum = 0, off = 0;
   for (size_t i = 0; i <= seams.x.size(); ++i)
@@ -125,7 +126,7 @@ PlacedObject::Area PlacedObject::area_of(const Transform& t) const {
 }
 
 double PlacedObject::stretched(const Transform& t, const Piece& piece, int panels) const {
-  // Gauss-Legendre of six points (Abramowitz & Stegun 1964, table 25.4), here for [0, 1].
+  // Gauss-Legendre quadrature with six points (Abramowitz & Stegun 1964, table 25.4), here for [0, 1].
   constexpr double half[] = {0.2386191860831969 / 2, 0.6612093864662645 / 2, 0.9324695142031521 / 2};
   constexpr double weights[] = {0.4679139345726910 / 2, 0.3607615730481386 / 2, 0.1713244923791704 / 2};
   constexpr int points = 6;

@@ -1,23 +1,25 @@
 #pragma once
-// What objects share that are described in their own coordinates, and whose transform carries rays in and points out.
+// PlacedObject: base class of shapes that are defined in object space. It transforms rays to object space, and points and
+// samples to world space.
 
 #include "geometry.h"
 
 namespace etendue {
 
-/// A point on an object in the object's own coordinates.
+/// A point on a shape, in object space.
 struct OwnPoint {
   Point3 position;
-  Normal3 normal{0, 0, 1};          ///< unit, geometric, to the front; of a closed object outwards
-  Normal3 shading_normal{0, 0, 0};  ///< unit; zero: the geometric one
-  float error = 0;                  ///< bound of the distance of `position` from the true surface, along the normal
+  Normal3 normal{0, 0, 1};          ///< unit geometric normal on the front side; outwards on a closed object
+  Normal3 shading_normal{0, 0, 0};  ///< unit; zero stands for the geometric normal
+  float error = 0;                  ///< upper bound of the distance of `position` from the true surface, along the normal
   Point2 uv;
-  Vector3 dpdu, dpdv;  ///< change of position with uv
+  Vector3 dpdu, dpdv;  ///< derivatives of position by uv
   std::uint32_t primitive = 0;
   float u = 0, v = 0;  ///< as in a Hit
 };
 
-/// A ray in double: solvers work in these, for a float's rounding at a distance is that of the whole scene.
+/// A ray in double for the root finders: a float's rounding error at a distance is relative to that distance, not to the size
+/// of the shape.
 struct DoubleRay {
   double origin[3], direction[3];  ///< the direction is not normalized
   double maximum;
@@ -28,68 +30,69 @@ struct DoubleRay {
   double at(double t, int k) const { return origin[k] + t * direction[k]; }
 };
 
-/// An object gives bounds, intersection, points, area and samples in its own coordinates; this class does the rest, for
-/// any transform, moving ones too. Samples are by area; an object that knows better overrides sample_visible and
-/// visible_density, as a whole.
+/// A derived class implements bounds, intersection, surface points, area and samples in object space; this class does the rest
+/// for any transform, including animated ones. Sampling is uniform or nearly uniform by area; a derived class with a better
+/// sampler overrides both sample_visible and visible_pdf.
 class PlacedObject : public SceneObject {
  public:
   Bounds3 bounds() const override { return bounds_; }
   bool intersect(const Ray&, Hit&) const override;
   bool occludes(const Ray&) const override;
   void surface_point(const Ray&, const Hit&, SurfacePoint&) const override;
-  void tangents(SurfacePoint&) const override {}  // every point comes with them
+  void tangents(SurfacePoint&) const override {}  // own_point and own_sample set them for every point
   float area(float time) const override;
   float area_error(float time) const override;
   SurfaceSample sample_area(Point2 u, float time) const override;
   float area_pdf(const SurfacePoint&) const override;
 
  protected:
-  /// To be called at the end of prepare, when all functions below work.
+  /// To be called at the end of prepare, when all functions below can be called.
   void place();
 
   virtual Bounds3 own_bounds() const = 0;
-  /// The nearest intersection with t in (0, ray.maximum): fills distance, primitive, u and v. t > 0 is the float's: a t
-  /// that is 0 as a float is none. Rays that start on the surface were moved off it by SurfacePoint::error.
+  /// The nearest intersection with t in (0, ray.maximum): fills distance, primitive, u and v. t > 0 holds for the rounded
+  /// float: a t that rounds to 0 is no hit. Rays that start on the surface have been offset from it by SurfacePoint::error.
   virtual bool own_intersect(const Ray&, Hit&) const = 0;
-  /// Whether anything lies on the ray.
+  /// Whether the ray hits the shape.
   virtual bool own_occludes(const Ray& ray) const {
     Hit hit;
     return own_intersect(ray, hit);
   }
-  /// The point of a hit: on the surface as nearly as floats allow, not merely on the ray.
+  /// The point of a hit: computed on the surface to float precision, not merely on the ray.
   virtual void own_point(const Ray&, const Hit&, OwnPoint&) const = 0;
-  /// Area before the transform.
+  /// Area in object space, before the transform.
   virtual double own_area() const = 0;
-  /// Bound of that area's relative error; 0: a formula gives it.
+  /// Upper bound of that area's relative error; 0 if the area is given by a formula.
   virtual float own_area_error() const { return 0; }
-  /// A point by area, with its density per own area; 0: none was found. A continuous map of the unit square to the surface,
-  /// where there is one, keeps samples well spread. Never throws.
+  /// Samples a point by area and returns its pdf per object-space area; 0 if none was found. Where a continuous map from the
+  /// unit square to the surface exists it is preferred, since it keeps samples well distributed. Never throws.
   virtual float own_sample(Point2 u, OwnPoint&) const = 0;
-  /// Where smooth pieces of own_sample's map meet within the unit square: at these x, and at these y, in order.
+  /// The boundaries between smooth pieces of own_sample's map within the unit square: at these x and at these y, in ascending
+  /// order.
   struct Seams {
     std::vector<double> x, y;
   };
   virtual Seams own_seams() const { return {}; }
-  /// The density own_sample gives a point with.
+  /// The pdf of own_sample at a point, per object-space area.
   virtual float own_pdf(const SurfacePoint&) const { return float(1 / own_area()); }
 
-  /// How near to an edge points go, in own coordinates: see `border`.
+  /// The least distance of points from an edge, in object space: see `border`.
   float margin() const { return margin_; }
-  /// A coordinate between two edges, and not nearer to them than that.
+  /// Clamps a coordinate between two edges, at least margin() away from each.
   double within(double x, double low, double high) const {
     const double m = std::min(double(margin_), 0.125 * (high - low));
     return std::clamp(x, low + m, high - m);
   }
 
-  /// From own coordinates to those of the containing scene.
+  /// Transforms a point from object space to the coordinates of the containing scene.
   void carry(const OwnPoint&, float time, SurfacePoint&) const;
-  /// By how much a transform enlarges area at a unit normal inside: |det M| |M^-T n|.
+  /// The factor by which a transform enlarges area at a unit object-space normal n: |det M| |M^-T n|.
   static float area_stretch(const Transform& t, const Normal3& n) {
     return std::abs(linear_determinant(t)) * length(Vector3(t(n)));
   }
 
  private:
-  /// Area [m^2], and how far it may be off, relatively.
+  /// Area [m^2] and its relative error bound.
   struct Area {
     float value = 0, error = 0;
   };
@@ -98,7 +101,7 @@ class PlacedObject : public SceneObject {
   struct Piece {
     double x0, x1, y0, y1;
   };
-  /// The area of a piece after a transform, by Gauss's rule in so many panels each way.
+  /// The area of a piece after a transform, by Gauss-Legendre quadrature with `panels` x `panels` panels.
   double stretched(const Transform&, const Piece&, int panels) const;
 
   Bounds3 bounds_;

@@ -1,5 +1,5 @@
 #pragma once
-// Vertices of triangles that lie in the same place, and the corners that have them.
+// Groups vertices of a triangle mesh that have the same position, and lists the triangle corners at each.
 
 #include <array>
 #include <bit>
@@ -11,14 +11,14 @@
 
 namespace etendue {
 
-/// A hash of a place; -0 is 0.
+/// A hash of a position; -0 hashes like 0.
 inline std::uint64_t place_hash(const Point3& p) {
   std::uint64_t h = std::bit_cast<std::uint32_t>(p.x + 0.0f);
   h = mix_bits((h << 32 | std::bit_cast<std::uint32_t>(p.y + 0.0f)) + 0x9e3779b97f4a7c15ull);
   return mix_bits(h ^ std::bit_cast<std::uint32_t>(p.z + 0.0f));
 }
 
-/// For each point, the first one in the same place.
+/// For each point, the index of the first point with the same position.
 inline std::vector<std::uint32_t> first_in_place(std::span<const Point3> points) {
   constexpr std::uint32_t none = 0xffffffffu;
   const size_t mask = std::bit_ceil(2 * points.size() + 2) - 1;
@@ -35,7 +35,7 @@ inline std::vector<std::uint32_t> first_in_place(std::span<const Point3> points)
 class PointGroups {
  public:
   PointGroups(std::span<const Point3> points, std::span<const std::array<std::uint32_t, 3>> triangles) {
-    // Groups are numbered as their first points, without gaps.
+    // Groups are numbered in the order of their first points, without gaps.
     std::vector<std::uint32_t> group = first_in_place(points);
     std::uint32_t groups = 0;
     for (std::uint32_t i = 0; i < group.size(); ++i) group[i] = group[i] == i ? groups++ : group[group[i]];
@@ -49,7 +49,7 @@ class PointGroups {
   }
 
   size_t size() const { return start_.size() - 1; }
-  /// Corner k of triangle i is 3 i + k. A place that no triangle has has none.
+  /// The corners in a group: corner k of triangle i is 3 i + k. Empty for a position that no triangle uses.
   std::span<const std::uint64_t> corners(size_t group) const {
     return {corners_.data() + start_[group], start_[group + 1] - start_[group]};
   }

@@ -1,19 +1,20 @@
 #pragma once
-// Where a ray crosses quadrics and slabs: as intervals of the ray, so that a solid is entered as often as it is left.
+// Intersections of a ray with quadrics and slabs, as intervals of the ray parameter, so that entries into and exits from a
+// solid pair up.
 
 #include "placed_object.h"
 
 namespace etendue {
 
-/// The part of a line on which a t^2 + 2 b t + c <= 0: from `low` to `high`, or, for `beyond`, what is not between them.
-/// An empty one has low > high.
+/// The part of a line on which a t^2 + 2 b t + c <= 0: from `low` to `high`, or if `beyond` is set, the rest of the line
+/// outside that interval. The empty set has low > high.
 struct QuadricInside {
   double low = 1, high = -1;
   bool beyond = false;
 };
 
-/// q is the half of the root in which nothing cancels; the roots are q / a and c / q (Hearn & Baker 2004). An a of zero
-/// leaves one of them infinite, as it should be.
+/// q = -(b + sign(b) sqrt(b^2 - a c)) has no cancellation; the roots are q / a and c / q (Hearn & Baker 2004). If a is zero,
+/// one root is infinite, as it should be.
 inline QuadricInside quadric_inside(double a, double b, double c) {
   constexpr double endless = std::numeric_limits<double>::infinity();
   const double discriminant = b * b - a * c;
@@ -29,11 +30,11 @@ inline QuadricInside quadric_inside(double a, double b, double c) {
   return {std::min(one, other), std::max(one, other), a < 0};
 }
 
-/// A ray whose parameter counts from the point nearest to a place on the z axis. Far from an object the coefficients of a
-/// quadric are differences of huge numbers, near it they are not.
+/// A ray re-parametrized to start at its point nearest to a given point on the z axis. From a far origin the coefficients of a
+/// quadric would be differences of huge numbers.
 struct NearRay {
   double x, y, z, dx, dy, dz;
-  double start;  ///< the ray's parameter there
+  double start;  ///< the original ray's parameter at the new start
 
   NearRay(const Ray& ray, double height)
       : dx(double(ray.direction.x)), dy(double(ray.direction.y)), dz(double(ray.direction.z)) {
@@ -44,7 +45,7 @@ struct NearRay {
     z = oz + start * dz;
   }
 
-  /// Where x^2 + y^2 <= square z^2 + linear z + constant.
+  /// The part of the ray where x^2 + y^2 <= square z^2 + linear z + constant.
   QuadricInside inside(double square, double linear, double constant) const {
     const double axial = square * dz;
     return quadric_inside(dx * dx + dy * dy - axial * dz, x * dx + y * dy - axial * z - 0.5 * linear * dz,
@@ -52,7 +53,7 @@ struct NearRay {
   }
 };
 
-/// The part of a ray between two planes across z: `enter` < `leave`, or nothing.
+/// The part of a ray between two planes of constant z; empty unless `enter` < `leave`.
 struct SlabInside {
   double enter = -std::numeric_limits<double>::infinity(), leave = -enter;
   bool upwards = true;  ///< enters through the low plane
@@ -67,8 +68,8 @@ struct SlabInside {
   }
 };
 
-/// A crossing in double. What a float lacks of it goes along in Hit::u, so that the point of the hit is as exact: rounding t
-/// alone would move points of a small object that is hit from far away, and lose what is known of the root there.
+/// Stores a crossing t in a hit. The rounding error of the float distance is stored in Hit::u, so that the hit point keeps
+/// double precision: the rounded t alone would displace points of a small object that is hit from far away.
 inline bool take_hit(const Ray& ray, double t, std::uint32_t part, Hit& hit) {
   const float rounded = float(t);
   if (!(rounded > 0 && rounded < ray.maximum)) return false;
@@ -80,8 +81,8 @@ inline bool take_hit(const Ray& ray, double t, std::uint32_t part, Hit& hit) {
 }
 inline double exact_distance(const Hit& hit) { return double(hit.distance) + double(hit.u); }
 
-/// A point of a flat part across z, with Cartesian surface coordinates over the square around a disc of that radius, as of
-/// a Disc; u runs backwards on what faces down, to keep dpdu x dpdv in front.
+/// Fills a point of a flat face of constant z, with Cartesian surface coordinates over the square around a disc of the given
+/// radius, as Disc has them. u is reversed on a face that faces down, so that dpdu x dpdv points to the front.
 inline void flat_point(double x, double y, double z, double radius, bool up, double extent, OwnPoint& p) {
   const float r = float(radius), side = up ? 1.0f : -1.0f;
   p.position = {float(x), float(y), float(z)};
@@ -92,7 +93,7 @@ inline void flat_point(double x, double y, double z, double radius, bool up, dou
   p.error = rounding_bound(3) * (std::abs(p.position.z) + float(extent));
 }
 
-/// Which part of a turn around z there is, from the x axis counter-clockwise.
+/// The sector of a full turn around z that an object covers, from the x axis counter-clockwise.
 class Sector {
  public:
   explicit Sector(double angle = 2 * M_PI)
@@ -108,12 +109,12 @@ class Sector {
     const bool after_start = y >= 0, before_end = x * sine_ - y * cosine_ >= 0;
     return angle_ <= M_PI ? after_start && before_end : after_start || before_end;
   }
-  /// The azimuth over the angle, in [0, 1].
+  /// The azimuth divided by the sector's angle, in [0, 1].
   float part(double x, double y) const {
     const float phi = positive_atan2(float(y), float(x));
     if (full_) return std::min(phi / (2 * pi), 1.0f);
     if (phi <= float(angle_)) return phi / float(angle_);
-    return phi < float(0.5 * angle_ + M_PI) ? 1.0f : 0.0f;  // just outside, by rounding
+    return phi < float(0.5 * angle_ + M_PI) ? 1.0f : 0.0f;  // just outside the sector by rounding
   }
 
  private:

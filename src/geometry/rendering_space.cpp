@@ -5,16 +5,17 @@
 namespace etendue {
 namespace {
 
-/// Own coordinates of an object, in which others stand.
+/// The object space of an object that contains other objects, such as a nested scene.
 struct Space {
-  /// An object that brings these coordinates into those of another one's.
+  /// A placement of this space: the object `by` places it in the object space of `in`.
   struct Place {
     const SceneObject* by;
     SceneObject* in;
   };
   std::vector<Place> places;
-  SceneObject* group;  ///< one for all spaces that share an object and therefore count from the same point; itself at the end
-  int members = 1;     ///< of the group, where this is its end
+  SceneObject* group;  ///< union-find parent of spaces that share an object and therefore have the same origin; the root points
+                       ///< to itself
+  int members = 1;     ///< size of the group, valid at its root
 };
 
 class Plan {
@@ -42,13 +43,13 @@ class Plan {
         if (!part) continue;
         SceneObject* const within = space_brought_by(*part);
         part->transform.count_from(here, within ? centre(within) : DoublePoint3{});
-        if (!part->infinite()) part->world_centre = centre_;  // there points are directions
+        if (!part->infinite()) part->world_centre = centre_;  // the points of an infinite object are directions
       }
     }
   }
 
  private:
-  /// The one whose own coordinates an object brings into others; null: it is no more than itself.
+  /// The owner of the space that an object places in another one; null if the object contains no others.
   SceneObject* space_brought_by(SceneObject& object) const {
     SceneObject* owner = &object;
     if (const auto* instance = dynamic_cast<const Instance*>(&object)) owner = instance->scene.get();
@@ -64,7 +65,7 @@ class Plan {
       if (const auto* instance = dynamic_cast<const Instance*>(part)) within = instance->scene.get();
       if (!within || (within == part && part->placed_within().empty())) continue;
       look_into(*within);
-      // One that several list stands for one place: these count from the same point.
+      // An object listed by several owners counts as one placement, since its owners are joined and have the same origin.
       std::vector<Space::Place>& places = spaces_.at(within).places;
       if (std::ranges::none_of(places, [&](const Space::Place& p) { return p.by == part; })) places.push_back({part, &owner});
     }
@@ -76,7 +77,7 @@ class Plan {
   }
   void join(SceneObject* a, SceneObject* b) { spaces_.at(end_of(a)).group = end_of(b); }
 
-  /// Whether its point is the renderer's, carried in.
+  /// Whether its origin is the renderer's origin, transformed into this space.
   bool counts_with_renderer(SceneObject* owner) const {
     SceneObject* const end = end_of(owner);
     if (end == end_of(&scene_)) return true;

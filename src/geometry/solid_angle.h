@@ -1,5 +1,5 @@
 #pragma once
-// Points on triangles and rectangles, uniform in the solid angle they subtend.
+// Sampling of triangles and rectangles, uniform in the solid angle they subtend.
 
 #include "etendue/core/vector.h"
 
@@ -8,7 +8,8 @@ namespace etendue {
 /// Sampling by solid angle pays only near a luminaire. Further away, where area / distance^2 is below this [sr], the
 /// factor cos / distance^2 hardly varies over the luminaire and sampling by area is as good and five times faster.
 inline constexpr float worthwhile_solid_angle = 0.5f;
-/// Outside these [sr] the formulas below lose too many digits (flat against the luminaire's plane, or all around).
+/// Outside this range [sr] the formulas below lose too many digits (the point lies almost in the luminaire's plane, or the
+/// luminaire fills almost a hemisphere).
 inline constexpr float least_solid_angle = 0.01f, greatest_solid_angle = 6.2f;
 
 /// A triangle projected onto the unit sphere around a point.
@@ -24,10 +25,10 @@ class SphericalTriangle {
   float solid_angle() const { return solid_angle_; }
   bool usable() const { return solid_angle_ > least_solid_angle && solid_angle_ < greatest_solid_angle; }
 
-  /// A direction, uniform over the triangle; density 1 / solid_angle() [1/sr]. Arvo 1995, "Stratified sampling of
-  /// spherical triangles": the first number cuts off, by a vertex c' on the edge ac, a sub-triangle of that fraction of
-  /// the area; the second chooses a point on the arc from b to c'. With the interior angle alpha at a and the area S of
-  /// the sub-triangle, spherical trigonometry gives for the arc from a to c'
+  /// Samples a direction uniformly over the triangle, with pdf 1 / solid_angle() [1/sr]. Arvo 1995, "Stratified sampling of
+  /// spherical triangles": the first number cuts off, by a vertex c' on the edge ac, a sub-triangle of that fraction of the
+  /// area; the second chooses a point on the arc from b to c'. With the interior angle alpha at a and the area S of the
+  /// sub-triangle, spherical trigonometry gives for the arc from a to c'
   ///   cos(ac') = ((v t - u s) cos(alpha) - v) / ((v s + u t) sin(alpha)),
   ///   s = sin(S - alpha), t = cos(S - alpha), u = t - cos(alpha), v = s + sin(alpha) cos(ab).
   Vector3 sample(Point2 u) const {
@@ -74,9 +75,9 @@ class SphericalRectangle {
   float solid_angle() const { return solid_angle_; }
   bool usable() const { return solid_angle_ > least_solid_angle && solid_angle_ < greatest_solid_angle; }
 
-  /// A point (x, y) of the rectangle, uniform in solid angle; density 1 / solid_angle() [1/sr]. The first number finds
-  /// the x below which that fraction of the solid angle lies (their equations 6 to 8, with b0 = n0, b1 = n2); on the
-  /// arc of that x, solid angle is proportional to the height on the sphere, which the second number divides evenly.
+  /// Samples a point (x, y) of the rectangle uniformly in solid angle, with pdf 1 / solid_angle() [1/sr]. The first number
+  /// finds the x below which that fraction of the solid angle lies (their equations 6 to 8, with b0 = n0, b1 = n2); on the arc
+  /// of that x, solid angle is proportional to the height on the sphere, which the second number divides evenly.
   Point2 sample(Point2 u) const {
     const float au = u.x * solid_angle_ + k_;
     const float fu = (std::cos(au) * n0_ - n2_) / std::sin(au);

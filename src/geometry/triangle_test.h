@@ -1,11 +1,11 @@
 #pragma once
-// One ray against one triangle.
+// Intersection of one ray with one triangle.
 
 #include "etendue/core/ray.h"
 
 namespace etendue {
 
-/// Twice a triangle's area times its normal.
+/// The triangle's unit normal times twice its area.
 inline Vector3 area_vector(const Point3& a, const Point3& b, const Point3& c) { return cross(b - a, c - a); }
 
 struct TriangleHit {
@@ -14,7 +14,7 @@ struct TriangleHit {
 
 /// Moeller & Trumbore 1997, with the triangle's normal. From O + t D = v0 + u e1 + v e2 and C = v0 - O, N = e1 x e2:
 ///   t = N.C / N.D,  u = e2.(C x D) / N.D,  v = -e1.(C x D) / N.D.
-/// A ray parallel to the plane divides by zero; what comes out fails the comparisons.
+/// For a ray parallel to the plane the division by zero gives values that fail the comparisons.
 inline bool intersect_triangle(const Ray& ray, const Point3& v0, const Vector3& e1, const Vector3& e2, const Vector3& n,
                                TriangleHit& hit) {
   const Vector3 c = v0 - ray.origin, r = cross(c, ray.direction);

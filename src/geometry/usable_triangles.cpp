@@ -6,7 +6,7 @@
 namespace etendue {
 
 bool countable(const Point3& p) {
-  constexpr float largest = 1e18f;  // squares of coordinates must stay finite, and so does Embree require
+  constexpr float largest = 1e18f;  // squares of coordinates must stay finite; Embree requires the same
   return std::abs(p.x) < largest && std::abs(p.y) < largest && std::abs(p.z) < largest;  // false for NaN
 }
 

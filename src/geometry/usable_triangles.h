@@ -1,5 +1,5 @@
 #pragma once
-// Triangles that a ray could meet.
+// Tests whether triangles are non-degenerate, so that a ray could hit them.
 
 #include <array>
 #include <cstdint>
@@ -10,17 +10,18 @@
 
 namespace etendue {
 
-/// A mesh without any such triangle, and otherwise right.
+/// Thrown for a mesh that is valid but has no such triangle.
 class NoTriangles : public Error {
  public:
   using Error::Error;
 };
 
-/// Whether a corner's coordinates are finite, and so small that their squares are.
+/// Whether a vertex' coordinates, and their squares, are finite.
 bool countable(const Point3&);
-/// Whether twice the area is below 1e-7 of the longest side's square: the height is lost in the rounding of the corners.
+/// Whether twice the area is below 1e-7 of the longest side's square: the triangle's height is then below the rounding error of
+/// its vertices.
 bool without_height(const Point3&, const Point3&, const Point3&);
-/// Whether any of them has an area, and corners that can be counted with.
+/// Whether any triangle has an area and countable vertices.
 bool any_usable(std::span<const Point3> positions, std::span<const std::array<std::uint32_t, 3>> triangles);
 
 }  // namespace etendue

@@ -1,19 +1,20 @@
 #pragma once
-// Points of an object where directions meet it: near a surface, where points by area crowd into few directions and
-// 1 / density has no bound, this is what keeps estimates calm.
+// Samples points of an object by uniform directions from a reference point, mixed with sampling by area. Near a surface,
+// samples by area concentrate in few directions and 1 / pdf is unbounded; the share of samples by direction bounds it.
 
 #include "etendue/core/warp.h"
 #include "geometry.h"
 
 namespace etendue {
 
-/// How many samples of the points seen from a place are made by direction.
+/// The fraction of samples of visible points that are made by direction.
 struct DirectionShare {
-  float value = 0;      ///< from 0 (none) to 1 (all)
-  bool convex = false;  ///< from inside (1) all points are met, from outside those that face the place: no need to look
+  float value = 0;      ///< from 0 (all by area) to 1 (all by direction)
+  bool convex = false;  ///< visibility follows without tracing a ray: from inside (value 1) all points are visible, from
+                        ///< outside those that face the reference point
 };
 
-/// Whether a ray from a place meets a point before anything else of its object.
+/// Whether a ray from `from` hits the point before any other point of the same object.
 inline bool met_first(const Point3& from, const Vector3& direction, const SurfacePoint& p) {
   Ray ray;
   ray.origin = from;
@@ -24,7 +25,7 @@ inline bool met_first(const Point3& from, const Vector3& direction, const Surfac
   return p.object->intersect(ray, hit) && std::abs(hit.distance - d) <= 1e-4f * d + 4 * p.error;
 }
 
-/// The density [1/sr] of a point chosen by sample_by_both; `density_by_area(point)` is that of the other sampler [1/m^2].
+/// The pdf [1/sr] of a point sampled by sample_by_both; `pdf_by_area(point)` is the pdf [1/m^2] of the sampler by area.
 template <class Density>
 float pdf_by_both(const DirectionShare& share, const Point3& from, const Vector3& direction, const SurfacePoint& p,
                   const Density& pdf_by_area) {
@@ -38,8 +39,8 @@ float pdf_by_both(const DirectionShare& share, const Point3& from, const Vector3
   return met ? pdf + share.value * warp::sphere_pdf : pdf;
 }
 
-/// A point by direction with a share of all samples, else by the given sampler: `sample_by_area(u, sample)`
-/// fills a point or says that it found none. The density [1/sr] is that of both together.
+/// Samples a point by direction with probability `share`, else by the given sampler: `sample_by_area(u, sample)` fills a point
+/// or returns false if it found none. The pdf [1/sr] is that of the mixture.
 template <class Sampler, class Density>
 SurfaceSample sample_by_both(const SceneObject& object, const DirectionShare& share, const Point3& from, Point2 u, float time,
                              const Sampler& sample_by_area, const Density& pdf_by_area) {

@@ -1,6 +1,6 @@
 #pragma once
-// A test of rays against triangles that lets nothing slip between triangles with common edges or corners (Woop, Benthin &
-// Wald 2013, "Watertight ray/triangle intersection"), for one triangle in double or for several in float.
+// Watertight ray-triangle intersection: no ray passes between triangles that share an edge or a vertex (Woop, Benthin & Wald
+// 2013, "Watertight ray/triangle intersection"). For one triangle in double or for several in float.
 
 #include "etendue/core/ray.h"
 #include "lanes.h"
@@ -16,7 +16,7 @@ struct ScalarOf<Floats> {
   using Type = float;
 };
 
-/// A ray, and the shear that lays it along the axis its direction is longest on. `Number` is double or Floats.
+/// A ray, and the shear that aligns it with the axis of its largest direction component. `Number` is double or Floats.
 template <class Number>
 struct ShearedRay {
   using Scalar = typename ScalarOf<Number>::Type;
@@ -43,8 +43,8 @@ struct ShearedRay {
   }
 };
 
-/// Weights of a triangle's corners where a ray goes through its plane, not normalized, and their sum. Inside, no two of the
-/// weights differ in sign; all are zero for a triangle seen edge on.
+/// Barycentric coordinates, not normalized, of the point where a ray crosses a triangle's plane, and their sum. Inside the
+/// triangle no two of them have opposite signs; all are zero for a triangle seen edge on.
 template <class Number>
 struct CornerWeights {
   Number a, b, c;
@@ -52,9 +52,9 @@ struct CornerWeights {
 };
 
 // With the corners relative to the origin and sheared, the ray is the z axis, and the weight of a corner is twice the area that
-// the z axis and the other two span in the xy plane. A corner is projected the same way whatever triangle it belongs to, and
-// the areas have exact signs (see signed_difference): so the projected triangles cover the plane as they should, and a ray that
-// passes one on the wrong side of an edge passes its neighbour on the right one.
+// the z axis and the other two span in the xy plane. A vertex is projected in the same way for each triangle that it belongs
+// to, and the areas have exact signs (see signed_difference): so the projected triangles tile the plane without gaps, and a ray
+// just outside one triangle's edge is inside the neighbour at this edge.
 /// `corner(k, axis)` gives the coordinates of corner k.
 template <class Number, class Corner>
 inline CornerWeights<Number> corner_weights(const ShearedRay<Number>& r, const Corner& corner) {
@@ -69,9 +69,9 @@ inline CornerWeights<Number> corner_weights(const ShearedRay<Number>& r, const C
           signed_difference(x[1], y[0], y[1], x[0])};
 }
 
-// t = N.(A - O) / N.D with the normal N, the formula that SurfacePoint::error of triangles counts the rounding of: a ray that
-// leaves a triangle does not meet it again (which would happen if t were the mean of the corners' depths). Depths are only what
-// limits it: edge on, N.D may have a wrong sign or be zero, but a ray that has to hit something must not fail for that.
+// t = N.(A - O) / N.D with the normal N, the formula whose rounding SurfacePoint::error of triangles bounds: a ray that leaves
+// a triangle does not hit it again (which would happen if t were interpolated from the vertices' depths). The depths only clamp
+// t: edge on, N.D may have the wrong sign or be zero, but the hit must not be lost, or the mesh would leak.
 template <class Number, class Corner>
 inline Number plane_distance(const ShearedRay<Number>& r, const Corner& corner) {
   const Number ax = corner(0, r.x), ay = corner(0, r.y), az = corner(0, r.z);
@@ -84,7 +84,7 @@ inline Number plane_distance(const ShearedRay<Number>& r, const Corner& corner) 
   return smaller(larger(t, smaller(smaller(a, b), c)), larger(larger(a, b), c));
 }
 
-/// Whether the ray, or the line it is on, goes through the triangle.
+/// Whether the ray's line goes through the triangle.
 inline bool inside(const CornerWeights<double>& w) {
   const bool negative = w.a < 0 || w.b < 0 || w.c < 0, positive = w.a > 0 || w.b > 0 || w.c > 0;
   return negative != positive;

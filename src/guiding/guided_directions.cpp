@@ -20,7 +20,7 @@ CameraDirections::Choice GuidedDirections::sample(const Walk<false>& walk, float
   return {way.next, way.more};
 }
 
-float GuidedDirections::pdf(const Vertex& v, const Vector3& out, const Vector3& in, float scatter) const {
+float GuidedDirections::pdf(const PathVertex& v, const Vector3& out, const Vector3& in, float scatter) const {
   return GuidedScattering(guide_, v, out).pdf(in, scatter);
 }
 
@@ -46,7 +46,7 @@ std::vector<GuideSample> GuidedDirections::learned(std::span<const SubpathVertex
     // Behind a mirror a place is as far as the way to it is long.
     for (size_t m = k + 1; m < walk.size(); ++m) {
       distance_met +=
-          walk[m].kind == Vertex::Kind::escape ? infinity : distance(walk[m - 1].point.position, walk[m].point.position);
+          walk[m].kind == PathVertex::Kind::escape ? infinity : distance(walk[m - 1].point.position, walk[m].point.position);
       if (!walk[m].specular) break;
     }
     s.nearness = 1 / distance_met;

@@ -6,7 +6,7 @@
 namespace etendue {
 namespace {
 
-/// Where three channels stand; the first is -1 when one is missing.
+/// The indices of three channels; all -1 if one is missing.
 std::array<std::ptrdiff_t, 3> find_channels(const Image& image, const char* a, const char* b, const char* c) {
   std::array<std::ptrdiff_t, 3> at{};
   const char* names[] = {a, b, c};
@@ -31,7 +31,7 @@ Image convert_color_space(const Image& image, const std::string& color_space) {
   const bool was_xyz = at[0] >= 0;
   if (!was_xyz) at = find_channels(image, "R", "G", "B");
   if (at[0] < 0) throw Error("the picture has neither channels X Y Z nor R G B");
-  // The channels' names outrank what a file says.
+  // The channels' names take precedence over the file's metadata.
   const std::string from_name = was_xyz ? "xyz" : known(image, "color_space", "srgb");
   const std::string transfer = was_xyz ? "linear" : known(image, "transfer", "linear");
   const bool to_xyz = to.name == "xyz";

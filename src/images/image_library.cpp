@@ -15,7 +15,7 @@ constexpr const char* file_name = "libetendue_openimageio.so";
 
 constinit std::atomic<const ImageLibrary*> announced = nullptr;
 
-/// Its path beside the library this code is in; empty: it is not there.
+/// The library's path, in the folder of the library that contains this code; empty: no such file.
 std::string path_beside() {
   Dl_info own{};
   if (!dladdr(reinterpret_cast<void*>(&image_library), &own) || !own.dli_fname) return {};
@@ -27,8 +27,8 @@ std::string path_beside() {
 const ImageLibrary& load() {
   if (!announced) {
     const std::string path = path_beside();
-    // Never closed: textures, and their code, may live until the end. To bind all functions of so many libraries at once would
-    // take a sixth longer.
+    // Never closed, as textures and their code may be in use until the program ends. Lazy binding, as binding all functions of
+    // so many libraries at once would take a sixth longer.
     if (!dlopen(path.empty() ? file_name : path.c_str(), RTLD_LAZY | RTLD_LOCAL))
       throw Error(fmt::format("the library for image files cannot be loaded: {}", dlerror()));
   }

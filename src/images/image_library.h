@@ -1,6 +1,7 @@
 #pragma once
-// What reads and writes image files. It is OpenImageIO, in a library of its own (src/openimageio) that is loaded when it is
-// first needed: OpenImageIO brings some 250 shared libraries, and loading these takes longer than all else at the start.
+// The interface to image files. They are read and written by OpenImageIO, in a separate library (src/openimageio) that is
+// loaded on first use: OpenImageIO depends on some 250 shared libraries, and loading them takes longer than everything else at
+// the program's start.
 
 #include <array>
 #include <cstdint>
@@ -19,10 +20,10 @@ namespace etendue {
 class ImageTexture;
 struct LinearImage;
 
-/// How a file keeps the numbers of a channel.
+/// The type in which a file stores the numbers of a channel.
 enum class NumberType : std::uint8_t { uint8, uint16, half, single };
 
-/// What an image file is to hold beside its numbers. What a format does not know is left out.
+/// The header data of an image file. Data that the format does not support are left out.
 struct ImageHeader {
   struct Channel {
     std::string name;
@@ -34,25 +35,25 @@ struct ImageHeader {
 
   int width, height;
   std::vector<Channel> channels;
-  int x = 0, y = 0;      ///< where the pixels begin
-  PixelArea whole;       ///< the display window, of which the pixels are a part or which is a part of them; empty: the pixels
-  std::string transfer;  ///< how colours are encoded, "linear" or "srgb"; empty: the file does not say
+  int x = 0, y = 0;      ///< position of the first pixel
+  PixelArea whole;       ///< the display window, which may be larger or smaller than the pixels' window; empty: the same
+  std::string transfer;  ///< the encoding of colours, "linear" or "srgb"; empty: not stated
   std::optional<std::array<float, 8>> chromaticities;  ///< CIE x and y of red, green, blue and white
   std::map<std::string, std::string> texts;
   std::optional<int> compression_level;  ///< of PNG, 0 to 9
-  int tile_side = 0;                     ///< of square tiles; 0: the pixels lie in lines
+  int tile_side = 0;                     ///< of square tiles; 0: scan lines
 };
 
-/// Pixels from top to bottom, channels interleaved. Whole numbers stand for fractions of the largest of their type.
+/// Pixels from top to bottom, channels interleaved. Integers represent fractions of the largest value of their type.
 using PixelValues = std::variant<std::span<const std::uint8_t>, std::span<const std::uint16_t>, std::span<const float>>;
 
-/// An image as its file holds it: not decoded, with the file's own texts and the place of a crop as metadata.
+/// An image as stored in its file: not decoded, with the file's texts and the position of a crop as metadata.
 struct StoredImage {
   Image image;
-  std::string transfer;  ///< "linear" or "srgb", by what the format says, else by the type of its numbers
+  std::string transfer;  ///< "linear" or "srgb", as stated in the file, else by the type of its numbers
 };
 
-/// Errors tell the reason; whoever asks names the file.
+/// Errors contain the reason; the caller adds the file's name.
 class ImageLibrary {
  public:
   virtual ~ImageLibrary();
@@ -64,17 +65,17 @@ class ImageLibrary {
   /// See ImageTexture::open.
   virtual std::shared_ptr<const ImageTexture> open_texture(const std::string& path, const std::string& transfer,
                                                            const std::string& channel) const = 0;
-  /// The bytes of a file in the format of an ending (".png").
+  /// The bytes of a file in the format of an extension (".png").
   virtual std::vector<unsigned char> encode(const std::string& extension, const ImageHeader&, const PixelValues&) const = 0;
 };
 
-/// Loads the library at the first call; from any thread. Throws Error when it cannot be loaded.
+/// Loads the library at the first call; thread-safe. Throws Error if it cannot be loaded.
 const ImageLibrary& image_library();
-/// Throws Error when there is no library to be loaded, without loading one that is where it should be: what is only needed
-/// after a long render should be missed before.
+/// Throws Error if there is no library to be loaded, without loading an existing one: so that a library needed only after a
+/// long render is found missing before it.
 void require_image_library();
 
-/// Called when the library is loaded, with the version it was built for.
+/// Called by the library when it is loaded, with the version it was built for.
 void announce_image_library(const ImageLibrary&, const char* version);
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// Image files as linear numbers, and textures of them.
+// Reads image files as linear values, and opens textures.
 
 #include "linear_image.h"
 
@@ -11,7 +11,7 @@
 namespace etendue {
 namespace {
 
-/// What `use` makes of the image library, with the file named when it fails.
+/// Returns the result of `use` with the image library; errors are rethrown with the file's name.
 template <class Use>
 auto reading(const std::string& path, Use use) {
   try {

@@ -8,7 +8,7 @@
 namespace etendue {
 namespace {
 
-/// What follows a key of the header's dictionary, such as `'shape':`.
+/// The text after a key of the header's dictionary, such as `'shape':`.
 std::string_view after(std::string_view text, std::string_view key) {
   const size_t at = text.find(key);
   if (at == std::string_view::npos) throw Error("its header lacks " + std::string(key));
@@ -48,7 +48,7 @@ NumpyArray parse_numpy_header(std::string_view bytes) {
     shape.remove_prefix(size_t(end - shape.data()));
   }
   const size_t width = doubles ? 8 : 4;
-  size_t room = NumpyArray::most_numbers;  // divided, not multiplied: a product of many sizes might not be counted right
+  size_t room = NumpyArray::most_numbers;  // by division, as the product of the sizes may overflow
   for (const size_t n : sizes) {
     if (n == 0) throw Error("its shape is empty");
     if (n > room) throw Error("its shape is too large: at most 2^30 numbers are read");

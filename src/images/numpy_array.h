@@ -1,5 +1,5 @@
 #pragma once
-// NumPy arrays (.npy): as they are, and as pictures.
+// NumPy arrays (.npy), as arrays and as images.
 
 #include <cstdint>
 #include <string_view>
@@ -9,23 +9,23 @@
 
 namespace etendue {
 
-/// An array in the bytes of a file, the last index running fastest.
+/// A view of an array in the bytes of a file; the last index varies fastest.
 struct NumpyArray {
   std::vector<size_t> shape;
   std::string_view data;
-  bool doubles = false;  ///< of 8 bytes each; else of 4
+  bool doubles = false;  ///< 8 bytes each; otherwise floats of 4 bytes
 
   size_t count() const { return data.size() / (doubles ? 8 : 4); }
   double operator[](size_t i) const;
-  /// No array that is read has more numbers.
+  /// The most numbers of an array that is read.
   static constexpr size_t most_numbers = size_t(1) << 30;
 };
 
-/// Reads what a file says of its array, and whether it holds as much; nothing is copied. Throws Error with the reason alone.
+/// Parses the header of an array and checks the amount of data; nothing is copied. Throws Error with the reason only.
 NumpyArray parse_numpy_header(std::string_view bytes);
 
-/// From the bytes of a file; channels X Y Z and "channel.3" … for three values a pixel or more, "Y" for one. Throws Error
-/// with the reason alone.
+/// An image from the bytes of a file; channels X Y Z and "channel.3" … for three or more values per pixel, "Y" for one. Throws
+/// Error with the reason only.
 Image parse_numpy_array(std::string_view bytes);
 
 }  // namespace etendue

@@ -30,7 +30,7 @@ bool known_space(const std::string& name) {
   return name == "xyz" || std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// How the values are encoded: what the file's texts say, else what the image library does.
+/// The encoding of the values: as the file's metadata state, else as the image library states.
 std::string encoding(const StoredImage& stored) {
   const std::vector<std::string> known = transfer_names();
   const auto said = stored.image.metadata.find("transfer");
@@ -49,7 +49,7 @@ void decode(Image& image, const std::string& transfer) {
   }
 }
 
-/// A grey picture as one of three equal channels, the rest behind.
+/// A grey image with its grey channel replaced by three equal ones, followed by the other channels.
 Image spread_grey(const Image& image, size_t grey) {
   std::vector<std::string> channels = {"R", "G", "B"};
   for (size_t c = 0; c < image.channels.size(); ++c)
@@ -83,7 +83,7 @@ StoredImage read_stored(const std::string& path) {
   }
 }
 
-/// The size of a file, which is there and holds something.
+/// The size of a file. Throws Error if it does not exist or is empty.
 std::uint64_t size_of(const std::string& path) {
   std::error_code code;
   if (std::filesystem::status(file_on_disk(path), code).type() == std::filesystem::file_type::not_found)
@@ -98,7 +98,7 @@ std::uint64_t size_of(const std::string& path) {
   return size;
 }
 
-/// `stored_as`: how the file's numbers were encoded.
+/// `stored_as` is set to the encoding of the file's numbers.
 Image read_whole_image(const std::string& path, std::string& stored_as) {
   const std::uint64_t size = size_of(path);
   stored_as = "linear";
@@ -111,7 +111,7 @@ Image read_whole_image(const std::string& path, std::string& stored_as) {
     return std::find(image.channels.begin(), image.channels.end(), name) != image.channels.end();
   };
   if (!has("R") && !has("X")) {
-    // A single channel of any name, or a luminance with others beside it.
+    // A single channel of any name, or a luminance with other channels.
     const auto y = std::find(image.channels.begin(), image.channels.end(), "Y");
     if (y != image.channels.end() || image.channels.size() <= 2)
       image = spread_grey(image, y == image.channels.end() ? 0 : size_t(y - image.channels.begin()));

@@ -11,7 +11,7 @@ namespace etendue {
 
 namespace {
 
-/// The beginning of a file. What is asked for beyond it is 0, and `whole` false.
+/// The beginning of a file. Bytes beyond it read as 0; `whole` is false for them.
 class Bytes {
  public:
   explicit Bytes(const std::string& path) {
@@ -25,7 +25,7 @@ class Bytes {
   std::uint32_t big(size_t at) const { return byte(at) << 24 | byte(at + 1) << 16 | byte(at + 2) << 8 | byte(at + 3); }
   std::uint32_t little(size_t at) const { return byte(at + 3) << 24 | byte(at + 2) << 16 | byte(at + 1) << 8 | byte(at); }
   std::string text(size_t at, size_t count) const { return whole(at, count) ? bytes_.substr(at, count) : std::string(); }
-  /// To the next 0, `most` bytes at the most.
+  /// The text up to the next 0; empty if it has more than 255 bytes.
   std::string name(size_t at) const {
     const size_t end = at < bytes_.size() ? bytes_.find('\0', at) : std::string::npos;
     return end == std::string::npos || end - at > 255 ? std::string() : bytes_.substr(at, end - at);
@@ -36,7 +36,7 @@ class Bytes {
   std::string bytes_;
 };
 
-/// A name without what would disturb a terminal.
+/// A name in which control characters and non-ASCII bytes are replaced by '?'.
 std::string printable(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7F) c = '?';
@@ -50,7 +50,7 @@ std::string chromaticities(const std::array<double, 8>& xy, const std::array<con
   return text;
 }
 
-/// Of the values of ITU-T H.273 that pictures have.
+/// A code of ITU-T H.273, with its name if it is one of `names`.
 std::string named(unsigned code, std::initializer_list<std::pair<unsigned, const char*>> names) {
   for (const auto& [known, name] : names)
     if (known == code) return fmt::format("{} ({})", code, name);
@@ -90,8 +90,8 @@ std::vector<std::string> png(const Bytes& file) {
   return lines;
 }
 
-/// OpenEXR File Layout, 2013: after magic number and version come attributes, each a name, a type, a size and data, to an empty
-/// name.
+/// OpenEXR File Layout, 2013: the magic number and the version are followed by attributes, each a name, a type, a size and
+/// data, until an empty name.
 std::vector<std::string> exr(const Bytes& file) {
   std::vector<std::string> lines;
   for (size_t at = 8;;) {

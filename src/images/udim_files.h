@@ -1,5 +1,5 @@
 #pragma once
-// Images in several files, one for each unit square of the surface coordinates (UDIM).
+// Images in several files, one for each unit square of the uv coordinates (UDIM).
 
 #include <string>
 #include <vector>
@@ -8,10 +8,10 @@ namespace etendue {
 
 inline constexpr const char* udim_mark = "<UDIM>";
 struct UdimFile {
-  int u, v;  ///< the unit square the image covers begins at (u, v)
+  int u, v;  ///< lower corner of the unit square that the image covers
   std::string path;
 };
-/// The files that a path with "<UDIM>" in its name stands for: there are numbers 1001 + u + 10 v in its place, u from 0 to 9.
+/// The files that match a path with "<UDIM>" in its name: in its place they have the numbers 1001 + u + 10 v, u from 0 to 9.
 std::vector<UdimFile> udim_files(const std::string& pattern);
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// Arithmetic on values, and packing lists of numbers.
+// Arithmetic on values, and packing of lists of numbers.
 
 #include <fmt/format.h>
 
@@ -46,7 +46,7 @@ Value sum(const Value& a, const Value& b, double sign, Location at) {
   return Value(std::move(result), a.location);
 }
 
-/// Each number times a factor, which may bring the dimension.
+/// Multiplies each number by a factor; the result takes the factor's dimension if it has one.
 Value scaled(const Numbers& numbers, const Number& factor, Location at) {
   Numbers result = numbers;
   for (double& x : result.values) x = finite(x * factor.value, at);
@@ -146,10 +146,10 @@ Value with_unit(Value value, const Unit& unit, Location at) {
 
 namespace {
 
-/// Gives zeros the dimension of the others: nothing is as long in metres as in millimetres.
+/// Collects the common dimension of a list. Zeros take the dimension of the other entries, since 0 is the same in all units.
 struct Merged {
   Dimension dimension = Dimension::none;
-  bool plain = false;  // a plain number other than zero was there
+  bool plain = false;  // whether there is a plain number other than zero
 
   void add(Dimension d, bool zero, Location at) {
     if (d == Dimension::none) {

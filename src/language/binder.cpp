@@ -1,4 +1,4 @@
-// Component blocks into components.
+// Binder: makes components from component blocks.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ std::optional<Value> Evaluator::component(Node& node, const std::string& given_n
       return Value();
     });
   }
-  if (!made) {  // what is in it may be wrong as well
+  if (!made) {  // reports errors in its members, too
     for (Node& child : node.children) evaluate(child, {nullptr, false, true});
     return std::nullopt;
   }
@@ -51,7 +51,7 @@ bool Evaluator::set_members(Component& made, Node& node) {
     });
     if (!stored) good = false;
   }
-  if (node.damaged) return false;  // what it needs may be in the part that could not be read
+  if (node.damaged) return false;  // a required member may be in the part that could not be read
   for (const Member& member : info.members) {
     const auto wrote = [&](const Label& label) { return label.text == member.name; };
     if (!member.required || std::any_of(node.labels.begin(), node.labels.end(), wrote)) continue;

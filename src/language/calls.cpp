@@ -10,7 +10,7 @@
 namespace etendue::language {
 
 void Arguments::wrong_count() const {
-  // Where there are too many, the first superfluous one is not known for calls of several forms: the call is pointed at.
+  // The error points at the call: for functions with several forms it is not clear which argument is superfluous.
   throw Error(fmt::format("expects {}; {} given", usage_,
                           values_.size() == 1 ? "1 argument was" : fmt::format("{} arguments were", values_.size())),
               at_);

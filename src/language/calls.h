@@ -10,7 +10,7 @@
 
 namespace etendue::language {
 
-/// The arguments of one call. What does not fit throws Error at the argument, with what the call expects.
+/// The arguments of one call. Arguments that do not match throw Error at their location, with the usage of the function.
 class Arguments {
  public:
   Arguments(const std::vector<Value>& values, const char* usage, Location at, bool files_allowed)
@@ -22,26 +22,26 @@ class Arguments {
   const T* as(size_t i) const {
     return i < values_.size() ? values_[i].as<T>() : nullptr;
   }
-  /// For a number of arguments that the call does not take.
+  /// Throws Error for a wrong number of arguments.
   [[noreturn]] void wrong_count() const;
   [[noreturn]] void wrong(size_t i, const std::string& expected) const;
   /// Throws Error with any message at an argument.
   [[noreturn]] void fail(size_t i, const std::string& message) const;
 
-  /// For a number that the call does not take, in the unit of the message.
+  /// Throws Error for a number outside of the allowed range, in the unit of the message.
   [[noreturn]] void out_of_range(size_t i, double x, double low, double high) const;
-  /// For one that is not a float.
+  /// Throws Error for a number that is too large for a float.
   [[noreturn]] void too_large(size_t i, double x) const;
 
-  /// A number without or with this dimension, in base units. Any use as a float must fit one.
+  /// A plain number, or a number of this dimension, in base units. Throws Error if it is too large for a float.
   double number(size_t i, Dimension = Dimension::none) const;
   /// An angle [rad]; a plain number is in degrees.
   double angle(size_t i) const;
   const std::string& string(size_t i) const;
-  /// Plain numbers, packed.
+  /// A list of plain numbers, packed.
   const Numbers& numbers(size_t i) const;
   DoubleVector3 vector(size_t i, Dimension = Dimension::none) const;
-  /// Three numbers from argument `i` on, or a vector as argument `i`.
+  /// A vector as the only argument, or three numbers as three arguments.
   DoubleVector3 vector_or_three(Dimension = Dimension::none) const;
   bool files_allowed() const { return files_allowed_; }
 

@@ -43,7 +43,7 @@ Value blackbody(const Arguments& a) {
   return Value(blackbody_spectrum(a.number(0, Dimension::temperature)));
 }
 
-/// A colour that is known by a name; what is wrong with the name is said at the argument.
+/// A colour from a table of names; errors are reported at the argument.
 Value named(const Arguments& a, Color (*make)(const std::string&)) {
   if (a.count() != 1) a.wrong_count();
   const std::string& name = a.string(0);
@@ -77,7 +77,7 @@ Value spectrum(const Arguments& a) {
   const std::string column = a.count() == 2 ? a.string(1) : std::string();
   if (!a.files_allowed()) a.fail(0, "files are not allowed here");
   if (text->empty()) a.fail(0, "the file name is empty");
-  // The path is made absolute: a spectrum does not know in which folder it was written, and may be saved in another.
+  // The path is made absolute: a spectrum does not store the folder of its description, and may be saved in another folder.
   const std::filesystem::path path = FilePath{*text, a[0].folder}.resolved();
   try {
     return Value(file_spectrum({std::filesystem::absolute(path).lexically_normal().string(), {}}, column));

@@ -28,7 +28,7 @@ Value square_root(const Arguments& a) {
   return plain(a, std::sqrt(x));
 }
 
-/// A plain number is refused: some would mean degrees by it, some radians.
+/// An angle with a unit. Plain numbers throw Error: they could be meant as degrees or as radians.
 double angle(const Arguments& a) {
   if (a.count() != 1) a.wrong_count();
   const auto* n = a.as<Number>(0);
@@ -65,7 +65,7 @@ Value whole_below(const Arguments& a) {
   return plain(a, std::floor(a.number(0)));
 }
 
-/// What remains of a division, with the sign of the divisor: mod(-1, 4) is 3.
+/// The remainder of a division, with the sign of the divisor: mod(-1, 4) is 3.
 Value remainder(const Arguments& a) {
   if (a.count() != 2) a.wrong_count();
   const double x = a.number(0), y = a.number(1);
@@ -73,8 +73,8 @@ Value remainder(const Arguments& a) {
   return plain(a, x - y * std::floor(x / y));
 }
 
-/// A number from 0 to 1 (1 not included) that the arguments choose: the same for the same, unrelated for others. Their bits are
-/// mixed one after the other by the finalizer of MurmurHash3 with the constants of D. Stafford's "Mix13" (2011).
+/// A pseudorandom number in [0, 1), as a hash of the arguments: equal for equal arguments, uncorrelated otherwise. Their bits
+/// are mixed one after the other by the finalizer of MurmurHash3 with the constants of D. Stafford's "Mix13" (2011).
 Value random(const Arguments& a) {
   if (a.count() == 0) a.wrong_count();
   std::uint64_t state = 0x9E3779B97F4A7C15u;
@@ -87,7 +87,7 @@ Value random(const Arguments& a) {
   return Value(Number{double(state >> 11) * 0x1p-53});
 }
 
-/// One list of the entries of several.
+/// Concatenates several lists.
 Value join(const Arguments& a) {
   Value::List entries;
   for (size_t i = 0; i < a.count(); ++i) {
@@ -111,7 +111,7 @@ constexpr Function functions[] = {
     {"mod", "mod(number, divisor)", remainder},
     {"random", "random(number, …)", random},
     {"join", "join(list, …)", join},
-    // Counted where it is called, without a copy of the list.
+    // Usually evaluated by Evaluator::count, without a copy of the list.
     {"count", "count(list)", [](const Arguments& a) { return Value(Number{double(list_size(a[0], a[0].location))}); }},
 };
 

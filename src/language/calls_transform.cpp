@@ -28,7 +28,7 @@ Value rotate(const Arguments& a) {
     axis = a.vector(1);
     const double size = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
     if (size == 0) a.fail(1, "the axis has no length");
-    axis = 1 / size * axis;  // so that its square neither vanishes nor overflows
+    axis = 1 / size * axis;  // so that its squared length neither vanishes nor overflows
   }
   return checked(a, Transform::rotate(angle, axis));
 }

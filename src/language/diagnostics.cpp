@@ -1,4 +1,4 @@
-// Collecting errors and showing them with the line they are in.
+// Collects errors, and formats them together with their source line.
 
 #include <fmt/format.h>
 
@@ -20,9 +20,9 @@ namespace language {
 
 namespace {
 
-/// A message in which words of enormous length, that it quotes from the text, are cut.
+/// A message in which extremely long words, quoted from the text, are truncated.
 std::string shortened(const std::string& message) {
-  constexpr size_t longest = 1000, shown = 60;  // bytes; paths of files are whole
+  constexpr size_t longest = 1000, shown = 60;  // bytes; normal file paths are not truncated
   std::string text;
   for (size_t begin = 0; begin < message.size();) {
     const size_t end = std::min(message.find_first_of(" \n", begin), message.size() - 1) + 1;
@@ -30,7 +30,7 @@ std::string shortened(const std::string& message) {
       size_t cut = begin + shown;
       while (cut > begin && (static_cast<unsigned char>(message[cut]) & 0xC0) == 0x80) --cut;
       text.append(message, begin, cut - begin).append("…");
-      size_t rest = end - 10;  // its end, with the quote and what stands behind it
+      size_t rest = end - 10;  // the end of the word, with the closing quote and punctuation
       while (rest < end && (static_cast<unsigned char>(message[rest]) & 0xC0) == 0x80) ++rest;
       text.append(message, rest, end - rest);
     } else {
@@ -44,12 +44,12 @@ std::string shortened(const std::string& message) {
 }  // namespace
 
 std::string Diagnostics::words_of_trail(const Location& seen_from) const {
-  constexpr int most = 6;  // of a function that calls itself the innermost ones say enough
+  constexpr int most = 6;  // for a recursive function the innermost calls are enough
   std::string text;
   int count = 0;
   for (const Trail* way = trail; way; way = way->outer()) {
     const std::string words = way->words(seen_from);
-    if (words.empty() || text.find(words) != std::string::npos) continue;  // a function that calls itself
+    if (words.empty() || text.find(words) != std::string::npos) continue;  // a recursive function
     if (++count > most) {
       text += ", …";
       break;
@@ -74,7 +74,7 @@ void Diagnostics::add(const Errors& list) {
 
 void Diagnostics::raise() {
   if (errors_.empty()) return;
-  std::vector<const char*> files;  // in the order in which they were first heard of
+  std::vector<const char*> files;  // in the order of their first errors
   const auto rank = [&](const Error& e) {
     const auto found = std::find(files.begin(), files.end(), e.location.file);
     if (found != files.end()) return found - files.begin();
@@ -91,7 +91,7 @@ void Diagnostics::raise() {
 Error located(const Error& error, Location fallback) { return error.location.known() ? error : Error(error.what(), fallback); }
 
 std::string read_text_file(const std::string& path, Location at) {
-  constexpr std::uint64_t most = std::uint64_t(4) << 30;  // what is larger is data, not a description
+  constexpr std::uint64_t most = std::uint64_t(4) << 30;  // larger files are data, not descriptions
   try {
     return read_regular_file(path, most);
   } catch (const Error& e) {
@@ -115,7 +115,7 @@ Texts& texts() {
 
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
-/// A part of a line around a column, and at which character of it the column is.
+/// A part of a line around a column, and the index of this column in it.
 struct Excerpt {
   std::string text;
   int caret = 0;
@@ -123,7 +123,8 @@ struct Excerpt {
 
 constexpr int characters_before = 70, characters_after = 40;
 
-/// Reads the excerpt from any source of characters; `next` gives a negative number at the end. Only what is shown is kept.
+/// Reads the excerpt from a stream of characters; `next` returns a negative number at the end. Only the displayed part is
+/// stored.
 template <class Next>
 std::optional<Excerpt> excerpt(const Location& at, Next next) {
   int line = 1;
@@ -132,7 +133,7 @@ std::optional<Excerpt> excerpt(const Location& at, Next next) {
     if (c < 0) return std::nullopt;
     if (c == '\n') ++line;
   }
-  // Lines that fit are shown whole; of longer ones the part around the column.
+  // Lines that fit are shown completely; of longer lines the part around the column.
   const int first = at.column > characters_before + characters_after ? at.column - characters_before : 1;
   const int last = first + characters_before + characters_after;
   Excerpt found;
@@ -140,7 +141,7 @@ std::optional<Excerpt> excerpt(const Location& at, Next next) {
   bool more = false;
   for (int c = next(); c >= 0 && c != '\n'; c = next()) {
     const char byte = char(c);
-    if (line == 1 && column == 0 && c == 0xEF) {  // a byte order mark is no character
+    if (line == 1 && column == 0 && c == 0xEF) {  // a byte order mark is not a character
       next();
       next();
       continue;
@@ -151,7 +152,7 @@ std::optional<Excerpt> excerpt(const Location& at, Next next) {
       break;
     }
     if (column < first || byte == '\r') continue;
-    found.text += static_cast<unsigned char>(byte) < 0x20 || byte == 0x7F ? ' ' : byte;  // a tab is as wide as a blank
+    found.text += static_cast<unsigned char>(byte) < 0x20 || byte == 0x7F ? ' ' : byte;  // a tab is shown as one blank
   }
   found.caret = std::max(at.column, 1) - first;
   if (first > 1) {
@@ -168,7 +169,7 @@ std::shared_ptr<const std::string> remembered(const Location& at) {
   return found == texts().by_name.end() ? nullptr : found->second;
 }
 
-/// The way through the objects and lists of a JSON text, with a colon behind it; else "".
+/// The path through the objects and lists of a JSON text, followed by a colon; "" for other texts.
 std::string path_in_json(const Location& at) {
   if (!is_json(at.file)) return {};
   try {
@@ -176,7 +177,7 @@ std::string path_in_json(const Location& at) {
     const std::string path = json_path(text ? *text : read_text_file(at.file, at), at);
     return path.empty() ? path : path + ": ";
   } catch (const Error&) {
-    return {};  // gone meanwhile
+    return {};  // the file has been deleted meanwhile
   }
 }
 
@@ -222,7 +223,7 @@ std::optional<size_t> invalid_utf8(const std::string& text) {
       if ((s[i + k] & 0xC0) != 0x80) return i;
       code = code << 6 | (s[i + k] & 0x3Fu);
     }
-    // Overlong forms, halves of surrogate pairs and numbers past the last character are no UTF-8 either.
+    // Overlong forms, surrogate halves and code points above U+10FFFF are not valid UTF-8 either.
     if ((length == 3 && code < 0x800) || (length == 4 && code < 0x10000) || code > 0x10FFFF ||
         (code >= 0xD800 && code < 0xE000))
       return i;

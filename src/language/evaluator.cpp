@@ -1,4 +1,4 @@
-// Names, lists and the way through expressions.
+// Evaluator: evaluation of expressions, lists and names.
 
 #include "evaluator.h"
 
@@ -79,7 +79,7 @@ std::optional<Value> Evaluator::value_of(Node& node, const Context& context) {
     case NodeType::conditional: return conditional(node, context);
     case NodeType::index: return index(node, context);
     case NodeType::comprehension: return comprehension(node, context);
-    case NodeType::argument:  // calls take them apart
+    case NodeType::argument:  // calls evaluate the child of an argument
     case NodeType::bad: break;
   }
   return std::nullopt;
@@ -127,7 +127,7 @@ std::optional<Value> Evaluator::list(Node& node, const Context& context) {
       items.push_back(std::move(*item));
     else
       good = false;
-    if (!good && repeating_ > 0) break;  // one failure is enough where each may take long, or doubles
+    if (!good && repeating_ > 0) break;  // one error is enough where each entry may take long, or repeats it
   }
   if (!good) return std::nullopt;
   return reporting(node.at, [&] {
@@ -146,8 +146,8 @@ size_t value_count(const Value& value) {
   return count;
 }
 
-// Lists of numbers or rows are packed, and as long as what was written. Lists of lists that are names grow by a factor from
-// name to name: [a, a], [b, b], … (No member takes lists within lists within lists: it can only be a mistake.)
+// Lists of numbers or rows are packed, and only as long as their text. Lists of named lists grow by a factor with each name:
+// [a, a], [b, b], … (No member takes lists nested this deep, so a large one can only be a mistake.)
 void Evaluator::check_size(const Node& node, const Value::List& list) const {
   size_t count = 0, most = 0, largest = 0;
   for (size_t i = 0; i < list.size(); ++i) {
@@ -203,7 +203,7 @@ std::optional<Value> Evaluator::call_function(Node& node, const Context& context
   if (repeating_ > 0) charge(value->as<Color>() ? 150 : 10, node.at);  // a colour may hold a table
   value->location = node.at;
   if (node.text == "rotate") note_turn(node, arguments);
-  if (node.text == "keyframes" && !node.damaged) node.damaged = warn_of_long_turns(node);  // told once
+  if (node.text == "keyframes" && !node.damaged) node.damaged = warn_of_long_turns(node);  // warned once
   return value;
 }
 
@@ -253,8 +253,9 @@ std::vector<Evaluator::Entry*> Evaluator::waiting_names(const Node& node, Space&
   return found;
 }
 
-// What a definition needs is settled before it, so that a chain of a hundred thousand definitions needs no deeper recursion
-// than one. Where they go in a circle, recursion finds it and tells of it.
+// Evaluates the definitions that a definition depends on before it, with an explicit stack, so that a chain of a hundred
+// thousand definitions does not need deep recursion. Cyclic definitions are left to the recursive evaluation, which reports
+// them.
 void Evaluator::settle_with_all_it_needs(Entry& first) {
   if (circle_) return settle(first);
   struct Step {
@@ -313,7 +314,7 @@ void Evaluator::settle(Entry& entry) {
     --depth_;
   } else {
     value = evaluate(node, {});
-    // What a function or a condition makes is known by the name that it is given here.
+    // A component made by a function or a conditional gets the name of this definition.
     const auto* part = value ? value->as<Ref<Component>>() : nullptr;
     if (part && *part && (*part)->origin && (*part)->origin->name.empty() && node.type != NodeType::index)
       (*part)->origin->name = given_name(entry);

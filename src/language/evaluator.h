@@ -1,5 +1,5 @@
 #pragma once
-// From syntax to values: names, arithmetic, calls, components.
+// Evaluator: from syntax to values. Evaluates names, arithmetic, calls and components.
 
 #include <deque>
 #include <map>
@@ -15,136 +15,140 @@
 
 namespace etendue::language {
 
-/// Arithmetic on values; each throws Error at the place of the operator when it has no meaning.
+/// Arithmetic on values; throws Error at the operator if the operands do not match.
 Value add(const Value&, const Value&, Location);
 Value subtract(const Value&, const Value&, Location);
 Value multiply(const Value&, const Value&, Location);
 Value divide(const Value&, const Value&, Location);
 Value power(const Value& base, const Value& exponent, Location);
 Value negate(const Value&, Location);
-/// A plain number or packed plain numbers in this unit.
+/// Applies a unit to a plain number or to packed plain numbers.
 Value with_unit(Value, const Unit&, Location);
-/// Items as packed numbers when they are numbers, or rows of numbers, of one dimension and width; else as a list.
+/// Packs the items if they are numbers, or rows of numbers, of one dimension and width; otherwise they stay a list.
 Value packed(Value::List, Location);
 
 /// Calls a function of the language; throws Error at the argument that does not fit.
 Value call(const std::string& function, const std::vector<Value>& arguments, Location, bool allow_files);
 bool is_function(const std::string& name);
 
-/// Comparisons: == != < <= > >=. Numbers are compared with those of their dimension.
+/// Comparisons: == != < <= > >=. Numbers can be compared only with numbers of the same dimension.
 Value compare(const std::string& operation, const Value&, const Value&, Location);
-/// The whole numbers from the first, to the second, which is not one of them.
+/// The integers from the first (included) to the second (excluded).
 Value whole_numbers(const Value& first, const Value& end, Location);
-/// How many entries a list has; throws Error for what is none.
+/// The number of entries of a list; throws Error if the value is not a list.
 size_t list_size(const Value& list, Location);
-/// An entry of a list, of as many as list_size says.
+/// An entry of a list, with an index below list_size.
 Value list_entry(const Value& list, size_t place);
 
-/// How much is copied with a value: the numbers of a packed list, the entries of another.
+/// The cost of a copy of the value: the numbers of a packed list, or a multiple of the entries of another list.
 size_t copied_size(const Value&);
 
-/// How many single values a list holds with all lists within it.
+/// The number of single values in a list, with nested lists.
 size_t value_count(const Value&);
-/// Whether a value refers to components; numbers, texts, colours and transforms are all there is of others.
+/// Whether a value refers to components; otherwise it consists of numbers, texts, colours and transforms.
 bool keeps_parts(const Value&);
 
-/// The frame of a film that a description is read for.
+/// The frame of an animation for which a description is evaluated.
 struct Moment {
   double frame = 0;
   double seconds = 0;
 };
 
-/// Evaluates expressions in one namespace of definitions. Each definition is evaluated once, when first used, so that
-/// order does not matter and components are shared. What is wrong is reported; an absent result means that it was.
+/// Evaluates expressions in the namespaces of definitions. Each definition is evaluated once, when first used, so that the
+/// order does not matter and components are shared. Errors are reported to the Diagnostics; an empty result means that an error
+/// was reported.
 class Evaluator {
  public:
-  /// Where names are: those of all files together, but for files that were included as a name of their own.
+  /// A namespace: one for all files together, and one for each file that was included under a name.
   struct Space;
 
-  /// Without a moment the names `frame` and `time` have no meaning.
+  /// Without a moment the names `frame` and `time` are undefined.
   Evaluator(Diagnostics& diagnostics, bool allow_files, std::optional<Moment> moment = {});
   ~Evaluator();
 
-  /// Paths in the text of this name start from a folder.
+  /// Sets the folder of relative paths in the text with this name.
   void set_folder(const char* source, std::string folder) { folders_[source] = std::move(folder); }
-  /// Some definitions or classes could not be read: names that are missing are no news.
+  /// Some definitions or classes could not be read: undefined names are then not reported.
   void set_incomplete() { incomplete_ = true; }
-  /// Whether `frame` or `time` was asked for.
+  /// Whether `frame` or `time` was used.
   bool moment_used() const { return moment_used_; }
 
-  /// Where the names of all files are that were not given one of their own.
+  /// The outermost namespace, with the names of all files that were not included under a name.
   Space& root() { return *root_; }
-  /// The space around one; null of the outermost.
+  /// The enclosing namespace; null for the outermost one.
   static Space* around(const Space&);
-  /// For the names of a file that stand behind a name and a point; null (and reported) when that name is taken.
+  /// Makes the namespace of a file included under a name, whose names are used as "name.x"; null (and reported) if the name is
+  /// taken.
   Space* make_space(Space& outer, const Label& name);
   void define(Definition, Space&);
-  /// Gives a name to a value that there is already; where it is, at which place of what file, is the label's. Null (and
-  /// reported) when the name is taken; else whether anything asked for it, once all is evaluated.
+  /// Defines a name for an existing value; the label has the location. Returns null (and reports) if the name is taken;
+  /// otherwise a pointer to a flag that is true after evaluation if the name was used.
   const bool* define_part(const Label&, Value, Space&);
-  /// Whether a name is known where all names are.
+  /// Whether a name is defined in the outermost namespace.
   bool knows(const std::string& name) { return find(name, *root_) != nullptr; }
-  /// "small." before the names of a file that was included as small; "" of the outermost.
+  /// The prefix of the names in a space as seen from the outermost one: "small." for a file included as small; "" for the
+  /// outermost.
   static std::string prefix(const Space&);
-  /// Gives a param of `space` the value of a definition that stands in `written_in`; `file` is what messages call the file.
+  /// Replaces a param of `space` by the value of a definition written in the namespace `written_in`; messages name the file
+  /// `file`.
   void replace(Definition, Space& space, Space& written_in, const std::string& file);
-  /// Replaces the value of a param.
+  /// Replaces the value of a param by an expression from the command line.
   void redefine(const std::string& name, const std::string& text);
 
-  /// Where an expression stands.
+  /// The context of an expression, which determines how bare words are read.
   struct Context {
-    const Member* member = nullptr;  ///< that it is for: makes bare words choices
-    bool words = false;              ///< bare words that name nothing are strings
-    bool lenient = false;            ///< bare words that name nothing are ignored: their member is unknown
+    const Member* member = nullptr;  ///< the member that gets the value: its choices may be bare words
+    bool words = false;              ///< undefined bare words are strings
+    bool lenient = false;            ///< undefined bare words are ignored, since their member is unknown
   };
   std::optional<Value> evaluate(Node&, const Context&);
   std::optional<Value> evaluate_in(Space&, Node&);
-  /// Evaluates what was not used, for the errors in it, and warns of it if it was defined in the text of this name.
+  /// Evaluates unused definitions, to find their errors, and warns of those defined in the text with this name.
   void check_unused(const char* source);
 
  private:
   enum class State : std::uint8_t { waiting, active, done, failed };
   struct Entry {
     Definition definition;
-    Space* home = nullptr;   // that it is a name of
-    Space* space = nullptr;  // that its value is written in
+    Space* home = nullptr;   // the namespace that the name belongs to
+    Space* space = nullptr;  // the namespace that the value is written in
     State state = State::waiting;
     bool used = false;
-    bool replaced = false;   // by -D
-    bool generated = false;  // not written out: it may be much longer than the text
-    Label given = {};        // where an include gave it, to …
-    std::string given_to;    // … this file
-    bool pending = false;    // on the way from the name that is settled to what it needs first
-    int height = 0;          // of the tree of all that it is made of, where that remains: of components
+    bool replaced = false;   // by -D on the command line
+    bool generated = false;  // computed, not written out: the value may be much longer than its text
+    Label given = {};        // the location where an include replaced it …
+    std::string given_to;    // … and the included file
+    bool pending = false;    // an entry whose dependencies are being evaluated
+    int height = 0;          // of the component tree in its value; 0 if the value has no components
     Value value;
   };
-  // Bounds recursion here, and later wherever components are walked or destroyed.
+  // Limits the recursion here, and later wherever component trees are traversed or destroyed.
   static constexpr int height_limit = 1000;
-  // Bounds what lists within lists hold, as each use of a name copies its list.
+  // Limits the size of nested lists, since each use of a name copies its list.
   static constexpr size_t nested_limit = 1'000'000;
-  // Bounds the turns of one comprehension, and how many components all of them and all functions make.
+  // Limits the iterations of one comprehension, and the components made by all comprehensions and functions.
   static constexpr size_t repetition_limit = 1'000'000;
   static constexpr size_t part_limit = 500'000;
-  // Bounds what is evaluated in comprehensions and functions: nodes, and the numbers of lists that are copied.
+  // Limits the work in comprehensions and functions: evaluated nodes, and copied numbers of lists.
   static constexpr size_t step_limit = 20'000'000;
-  // Bounds how deep functions call each other, or themselves.
+  // Limits the depth of function calls, including recursion.
   static constexpr int call_limit = 100;
 
-  /// A name that a comprehension or a function binds.
+  /// A variable of a comprehension or a parameter of a function.
   struct Local {
     std::string_view name;
     Value value;
-    int height = 0;    // as an Entry's
-    size_t place = 0;  // in the list that a loop goes through
+    int height = 0;    // as in Entry
+    size_t place = 0;  // index in the list of a loop
     const Local* outer = nullptr;
   };
-  /// The same, where it is only asked which names there are.
+  /// The name of such a variable, for checks without evaluation.
   struct Bound {
     std::string_view name;
     const Bound* outer = nullptr;
     mutable bool used = false;
   };
-  /// While it lives, evaluation goes on where a name is defined or a function is written, not where it is used.
+  /// Switches evaluation to the namespace where a name is defined or a function is written, for its lifetime.
   class Elsewhere;
   class LoopTrail;
   class CallTrail;
@@ -158,7 +162,7 @@ class Evaluator {
   static std::vector<Entry*> waiting_names(const Node&, Space&);
   static std::string given_name(const Entry&);
   std::optional<Value> list(Node&, const Context&);
-  /// A list that is a name, without a copy; null for anything else, and for a name that has no value (not reported).
+  /// The stored value of a name, without a copy; null for other expressions, and for a name without a value (not reported).
   const Value* stored(const Node&);
   const Local* local(std::string_view name) const;
   std::optional<Value> bound(const Local&, Location);
@@ -187,7 +191,7 @@ class Evaluator {
   void unknown_function(const Node& call);
   void not_a_function(const Entry&, const Node& call);
 
-  // repeating/checker.cpp: names, classes, members and functions that there are not, in what may never be evaluated
+  // repeating/checker.cpp: reports undefined names, classes, members and functions in expressions that may never be evaluated
   bool check_function(Entry&);
   bool check(Node&, const Bound*, const Context&);
   bool check_all(std::vector<Node>&, const Bound*, const Context&);
@@ -210,7 +214,7 @@ class Evaluator {
   std::string name_seen_from(const Entry&, const Space&) const;
   void undefined(const std::string&, Location);
   bool lacks_quotes(const Node& call, const Node& argument, const Bound*);
-  /// Runs what may throw Error; an error is reported at `at` unless it has a place.
+  /// Calls a function that may throw Error; errors without a location are reported at `at`.
   template <class F>
   std::optional<Value> reporting(Location at, F&& make) {
     try {
@@ -229,33 +233,33 @@ class Evaluator {
   bool moment_used_ = false;
   std::deque<Entry> entries_;
   std::unique_ptr<Space> root_;
-  std::vector<const Space*> spaces_;  // all but the root
-  Space* space_;                      // whose names are those of what is evaluated
-  const Local* locals_ = nullptr;     // innermost first
-  const Bound* bound_ = nullptr;      // the same where names are only checked
-  int repeating_ = 0;                 // 0: what is evaluated is so once, and may be moved from
-  int calls_ = 0;                     // that are active
-  size_t steps_ = 0, parts_ = 0;      // made in comprehensions and functions
+  std::vector<const Space*> spaces_;  // all except the root
+  Space* space_;                      // the namespace of the expression being evaluated
+  const Local* locals_ = nullptr;     // the innermost variable
+  const Bound* bound_ = nullptr;      // the same for checks without evaluation
+  int repeating_ = 0;                 // 0: nodes are evaluated once, and their values may be moved from
+  int calls_ = 0;                     // number of active calls
+  size_t steps_ = 0, parts_ = 0;      // used by comprehensions and functions
   std::vector<Label> unused_parameters_;
   std::vector<Entry*> active_;  // being evaluated, outermost first
-  bool circle_ = false;         // what is settled now is defined by itself
+  bool circle_ = false;         // the current definition is cyclic
   std::unordered_map<const char*, std::string> folders_;
   std::deque<Source> replacements_;
-  int depth_ = 0, reach_ = 0;  // nesting now, and the deepest within the definition being evaluated
+  int depth_ = 0, reach_ = 0;  // the current nesting, and the deepest within the current definition
 };
 
 struct Evaluator::Space {
   Space* outer = nullptr;
-  Label label;  ///< the name that stands before its names outside; "" of the outermost
+  Label label;  ///< the name under which the file was included; "" for the outermost
   std::unordered_map<std::string, Entry*> names = {};
   std::map<std::string, std::unique_ptr<Space>> inner = {};
   bool used = false;
 
-  /// "small." before the names of a file that was included as small; "" of the outermost.
+  /// The prefix of its names as seen from the outermost namespace: "small." for a file included as small; "" for the outermost.
   std::string prefix() const { return outer ? outer->prefix() + label.text + "." : std::string(); }
 };
 
-/// In a file that was included under a name: which one, of several of the same file.
+/// The part of a trail that names the include, for errors in a file that was included under a name.
 class SpaceTrail : public Trail {
  public:
   explicit SpaceTrail(const Label& label) : Trail(nullptr), label_(label) {}

@@ -1,4 +1,4 @@
-// Expressions.
+// Parser: expressions.
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@ namespace etendue::language {
 Node Parser::expression() {
   const size_t begin = token_.begin;
   Node node = begins("if") ? conditional() : disjunction();
-  node.begin = begin;  // brackets around it belong to it
+  node.begin = begin;  // includes brackets around the expression
   node.end = last_end_;
   return node;
 }
@@ -86,7 +86,7 @@ Node Parser::range() {
   return node;
 }
 
-// Chains such as a + b - c become one node, not a tree that is as deep as the chain is long.
+// A chain such as a + b - c becomes one node, not a tree as deep as the chain is long.
 Node Parser::chain(NodeType type, char first, char second, Node (Parser::*operand)()) {
   Node left = (this->*operand)();
   if (!continues() || !(token_.is(first) || token_.is(second))) return left;
@@ -116,7 +116,8 @@ Node Parser::unary() {
   return node;
 }
 
-// Binds closer than a sign before it, and from the right: -2^2 is -(2^2), 2^3^2 is 2^(3^2), 2^-1 is a half.
+// Powers bind more tightly than a sign before them, and are right-associative: -2^2 is -(2^2), 2^3^2 is 2^(3^2), 2^-1 is a
+// half.
 Node Parser::power() {
   Node base = postfix();
   if (!continues() || !token_.is('^')) return base;
@@ -131,7 +132,7 @@ Node Parser::power() {
   return node;
 }
 
-// A value and its unit.
+// A value with an optional index and unit.
 Node Parser::postfix() {
   const bool literal = token_.type == TokenType::number || token_.is('[') || token_.is('(');
   const bool list = token_.is('[');
@@ -154,7 +155,7 @@ Node Parser::postfix() {
   return node;
 }
 
-// A place in a list: points[3]. A blank before the bracket makes it an item of its own, which lacks a comma before it.
+// An index into a list: points[3]. After a blank the bracket begins a separate item, and a comma is missing before it.
 Node Parser::indexed(Node list) {
   if (list.type == NodeType::number || list.type == NodeType::string || list.type == NodeType::component) return list;
   constexpr int most = 16;
@@ -180,7 +181,7 @@ Node Parser::indexed(Node list) {
   return list;
 }
 
-// Of a call: a value, or name = value.
+// An argument of a call: a value, or name = value.
 Node Parser::argument() {
   if (token_.type != TokenType::name || !lexer_.followed_by_assignment()) return expression();
   Node node;
@@ -209,7 +210,7 @@ Node Parser::primary() {
     default: break;
   }
   if (token_.is('[')) return list();
-  // A bracket that closes too much follows from one that was lost before.
+  // A superfluous closing bracket after an error follows from an opening bracket that was skipped.
   lost_ = lost_ || (wrong_ && (token_.is('}') || token_.is(']') || token_.is(')')));
   if (!token_.is('(')) unexpected("a value");
   const Level level(*this, token_.at);
@@ -256,7 +257,7 @@ Node Parser::list() {
   Node node;
   node.at = token_.at;
   node.begin = token_.begin;
-  // The lexer stands right behind the '['.
+  // The lexer is positioned right after the '['.
   if (auto numbers = std::make_unique<Numbers>(); lexer_.read_numbers(*numbers)) {
     node.type = NodeType::numbers;
     node.numbers = std::move(numbers);
@@ -272,8 +273,8 @@ Node Parser::list() {
   return node;
 }
 
-// Items between brackets, the opening one being taken already. In a list a new line separates as a comma does, so that
-// [1 (new line) -2] has two items; between the arguments of a call new lines mean nothing.
+// Items between brackets; the opening bracket is already taken. In a list a new line separates items as a comma does, so that
+// [1 (new line) -2] has two items; between the arguments of a call new lines are ignored.
 void Parser::items(Node& node, char close, const Location& opened) {
   const bool is_list = close == ']';
   const char opening = is_list ? '[' : '(';
@@ -293,10 +294,10 @@ void Parser::items(Node& node, char close, const Location& opened) {
       not_closed(opening, opened);
     } else if (!token_.is(close) && !(is_list && token_.first_in_line)) {
       bool item = token_.type == TokenType::name ? !lexer_.followed_by(":") : token_.type == TokenType::number;
-      if (token_.first_in_line) item = false;  // it is rather the ')' that is missing
+      if (token_.first_in_line) item = false;  // probably the ')' is missing
       lost_ = lost_ || !whole;
       if (!item) unexpected(fmt::format("',' or '{}'", close));
-      // Goes on as if the comma were there; one is enough to be told of.
+      // Continues as if the comma were there; only the first missing comma is reported.
       if (whole) report(fmt::format("expected ',' or '{}', not {}", close, token_.words()), token_.at);
       whole = false;
     }

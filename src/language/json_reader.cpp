@@ -1,4 +1,4 @@
-// JSON into the same syntax as the language's own text gives, so that everything behind it is one.
+// Reads JSON into the same syntax as the language's own parser, so that evaluation is the same for both.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t depth_limit = 256;
 
-/// Builds nodes from what the parser tells.
+/// Builds nodes from the events of the JSON parser.
 class Builder : public nlohmann::json_sax<nlohmann::json> {
  public:
   Builder(const Source& source, Diagnostics& diagnostics) : source_(source), diagnostics_(diagnostics), places_(source) {}
@@ -52,7 +52,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     places_.next();
     Frame frame = std::move(frames_.back());
     frames_.pop_back();
-    // The root says what it wants of its own; its tables of names are no components.
+    // The root object may have no class, and its tables of names are not components.
     const bool table = !frames_.empty() &&
                        (frames_[0].key.text == "$include" || (frames_.size() == 1 && frames_[0].key.text.starts_with("$")));
     if (frame.node.text.empty() && !frames_.empty() && !table) {
@@ -90,7 +90,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     Node node;
     Label key;
     std::map<std::string, Location> seen;
-    std::unique_ptr<Numbers> packed;  // a list of nothing but numbers, or of rows of as many
+    std::unique_ptr<Numbers> packed;  // a list of numbers only, or of rows of the same width
   };
 
   Node token(NodeType type) {
@@ -137,7 +137,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     component.text = name.type == NodeType::json_text ? name.text : std::string();
     if (component.text.empty()) diagnostics_.add(Error("\"class\" must be the name of a class, in quotes", name.at));
   }
-  /// Numbers and rows of numbers are packed as long as there is nothing else.
+  /// Numbers and rows of numbers are packed until an item of another kind is added.
   void put_item(Frame& frame, Node node) {
     const bool plain = node.type == NodeType::number;
     const size_t width = plain                                                        ? 1
@@ -189,7 +189,7 @@ void read_paths(const Node& value, const std::string& key, std::vector<Label>& o
     add(value);
 }
 
-/// "file", or { "file": …, "with": { param: value }, "as": name }.
+/// Reads "file", or { "file": …, "with": { param: value }, "as": name }.
 void read_include(Node& value, Document& document, Diagnostics& diagnostics) {
   Inclusion made;
   const auto wrong = [&](const std::string& message, Location at) { diagnostics.add(Error(message, at)); };
@@ -305,12 +305,12 @@ Document parse_json(const Source& source, Diagnostics& diagnostics) {
 
 namespace {
 
-/// The column of each byte of what a JSON string stands for, and of its end.
+/// The columns, in the JSON text, of each byte of an unescaped JSON string and of its end.
 std::vector<int> columns_of(const std::string& written, int column) {
   const auto hexadecimal = [&](size_t at) { return std::stoul(written.substr(at, 4), nullptr, 16); };
   std::vector<int> columns;
   for (size_t i = 0; i < written.size();) {
-    size_t length = 1, bytes = 1;  // of the text that is read, and of what it stands for
+    size_t length = 1, bytes = 1;  // bytes of the escaped and of the unescaped text
     if (written[i] == '\\' && i + 1 < written.size()) {
       length = 2;
       if (written[i + 1] == 'u' && i + 6 <= written.size()) {

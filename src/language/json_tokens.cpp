@@ -13,7 +13,7 @@ bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0)
 }  // namespace
 
 JsonPlaces::JsonPlaces(const Source& source) : name_(source.name), text_(source.text) {
-  if (text_.starts_with("\xEF\xBB\xBF")) position_ = 3;  // a byte order mark is no character
+  if (text_.starts_with("\xEF\xBB\xBF")) position_ = 3;  // a byte order mark is not a character
 }
 
 void JsonPlaces::step() {
@@ -74,7 +74,7 @@ bool is_json(std::string_view name) { return name.ends_with(".json") || name.end
 
 namespace {
 
-/// Stops at the first token that does not begin before a place.
+/// Stops at the first token that does not end before a location.
 class PathFinder : public nlohmann::json_sax<nlohmann::json> {
  public:
   PathFinder(const Source& source, const Location& wanted) : places_(source), wanted_(wanted) {}
@@ -100,7 +100,7 @@ class PathFinder : public nlohmann::json_sax<nlohmann::json> {
   std::string path() const { return path_.text(); }
 
  private:
-  /// Whether to go on: whether the token ends before the place.
+  /// Whether the token ends before the location.
   bool before(const Location& at) {
     const int end = at.column + int(places_.written().size());
     return at.line < wanted_.line || (at.line == wanted_.line && end <= wanted_.column);

@@ -1,5 +1,5 @@
 #pragma once
-// Where the tokens of a JSON text are.
+// The locations of the tokens in a JSON text.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace etendue::language {
 
-/// Walks over a text from token to token, as a parser tells of them in order; commas and colons go by unasked.
+/// Advances through a text token by token, in step with the events of a JSON parser; commas and colons are skipped.
 class JsonPlaces {
  public:
   explicit JsonPlaces(const Source& source);
 
-  /// Goes on to the next token and behind it; gives its place.
+  /// Advances past the next token; returns its location.
   Location next();
-  /// The last token, as it is written.
+  /// The text of the last token.
   std::string_view written() const { return std::string_view(text_).substr(begin_, position_ - begin_); }
-  /// The place of a byte.
+  /// The location of a byte.
   static Location place(const Source&, size_t byte);
 
  private:
@@ -29,13 +29,13 @@ class JsonPlaces {
   int line_ = 1, column_ = 1;
 };
 
-/// Names the way from the root of a JSON text to where a parser is.
+/// The path from the root of a JSON text to the parser's current position.
 class JsonPath {
  public:
   void key(const std::string& name) { parts_.back().name = name; }
   void open(bool list) { parts_.push_back({list, 0, {}}); }
   void close() { parts_.pop_back(); }
-  /// Behind a value: in a list the next one is the next entry.
+  /// Called after a value: in a list the index advances.
   void passed() {
     if (!parts_.empty()) ++parts_.back().entry;
   }

@@ -1,4 +1,4 @@
-// What strings and lists of numbers of JSON stand for, as the member has it that they are of.
+// The values of JSON strings and lists of numbers, which depend on the type of their member.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace etendue::language {
 
 namespace {
 
-/// Whether a colour may stand for the member: it is one, or a component that a colour makes.
+/// Whether a member accepts a colour: it is a colour, or a component that can be made from a colour.
 bool takes_color(const Member& member) {
   if (member.kind == Kind::color) return true;
   const ClassInfo* wanted = member.kind == Kind::component ? Registry::instance().find(member.component_class) : nullptr;
@@ -26,7 +26,7 @@ bool takes_color(const Member& member) {
 
 }  // namespace
 
-// A text where the member is one, else an expression.
+// Whether a JSON string is a text, as for members that are texts; otherwise it is an expression.
 bool Evaluator::is_json_text(const Node& node, const Context& context) {
   const Member* member = context.member;
   if (!member) return false;
@@ -47,7 +47,7 @@ std::optional<Value> Evaluator::json_text(Node& node, const Context& context) {
   return expression ? evaluate(*expression, context) : std::nullopt;
 }
 
-// Three numbers are linear sRGB where a colour is expected, and twelve or sixteen a matrix where a transform is.
+// Three numbers are linear sRGB if a colour is expected, and twelve or sixteen are a matrix if a transform is.
 std::optional<Value> Evaluator::json_numbers(Node& node, const Member& member) {
   const Numbers& numbers = *node.numbers;
   const auto color = [&](size_t i) {

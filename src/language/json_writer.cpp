@@ -1,4 +1,4 @@
-// Components as JSON.
+// JsonWriter: components as JSON.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ constexpr int step = 2;
 
 std::string quoted_json(const std::string& text) { return nlohmann::json(text).dump(); }
 
-/// Whether a text is a number as JSON writes them.
+/// Whether a text is a number in JSON syntax.
 bool is_number(const std::string& text) { return nlohmann::json::accept(text) && nlohmann::json::parse(text).is_number(); }
 
 class JsonWriter : public Writer {
@@ -42,7 +42,7 @@ class JsonWriter : public Writer {
   }
 
  private:
-  /// Items between brackets: in one line when that is short, else a line each.
+  /// Joins items between brackets: on one line if that is short, otherwise one item per line.
   static std::string bracketed(const std::vector<std::string>& items, char open, int indent, bool lines = false) {
     const char close = open == '[' ? ']' : '}';
     if (items.empty()) return {open, close};
@@ -69,7 +69,7 @@ class JsonWriter : public Writer {
     return bracketed(items, '{', indent, lines);
   }
 
-  /// Long lists of numbers in filled lines.
+  /// Long lists of numbers are written in filled lines.
   std::string numbers(const Numbers& n, const Member& member, int indent) const {
     double factor = 1;
     unit_suffix(n.dimension, &member, factor);

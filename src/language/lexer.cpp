@@ -22,7 +22,7 @@ constexpr LongSymbol long_symbols[] = {{"==", symbols::equal},
                                        {">=", symbols::at_least},
                                        {"..", symbols::range}};
 
-/// The number at the beginning of a text, and where it ends. "0..3" begins with 0: the points belong to the range.
+/// Parses the number at the beginning of a text. In "0..3" the number is 0: the points belong to the range.
 std::from_chars_result read_double(const char* begin, const char* end, double& value) {
   std::from_chars_result result = std::from_chars(begin, end, value);
   if (result.ptr < end && *result.ptr == '.' && result.ptr > begin && result.ptr[-1] == '.')
@@ -73,7 +73,7 @@ Location Lexer::location() {
   if (!source_.columns.empty()) return {source_.name, source_.line, source_.columns[std::min(s_.position, text_.size())]};
   for (; s_.mark < s_.position; ++s_.mark)
     if ((static_cast<unsigned char>(text_[s_.mark]) & 0xC0) != 0x80) ++s_.mark_column;
-  // The place may lie behind the last character, but never inside one.
+  // The location may be after the last character, but never within one.
   return {source_.name, s_.line, s_.mark_column};
 }
 
@@ -105,7 +105,7 @@ void Lexer::note_comment() {
   comment_begin_ = s_.position;
 }
 
-// What other languages say by a character that means nothing here.
+// A hint for a character that has a meaning in other languages but not here.
 std::string Lexer::meant_character(size_t begin) const {
   const std::string_view rest = std::string_view(text_).substr(begin);
   switch (rest.front()) {
@@ -120,7 +120,7 @@ std::string Lexer::meant_character(size_t begin) const {
   }
 }
 
-// With the points between names: small.trunk is one.
+// Reads a name, including qualified names such as small.trunk.
 void Lexer::read_name(Token& token) {
   const size_t begin = s_.position;
   while (letter(peek()) || digit(peek()) || (peek() == '.' && letter(peek(1)))) ++s_.position;
@@ -266,7 +266,7 @@ void Lexer::read_string(Token& token) {
   ++s_.position;
 }
 
-// After an item of a list: a comma, or a new line, or the end of the list (which stays).
+// After an item of a list: skips a comma or a new line. The end of the list is accepted but not consumed.
 bool Lexer::skip_separator() {
   const int line = s_.line;
   skip_blanks();
@@ -293,7 +293,7 @@ bool Lexer::read_row(std::vector<double>& out, int& count) {
     if (error != std::errc()) return false;
     s_.position += size_t(end - begin);
     out.push_back(negative ? -value : value);
-    if (count < 5) ++count;  // more than a row can have is all that matters
+    if (count < 5) ++count;  // counts above 4 are not a row in any case
     if (!skip_separator()) return false;
   }
   ++s_.position;

@@ -1,5 +1,5 @@
 #pragma once
-// Characters into tokens.
+// Lexer: from characters to tokens.
 
 #include <string>
 #include <vector>
@@ -18,35 +18,36 @@ enum class TokenType : std::uint8_t {
   bad  ///< already reported
 };
 
-/// Symbols of two characters, as Token::symbol has them.
+/// Codes of two-character symbols in Token::symbol.
 namespace symbols {
 inline constexpr char equal = 1, different = 2, at_most = 3, at_least = 4, range = 5;
 }  // namespace symbols
 
-/// A symbol as it is written: "{", "==", "..".
+/// The text of a symbol: "{", "==", "..".
 std::string symbol_text(char symbol);
 
 struct Token {
   TokenType type = TokenType::end;
   char symbol = 0;
-  bool first_in_line = false;  ///< nothing but blanks and comments stand before it in its line
-  bool joined = false;         ///< nothing at all stands between it and the token before
+  bool first_in_line = false;  ///< only blanks and comments precede it in its line
+  bool joined = false;         ///< nothing, not even a blank, precedes it since the previous token
   double number = 0;
   std::string text;  ///< the name, the string without its quotes, or the number as written
   Location at;
-  size_t begin = 0, end = 0;  ///< bytes in the text
-  Location comment = {};  ///< of the '#' that hides the rest of the line behind the token before this one; unknown: none does
-  size_t comment_begin = 0;  ///< its byte
+  size_t begin = 0, end = 0;  ///< byte offsets in the text
+  Location comment = {};  ///< location of the '#' of a comment between the previous token and this one, in the previous token's
+                          ///< line; unknown: none
+  size_t comment_begin = 0;  ///< byte offset of the '#'
 
   bool is(char c) const { return type == TokenType::symbol && symbol == c; }
-  /// Whether it is this word, which has a meaning in some places and is a name like any other elsewhere.
+  /// Whether the token is this word, which is a keyword in some places and an ordinary name elsewhere.
   bool is_word(std::string_view word) const { return type == TokenType::name && text == word; }
-  /// As messages call it: "'{'", "the end of the file", …
+  /// The token as messages name it: "'{'", "the end of the file", …
   std::string words() const;
 };
 
 bool is_name(std::string_view);
-/// A name, or names with points between: of what an included file defines that was given a name of its own.
+/// Whether the text is a name, or names separated by points: names of a file that was included under a name.
 bool is_qualified_name(std::string_view);
 
 class Lexer {
@@ -55,32 +56,32 @@ class Lexer {
   Lexer(const Source&, Diagnostics&, size_t begin = 0);
 
   Token next();
-  /// The whole that is read.
+  /// The whole source text.
   const std::string& text() const { return text_; }
-  /// Right behind the last token [bytes].
+  /// The position after the last token [bytes].
   size_t position() const { return s_.position; }
-  /// Says nothing of bad tokens while this is true: where the parser is lost, they follow from what made it so.
+  /// Suppresses errors about bad tokens while this is true: after a syntax error they are probably its consequences.
   void set_quiet(const bool* quiet) { quiet_ = quiet; }
-  /// Whether what follows the last token, blanks and comments aside, is one of these characters.
+  /// Whether the next character, after blanks and comments, is one of these.
   bool followed_by(std::string_view characters) const;
-  /// Whether what follows is a '=' that is not the first half of "==".
+  /// Whether the next character is a '=' that is not the first half of "==".
   bool followed_by_assignment() const;
-  /// Whether a name follows, or one that is followed by this word.
+  /// Whether a name follows; with `then`, whether a name and then this word follow.
   bool followed_by_name(std::string_view then = {}) const;
-  /// Whether nothing but blanks and comments stands behind the last token in its line.
+  /// Whether only blanks and comments follow the last token in its line.
   bool ends_line() const;
-  /// The name that follows the last token and any '}' behind it, which are counted, if a ':' stands behind the name; else "".
+  /// The name after the last token and any '}', which are counted, if a ':' follows the name; else "".
   std::string following_member(int& closing) const;
 
-  /// Right after a '[': reads a list of plain numbers, or of rows of 2 to 4 plain numbers each, to its ']' into packed
-  /// form. When the list holds anything else nothing is read. Lists of millions of numbers take this way.
+  /// Right after a '[': reads a list of plain numbers, or of rows of 2 to 4 plain numbers each, up to its ']' into packed form.
+  /// If the list contains anything else, nothing is consumed. This is the fast path for lists of millions of numbers.
   bool read_numbers(Numbers&);
 
  private:
   struct State {
     size_t position = 0;
     int line = 1;
-    size_t mark = 0;      // a place in the line …
+    size_t mark = 0;      // a position in the line …
     int mark_column = 1;  // … and its column, so that long lines are counted once
     bool first_in_line = true;
   };
@@ -107,7 +108,7 @@ class Lexer {
   Diagnostics& diagnostics_;
   State s_;
   const bool* quiet_ = nullptr;
-  Location comment_;  // the first one since the last token, in its line
+  Location comment_;  // the first comment since the last token, in that token's line
   size_t comment_begin_ = 0;
 };
 

@@ -14,8 +14,8 @@ namespace {
 
 constexpr size_t include_limit = 64;
 
-/// Where a carriage return stands without the line feed that it belongs to: the rest of the line, or of the whole file, would
-/// count as part of a comment.
+/// The position of a carriage return without a line feed. With such line ends the rest of the file could become part of a
+/// comment.
 std::optional<size_t> lone_carriage_return(const std::string& text) {
   for (size_t at = text.find('\r'); at != std::string::npos; at = text.find('\r', at + 1))
     if (at + 1 == text.size() || text[at + 1] != '\n') return at;
@@ -51,8 +51,7 @@ void Loader::add_text(const std::string& text, const std::string& name, const st
   }
 }
 
-// A file that is included under a name is read for that name, whoever has read it before; another only once, here or further
-// out.
+// A file included under a name is read again for each name; any other file is read once for a namespace and its inner ones.
 bool Loader::load(const std::string& path, Location named_at, Space& space, bool again) {
   const std::string spelling = canonical_path(path);
   const auto active = std::find_if(active_.begin(), active_.end(), [&](const auto& a) { return a.first == spelling; });
@@ -90,14 +89,14 @@ bool Loader::load(const std::string& path, Location named_at, Space& space, bool
   return true;
 }
 
-// Where the file was included before, for this space or one around it.
+// The location where the file was included before, in this namespace or an enclosing one.
 const Location* Loader::included_at(const std::string& spelling, Space& space) const {
   for (Space* outer = &space; outer; outer = evaluator_.around(*outer))
     if (const auto found = files_.find({spelling, outer}); found != files_.end()) return &found->second;
   return nullptr;
 }
 
-// Files that include files under names, several times each, would double with every level.
+// Limits repeated reading: files that include other files under several names could double the work with each level.
 bool Loader::may_read_again(size_t size, Location named_at) {
   constexpr size_t most = 1000, most_bytes = size_t(256) << 20;
   bytes_again_ += size;
@@ -164,12 +163,12 @@ void Loader::add(Source source, Space& space) {
   const std::string folder = source.folder;
   evaluator_.set_folder(source.name, folder);
   Document document = is_json(source.name) ? parse_json(source, diagnostics_) : parse_document(source, diagnostics_);
-  source.text = {};  // may be as large as all that was made of it
+  source.text = {};  // frees memory: the text may be as large as its syntax tree
   whole_ = whole_ && document.whole;
   for (const Label& plugin : document.plugins) open_plugin(plugin, folder);
   for (Definition& definition : document.definitions) evaluator_.define(std::move(definition), space);
   for (Node& component : document.components) components_.emplace_back(std::move(component), &space);
-  // First those whose names are known here as well: what is included under a name uses them.
+  // Includes without a name come first, since files included under a name use their names.
   for (const bool named : {false, true})
     for (Inclusion& inclusion : document.includes)
       if (inclusion.name.text.empty() != named) include(inclusion, folder, space);
@@ -184,7 +183,7 @@ void Loader::open_plugin(const Label& plugin, const std::string& folder) {
     Registry::instance().load_plugin(FilePath{plugin.text, folder}.resolved());
   } catch (const Error& e) {
     diagnostics_.add(Error(e.what(), plugin.at));
-    whole_ = false;  // or every use of its classes would be reported as well
+    whole_ = false;  // otherwise each use of its classes would be reported as well
   }
 }
 
@@ -203,7 +202,7 @@ void Loader::replace_params() {
 
 void Loader::refuse_unknown_params() {
   for (const auto& [name, text] : left_defines_)
-    if (!used_defines_.contains(name)) evaluator_.redefine(name, text);  // tells that there is none
+    if (!used_defines_.contains(name)) evaluator_.redefine(name, text);  // reports that there is no such param
 }
 
 Node* Loader::root(bool job) {
@@ -239,7 +238,7 @@ Ref<Component> Loader::result(bool job) {
     if (!whole_) evaluator_.set_incomplete();
     for (auto& [other, space] : components_)
       if (&other == node) value = evaluator_.evaluate_in(*space, other);
-    for (auto& [other, space] : components_)  // those that should not be there may be wrong in other ways as well
+    for (auto& [other, space] : components_)  // components that should not be there may have other errors, too
       if (&other != node) evaluator_.evaluate_in(*space, other);
     evaluator_.check_unused(main_);
   } catch (const TooManyErrors&) {

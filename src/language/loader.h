@@ -1,5 +1,5 @@
 #pragma once
-// Files and texts into one namespace of definitions.
+// Loader: reads files and texts into one namespace of definitions.
 
 #include <map>
 #include <memory>
@@ -12,36 +12,37 @@
 
 namespace etendue::language {
 
-// Files of other programs, as an include sees them. Who reads them is told by whoever loads: importers are above the language.
+// Files of other programs, as an include uses them. The interface is passed to the Loader, because importers are in a layer
+// above the language.
 
 /// A file of another program that was read.
 class OtherFile {
  public:
   virtual ~OtherFile() = default;
-  /// Its parts by name: those that have one there and, when it is included under a name, `scene`, `objects`, `camera`,
-  /// `renderer` and `image`, as far as it has them.
+  /// The parts of the file by name: its named parts and, if it is included under a name, also `scene`, `objects`, `camera`,
+  /// `renderer` and `image`, if it has them.
   virtual std::vector<std::pair<std::string, Value>> names(bool with_main_parts) = 0;
-  /// The whole of it: what rendering the file by itself renders.
+  /// The complete job: what is rendered if the file itself is rendered.
   virtual Ref<Component> job() = 0;
-  /// What is not as in the file. After all that is wanted was asked for.
+  /// Messages about differences from the file. To be called after names() and job().
   virtual std::vector<Error> notes() = 0;
-  /// Which of the parameters that it was given nothing in it uses.
+  /// The given parameters that nothing in the file uses.
   virtual std::vector<std::string> unused_parameters() = 0;
 };
 
-/// How they are read; both throw nothing but Error and Errors.
+/// Access to the importers; both functions throw only Error and Errors.
 struct OtherFiles {
   bool (*are_read)(const std::string& path) = nullptr;
-  /// What the names of those that are read end in, without dots.
+  /// The extensions of the files that can be read, without dots.
   std::vector<std::string> (*endings)() = nullptr;
-  /// With values for its parameters.
+  /// Reads a file with values for its parameters.
   std::unique_ptr<OtherFile> (*read)(const std::string& path, const ImportOptions&,
                                      const std::vector<std::pair<std::string, std::string>>& parameters) = nullptr;
 };
 
 class Loader {
  public:
-  /// Without `others` files of other programs are not included.
+  /// Without `others`, files of other programs cannot be included.
   explicit Loader(const LoadOptions& options, const OtherFiles* others = nullptr)
       : options_(options),
         other_files_(others),
@@ -50,14 +51,14 @@ class Loader {
   void add_file(const std::string& path);
   void add_text(const std::string& text, const std::string& name, const std::string& folder);
 
-  /// Replaces params, evaluates everything and gives the one component that stands for itself; of class Job when
-  /// `job`. Throws Errors with all that is wrong.
+  /// Replaces params, evaluates everything and returns the one unnamed component; it must be a Job if `job`. Throws Errors with
+  /// all errors.
   Ref<Component> result(bool job);
 
  private:
   using Space = Evaluator::Space;
 
-  /// False: nothing was read, as the file was there already or there was something wrong with it.
+  /// Returns false if nothing was read, because the file was read before or has an error.
   bool load(const std::string& path, Location named_at, Space&, bool again);
   void add(Source, Space&);
   void include(Inclusion&, const std::string& folder, Space&);
@@ -69,16 +70,16 @@ class Loader {
   Node* root(bool job);
 
   // including/include_other.cpp
-  /// A file of another program that is included; it is read when all descriptions are.
+  /// An included file of another program; it is read after all descriptions.
   struct Other {
     std::string path;
     Label file;
-    std::vector<Definition> replaced;  // its parameters and what they are to be …
-    Space* space;                      // that its names are in
-    Space* written_in;                 // … in terms of the names of this one
-    bool named = false;                // by the include
+    std::vector<Definition> replaced;  // its parameters and their new values …
+    Space* space;                      // the namespace of its names
+    Space* written_in;                 // … which are expressions in this namespace
+    bool named = false;                // whether it was included under a name
     std::unique_ptr<OtherFile> read = nullptr;
-    std::vector<const bool*> used = {};  // whether each of its names was asked for
+    std::vector<const bool*> used = {};  // whether each of its names was used
   };
   bool include_other(Inclusion&, const std::string& path, Space& target, Space& written_in);
   std::vector<std::pair<std::string, std::string>> parameters_of(Other&);
@@ -91,18 +92,18 @@ class Loader {
   Diagnostics diagnostics_;
   Evaluator evaluator_;
   std::vector<std::pair<Node, Space*>> components_;
-  bool whole_ = true;  // no file had to be given up half-way
+  bool whole_ = true;  // false if a file could not be read completely
   const char* main_ = "";
-  std::map<std::pair<std::string, Space*>, Location> files_;  // read so far, in canonical spelling, and where they were named
-  size_t again_ = 0, bytes_again_ = 0;                        // files that were read for names of their own
-  std::vector<std::pair<std::string, std::string>> active_;   // being read: canonical spelling, and as written
+  std::map<std::pair<std::string, Space*>, Location> files_;  // files read so far, by canonical path, and where they were named
+  size_t again_ = 0, bytes_again_ = 0;                        // files that were read for a namespace of their own
+  std::vector<std::pair<std::string, std::string>> active_;   // files being read: canonical path, and path as written
   std::vector<Other> others_;
-  Ref<Component> job_;                                             // of a file of another program, when it is the whole
-  std::vector<std::pair<std::string, std::string>> left_defines_;  // of -D: those that no description has a param for
-  std::set<std::string> used_defines_;                             // of these those that a file of another program has
+  Ref<Component> job_;  // from a file of another program, if it is the whole description
+  std::vector<std::pair<std::string, std::string>> left_defines_;  // the -D options for which no description has a param
+  std::set<std::string> used_defines_;                             // of these, the options that a file of another program uses
 };
 
-/// A path without links and dots, by which files are the same.
+/// A path without links and dots, by which files are compared.
 std::string canonical_path(const std::string& path);
 
 }  // namespace etendue::language

@@ -1,4 +1,4 @@
-// Names: where they are defined, what is found by them, and which of them nothing uses.
+// Evaluator: definitions and lookup of names, and warnings about unused names.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace etendue::language {
 size_t copied_size(const Value& value) {
   if (const auto* numbers = value.as<Numbers>()) return numbers->values.size();
   const auto* list = value.as<Value::List>();
-  return list ? 8 * list->size() : 1;  // an entry takes as much memory as many numbers
+  return list ? 8 * list->size() : 1;  // an entry takes as much memory as several numbers
 }
 
 Evaluator::Evaluator(Diagnostics& diagnostics, bool allow_files, std::optional<Moment> moment)
@@ -67,7 +67,7 @@ void Evaluator::define(Definition definition, Space& space) {
 
 namespace {
 
-/// How deep a part's parts go, itself counted.
+/// The height of a component tree, including the root.
 int height_of(const Value& value, std::unordered_map<const Component*, int>& known) {
   int height = 0;
   if (const auto* list = value.as<Value::List>()) {
@@ -140,13 +140,13 @@ void Evaluator::redefine(const std::string& name, const std::string& text) {
   }
   entry->replaced = true;
   entry->space = entry->home;
-  entry->given = {};  // that it is used is asked of the one that counts
+  entry->given = {};  // warnings about unused params apply to this replacement only
   const Source& source = replacements_.emplace_back(Source{at.file, {}, text});
   remember_text(source.name, text);
   set_folder(source.name, {});
   Node& value = entry->definition.value;
   const size_t begin = text.find_first_not_of(" \t\r\n");
-  // A string of JSON is an expression; when that is a text, it is replaced by a text.
+  // A JSON string is an expression; if that expression is a text, a text replaces it.
   if (value.type == NodeType::json_text && value.text.starts_with('"')) value.type = NodeType::string;
   if (value.type == NodeType::string && (begin == std::string::npos || text[begin] != '"')) {
     value.text = text;
@@ -164,7 +164,7 @@ void Evaluator::redefine(const std::string& name, const std::string& text) {
     value.type = NodeType::bad;
 }
 
-// Outwards from a space; behind a point within the one that is named before it only.
+// Searches outwards from a namespace; a qualified name is searched only in the namespace before its point.
 Evaluator::Entry* Evaluator::find(const std::string& text, Space& from) {
   const size_t point = text.find('.');
   if (point == std::string::npos) {
@@ -193,7 +193,7 @@ std::string Evaluator::name_seen_from(const Entry& entry, const Space& space) co
   return entry.home->prefix() + entry.definition.name.text;
 }
 
-// What a component is called where all names are in one place: small.trunk is small_trunk.
+// The name of a component where all names share one namespace: small.trunk becomes small_trunk.
 std::string Evaluator::given_name(const Entry& entry) {
   std::string name = entry.home->prefix() + entry.definition.name.text;
   std::replace(name.begin(), name.end(), '.', '_');
@@ -216,14 +216,15 @@ std::optional<Value> Evaluator::name(Node& node, const Context& context) {
   const Member* member = context.member;
   const bool choice = member && member->kind == Kind::choice;
   if (choice && std::find(member->choices.begin(), member->choices.end(), text) != member->choices.end()) {
-    // A definition that might be a choice of the member, too, may have been meant, and so may a number, by who takes the member
-    // for a switch; a part, a list or a colour was not. By how it is written, as nothing is evaluated for a warning.
+    // Warns if a definition with the name of the choice may have been meant instead: if its value might be a choice of the
+    // member, or a number or truth value for someone who takes the member for a switch; not if it is a component, a list or a
+    // colour. Decided by syntax, since nothing is evaluated for a warning.
     const auto may_be_meant = [&](const auto& again, const Entry& entry, int depth) -> bool {
       const auto fits = [&](const auto& self, const Node& value) -> bool {
         if (value.type == NodeType::number || value.type == NodeType::boolean) return true;
         if (value.type == NodeType::string) return std::ranges::count(member->choices, value.text) > 0;
         if (value.type == NodeType::conditional) return self(self, value.children[1]) || self(self, value.children[2]);
-        constexpr int deepest = 8;  // names that stand for names
+        constexpr int deepest = 8;  // limit for names that stand for names
         if (value.type != NodeType::name || depth == deepest) return false;
         const Entry* other = find(value.text);
         return other ? again(again, *other, depth + 1) : std::ranges::count(member->choices, value.text) > 0;
@@ -243,7 +244,7 @@ std::optional<Value> Evaluator::name(Node& node, const Context& context) {
     moment_used_ = true;
     return Value(text == "frame" ? Number{moment_->frame} : Number{moment_->seconds, Dimension::time}, node.at);
   }
-  if (choice || context.words) return word();  // a choice that there is not is for the member to reject
+  if (choice || context.words) return word();  // the member rejects unknown choices
   if (!context.lenient && !incomplete_) undefined(text, node.at);
   return std::nullopt;
 }
@@ -263,7 +264,7 @@ std::optional<Value> Evaluator::bound(const Local& found, Location at) {
   return value;
 }
 
-// A list that is known by a name is not copied to count it, to take one entry of it or to go through it.
+// A named list is not copied to count it, to index it or to iterate over it.
 const Value* Evaluator::stored(const Node& node) {
   if (node.type != NodeType::name) return nullptr;
   if (const Local* found = local(node.text)) return &found->value;
@@ -278,7 +279,7 @@ const Value* Evaluator::stored(const Node& node) {
 
 namespace {
 
-/// What other languages call true, false and none; "" for all else.
+/// The constant true, false or none that is written differently in other languages; "" for other words.
 std::string meant_constant(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   if (text == "null" || text == "none" || text == "nil" || text == "nullptr") return "none";
@@ -310,7 +311,7 @@ void Evaluator::undefined(const std::string& text, Location at) {
   }
 }
 
-// illuminant(D65), rotate(30 deg, y): a name that there is not, where a text is expected. Reports it.
+// Reports an undefined name where a text in quotes is expected: illuminant(D65), rotate(30 deg, y).
 bool Evaluator::lacks_quotes(const Node& call, const Node& argument, const Bound* bound) {
   if (argument.type != NodeType::name) return false;
   const std::string& text = argument.text;
@@ -328,7 +329,7 @@ bool Evaluator::lacks_quotes(const Node& call, const Node& argument, const Bound
 
 namespace {
 
-/// A camera with a name that nothing uses is a view that was kept: the studio saves them, and whoever wants it names it.
+/// Whether a value is a camera. An unused named camera is a saved view of the studio, and needs no warning.
 bool is_saved_view(const Value& value) {
   const auto* part = value.as<Ref<Component>>();
   const ClassInfo* camera = Registry::instance().find("Camera");

@@ -1,4 +1,4 @@
-// Statements and component blocks, and going on after errors.
+// Parser: statements, component blocks, and recovery after errors.
 
 #include "parser.h"
 
@@ -41,7 +41,7 @@ void Parser::unexpected(const std::string& expected) {
   fail(fmt::format("expected {}, not {}{}", expected, token_.words(), meant()), token_.at);
 }
 
-// Where something else was wrong before, a bracket may well have been lost with it.
+// After an earlier error the closing bracket was probably skipped with it, so nothing is reported.
 void Parser::not_closed(char bracket, const Location& opened) {
   if (!wrong_ && stranger_ && bracket == '{')
     diagnostics_.add(
@@ -54,20 +54,20 @@ void Parser::not_closed(char bracket, const Location& opened) {
   throw Abandoned{};
 }
 
-// Skips to where the next member or statement may start; a new line ends a statement outside of brackets, so that one mistake
-// hides as little as possible.
+// Skips to a position where the next member or statement may start. A new line outside of brackets ends a statement, so that
+// one mistake hides as little as possible.
 void Parser::recover(bool in_block) {
   skip(std::exchange(open_, {}), in_block,
        [&] { return token_.first_in_line || token_.is(';') || (in_block && (token_.is('}') || token_.is(','))); });
 }
 
-// Brackets that are open, or are opened on the way, are skipped with what they hold.
+// Skips tokens, including the contents of brackets that are open or are opened meanwhile.
 void Parser::skip(std::string open, bool in_block, const std::function<bool()>& stops) {
   while (token_.type != TokenType::end && !(open.empty() && stops())) {
     if (token_.is('{') || token_.is('[') || token_.is('(')) {
       open += token_.symbol;
     } else if (token_.is('}')) {
-      // Closes whatever stands unclosed inside of its block as well.
+      // A '}' also closes unclosed brackets within its block.
       const size_t block = open.rfind('{');
       open.resize(block == std::string::npos ? 0 : block);
       if (block == std::string::npos && in_block) return;
@@ -96,11 +96,11 @@ Document Parser::document() {
         const size_t before = document.definitions.size();
         statement(document);
         const bool separated = token_.is(';') || token_.first_in_line || token_.type == TokenType::end;
-        // What goes on in its line was hardly meant as it was read.
+        // A definition with more text after it in its line was probably misread.
         if (!separated && document.definitions.size() > before) document.definitions.back().value.type = NodeType::bad;
         if (!token_.is(';')) require_separator("a new line or ';' after the statement");
       } catch (const Failed&) {
-        if (token_.at == begin) take();  // never stand still
+        if (token_.at == begin) take();  // avoids an endless loop
         recover(false);
         blocks_.clear();
       }
@@ -131,7 +131,7 @@ void Parser::statement(Document& document) {
     if (token_.type != TokenType::name) unexpected("the name of the param");
     Token parameter = take();
     if (!token_.is('=')) {
-      // Its uses are right all the same.
+      // The name is defined, so that its uses are not reported.
       document.definitions.push_back({{parameter.text, parameter.at}, true, {}});
       document.definitions.back().value.type = NodeType::bad;
       unexpected("'=' and the default of the param");
@@ -143,7 +143,7 @@ void Parser::statement(Document& document) {
   } else if (name.text == "plugin") {
     document.plugins.push_back(path_statement("the plugin's file, in quotes"));
   } else {
-    // Most likely a definition without its '=': the name is known then, or every use of it would be reported as well.
+    // Probably a definition without its '=': the name is defined, so that its uses are not reported as well.
     Definition wrong{{name.text, name.at}, false, {}};
     wrong.value.type = NodeType::bad;
     document.definitions.push_back(std::move(wrong));
@@ -157,7 +157,7 @@ void Parser::statement(Document& document) {
   }
 }
 
-// Reports when it may not.
+// Whether a name may be defined; reports an error if not.
 bool Parser::may_be_defined(const Token& name) {
   for (const char* reserved : {"true", "false", "none", "pi"})
     if (name.text == reserved) {
@@ -179,7 +179,7 @@ void Parser::definition(Document& document, Token name, bool parameter) {
   return valued(document, std::move(name), parameter);
 }
 
-// Behind the '='.
+// Parses the value after the '='.
 void Parser::valued(Document& document, Token name, bool parameter) {
   Definition made{{name.text, name.at, name.begin}, parameter, {}};
   if (!may_be_defined(name)) {
@@ -190,7 +190,7 @@ void Parser::valued(Document& document, Token name, bool parameter) {
     require_value_before_comment();
     made.value = expression();
   } catch (const Failed&) {
-    // The name is known all the same, or every use of it would be reported as well.
+    // The name is defined all the same, so that its uses are not reported as well.
     made.value.type = NodeType::bad;
     document.definitions.push_back(std::move(made));
     throw;
@@ -204,7 +204,7 @@ Label Parser::path_statement(const char* what) {
   return {path.text, path.at, path.begin};
 }
 
-// A member outside of any block: most likely the block ended too early, by a '}' too many. It is gone on with.
+// A member outside of any block: probably the last block was closed too early by a superfluous '}'. Its members are parsed.
 void Parser::go_on_with_last(Document& document) {
   Node* last = nullptr;
   for (Node& node : document.components) last = !last || last->at.line < node.at.line ? &node : last;
@@ -223,7 +223,7 @@ void Parser::go_on_with_last(Document& document) {
   members(rest, token_.at);
 }
 
-// At the '{'.
+// Parses a component; the current token is the '{'.
 Node Parser::component(const Token& class_name) {
   const Location opened = token_.at;
   const Level level(*this, opened);
@@ -239,7 +239,7 @@ Node Parser::component(const Token& class_name) {
   return node;
 }
 
-// Behind the '{', to the '}'.
+// Parses the members from after the '{' to the '}'.
 void Parser::members(Node& node, const Location& opened) {
   Seen seen;
   blocks_.push_back({node.text, opened});
@@ -252,7 +252,7 @@ void Parser::members(Node& node, const Location& opened) {
     } catch (const Failed&) {
       blocks_.resize(level);
       node.damaged = true;
-      if (token_.at == begin) take();  // never stand still
+      if (token_.at == begin) take();  // avoids an endless loop
       recover(true);
       if (token_.is(',') || token_.is(';')) take();
     }
@@ -266,7 +266,7 @@ void Parser::member(Node& component, Seen& seen) {
   if (token_.type != TokenType::name) unexpected("a member name or '}'");
   const Token name = take();
   if (!token_.is(':')) {
-    // What it is to be is not known, but it counts as written.
+    // The value is unknown, but the member counts as written.
     if (seen.emplace(name.text, name.at).second) {
       component.labels.push_back({name.text, name.at});
       component.children.emplace_back().type = NodeType::bad;
@@ -300,8 +300,8 @@ void Parser::member(Node& component, Seen& seen) {
   leave();
 }
 
-// The value of a member, which counts as written even when it cannot be read, and what separates it from the next. False: it
-// was read, but hardly as it was meant.
+// Parses the value of a member and its separator; the member counts as written even if the value has errors. False: the value
+// was read, but probably not as it was meant.
 bool Parser::member_value(Node& component, size_t index) {
   require_value_before_comment();
   Node value = expression();
@@ -322,7 +322,7 @@ bool Parser::member_value(Node& component, size_t index) {
       component.children[index].type = NodeType::bad;
       require_separator("',' or a new line before the next member");
     }
-    // The next member can be read as if the comma were there.
+    // The next member can be parsed as if the comma were there.
     if (!comma_told_)
       report(fmt::format("expected ',' or a new line before the next member, not {}", token_.words()), token_.at);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Tokens into statements and expressions, by recursive descent with one token of look-ahead.
+// Parser: from tokens to statements and expressions, by recursive descent with one token of look-ahead.
 
 #include <functional>
 #include <memory>
@@ -15,12 +15,12 @@ class Parser {
   Parser(const Source&, Diagnostics&, size_t begin = 0);
 
   Document document();
-  /// An expression that must end with the text.
+  /// Parses an expression that must end with the text.
   Node lone_expression();
 
-  /// A syntax error that is already reported; what encloses it goes on after the next separator.
+  /// A syntax error that is already reported; the enclosing construct continues after the next separator.
   struct Failed {};
-  /// Nothing sensible can follow in this text.
+  /// Parsing of the text is given up.
   struct Abandoned {};
 
  private:
@@ -33,7 +33,7 @@ class Parser {
   void definition(Document&, Token name, bool parameter);
   void valued(Document&, Token name, bool parameter);
   Label path_statement(const char* what);
-  // repeating/parsing.cpp: what makes a description scale
+  // repeating/parsing.cpp: functions, includes, conditionals and comprehensions
   void function(Document&, const Token& name);
   void parameters(Definition&);
   void inclusion(Document&);
@@ -46,18 +46,20 @@ class Parser {
   void member(Node& component, Seen& seen);
   bool member_value(Node& component, size_t index);
   void recover(bool in_block);
-  /// Goes on until `stops` says so outside of all brackets, of which some are `open` already; in a block to its end at most.
+  /// Skips until `stops` returns true outside of all brackets, of which `open` are already open; within a block at most to its
+  /// end.
   void skip(std::string open, bool in_block, const std::function<bool()>& stops);
   void require_separator(const char* what);
 
-  // repairing/meant.cpp: what was probably meant by what other languages write
-  /// " (…)" with what is written here for what the current token begins; "" when nothing is known.
+  // repairing/meant.cpp: hints for the syntax of other languages
+  /// A hint " (…)" with the syntax of this language for the syntax of another language at the current token; "" if there is
+  /// none.
   std::string meant() const;
   bool skip_foreign_word(const Token& word);
   void definition_by_colon(Document&);
   void require_value_before_comment();
 
-  // repairing/repair.cpp: what was probably meant where something is missing
+  // repairing/repair.cpp: guesses of the meaning where something is missing
   bool misses_brace(const std::string& class_name);
   bool misses_both_braces_but_one(const std::string& class_name);
   bool two_words(const Token& class_name);
@@ -88,49 +90,51 @@ class Parser {
   void items(Node&, char close, const Location& opened);
 
   Token take();
-  /// Reports a syntax error, unless it only follows from another: nothing has made sense since.
+  /// Reports a syntax error, unless it probably follows from an earlier one, because nothing has been parsed successfully
+  /// since.
   void report(const std::string& message, const Location&);
   [[noreturn]] void fail(const std::string& message, const Location&);
-  /// "expected …, not '…'" at the current token, or nothing more when the lexer has already complained of it.
+  /// Reports "expected …, not '…'" at the current token, unless the lexer has already reported the token.
   [[noreturn]] void unexpected(const std::string& expected);
-  /// For an opening bracket that the text ends before closing.
+  /// Reports an opening bracket that is not closed at the end of the text.
   [[noreturn]] void not_closed(char bracket, const Location& opened);
-  /// Whether the current token goes on with the expression before it: inside parentheses ends of lines mean nothing.
+  /// Whether the current token may continue the expression before it: within parentheses, ends of lines are ignored.
   bool continues() const { return bracketed_ || !token_.first_in_line; }
-  /// Whether the current token is a word that means something behind a value: no unit and no name.
+  /// Whether the current token is a keyword that may follow a value, and so is neither a unit nor a name.
   bool joins() const;
-  /// Whether the current token is this word, and begins a value rather than being a name itself.
+  /// Whether the current token is this keyword at the beginning of a value, and not a name.
   bool begins(std::string_view word) const;
 
-  /// Counts nesting while it lives.
+  /// Counts the nesting depth for its lifetime.
   class Level;
-  /// Sets whether ends of lines mean nothing while it lives.
+  /// Sets for its lifetime whether ends of lines are ignored.
   class Lines;
 
   Diagnostics& diagnostics_;
   Lexer lexer_;
-  Token token_;                    // the next one
-  size_t last_end_ = 0;            // the byte behind the last one that was taken
-  bool last_may_be_list_ = false;  // that one was a name or closed a bracket
+  Token token_;                    // the current token, not yet taken
+  size_t last_end_ = 0;            // the byte after the last token taken
+  bool last_may_be_list_ = false;  // that token was a name or a closing bracket
   int depth_ = 0;
   bool bracketed_ = false;
-  std::string open_;  // '[' and '(' that are open in the innermost block, for going on after an error
+  std::string open_;  // '[' and '(' that are open in the innermost block, for error recovery
 
-  bool lost_ = false;        // after an error, until something makes sense again
+  bool lost_ = false;        // after an error, until something is parsed successfully
   bool wrong_ = false;       // there was an error
-  bool comma_told_ = false;  // that a comma is missing here was reported
+  bool comma_told_ = false;  // a missing comma was already reported here
   struct Block {
     std::string class_name;
     Location opened;
   };
-  std::vector<Block> blocks_;  // that are open, outermost first
-  /// The first member that its block's class does not have, but one further out does: where a '}' may be missing.
+  std::vector<Block> blocks_;  // open blocks, outermost first
+  /// The first member that the class of its block does not have, but that of an enclosing block has: a '}' may be missing
+  /// before it.
   struct Stranger {
     std::string member, inner, outer;
     Location at, inner_opened;
   };
   std::unique_ptr<Stranger> stranger_;
-  Location last_close_;  // of the last '}' that ended a block
+  Location last_close_;  // of the last '}' that closed a block
 
   friend class Level;
 };

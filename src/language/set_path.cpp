@@ -1,4 +1,4 @@
-// Setting a member that is found by a path from a component.
+// Sets a member that is addressed by a path from a component.
 
 #include <fmt/format.h>
 
@@ -17,14 +17,14 @@ namespace {
 
 using language::Diagnostics;
 
-/// One name of a path with the places in lists behind it: objects[2].
+/// One name of a path with the list indices after it: objects[2].
 struct PathStep {
   std::string name;
   std::vector<size_t> places;
   Location at;
 };
 
-/// Walks along a path; `whole` names it and the expression in messages.
+/// A parsed path.
 class Path {
  public:
   Path(const std::string& text, Location begin) : begin_(begin) {
@@ -50,7 +50,7 @@ class Path {
   }
 
   [[noreturn]] static void fail(const std::string& message, Location place) { throw Error(message, place); }
-  /// The place in the text; where that is not what the user wrote, that of the whole.
+  /// The location of a path character; if the text was not written by the user, the location of the whole option.
   Location at(size_t offset) const { return begin_.line == 0 ? begin_ : Location{begin_.file, 1, int(offset) + 1}; }
 
   std::vector<PathStep> steps;
@@ -59,7 +59,7 @@ class Path {
   Location begin_;
 };
 
-/// Looks for the component that has a name in the file among the parts of another; where it is, as a path, or "".
+/// Searches the parts of a component for the component with a name in the description; returns its path, or "".
 std::string path_of_name(const Component& from, const std::string& name, std::unordered_set<const Component*>& seen,
                          int levels) {
   constexpr int most_levels = 100;
@@ -99,7 +99,7 @@ void check_place(const std::string& name, size_t count, size_t place, Location a
     Path::fail(fmt::format("{} has {} {}: there is no [{}]", name, count, count == 1 ? "entry" : "entries", place), at);
 }
 
-/// The component that a step leads to.
+/// The component that a step of a path leads to.
 Ref<Component> follow(const Component& component, const PathStep& step) {
   const Member& member = find_member(component, step);
   Value value = member.get(component, member);
@@ -119,7 +119,7 @@ Ref<Component> follow(const Component& component, const PathStep& step) {
   return *next;
 }
 
-/// The member's value with one entry of it replaced.
+/// The member's value with one entry replaced.
 Value replaced(Value whole, const Value& entry, size_t place, const PathStep& step, const Member& member) {
   if (auto* list = std::get_if<Value::List>(&whole.data)) {
     check_place(step.name, list->size(), place, step.at);
@@ -139,7 +139,7 @@ Value replaced(Value whole, const Value& entry, size_t place, const PathStep& st
     Path::fail(fmt::format("an entry of {} is {}, not {}", step.name,
                            numbers->width == 1 ? "a number" : fmt::format("{} numbers", numbers->width), entry.kind()),
                entry.location);
-  // Lists of numbers are read back plain, in the member's unit; vectors in base units.
+  // Lists of numbers are stored in the member's unit without a dimension; vectors in base units.
   const Unit* unit = find_unit(member.unit);
   if (row.dimension != Dimension::none && (!unit || unit->dimension != row.dimension))
     Path::fail(fmt::format("{} does not take a {}", step.name, name(row.dimension)), entry.location);
@@ -155,16 +155,16 @@ std::string trimmed(const std::string& text) {
   return begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
 }
 
-/// `at` is the place of the expression; without a line, that of an option whose value it was made from.
+/// Evaluates the new value. `at` is the location of the expression; without a line, that of the command line option.
 Value read_expression(const std::string& path, const std::string& expression, Location at, const Member& member, bool entry) {
   const bool text = member.kind == Kind::string || member.kind == Kind::file;
   const size_t first = expression.find_first_not_of(" \t\r\n");
   const char begin = first == std::string::npos ? '\0' : expression[first];
-  // Names of files need no quotes.
+  // File names need no quotes.
   if (text && begin != '"' && !(member.list && !entry && begin == '[')) return Value(expression, at);
   Diagnostics diagnostics;
   language::Evaluator evaluator(diagnostics, true);
-  // A class alone stands for one of it with its defaults: on a command line braces need quotes.
+  // A class name alone stands for a component with default values: on a command line, braces would need quotes.
   if (const std::string word = trimmed(expression);
       member.kind == Kind::component && language::is_name(word) && word != "none") {
     try {
@@ -192,7 +192,7 @@ void set_path_from(Component& root, const std::string& path, const std::string& 
   const Path parsed(path, place);
   const Location expression_at = parsed.at(path.size() + 1);
   Component* component = &root;
-  Ref<Component> held;  // what is walked into stays alive; the root is the caller's
+  Ref<Component> held;  // keeps the visited component alive; the root belongs to the caller
   for (size_t i = 0; i + 1 < parsed.steps.size(); ++i) {
     held = follow(*component, parsed.steps[i]);
     component = held.get();

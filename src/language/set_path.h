@@ -1,5 +1,5 @@
 #pragma once
-// Setting a member for an option of the command line, which errors name instead of a path that nobody wrote.
+// set_path for options of the command line: errors name the option instead of a path that the user did not write.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace etendue::language {
 
-/// As etendue::set_path. The place of the path; without a line it is the place of all that is wrong with the value, too.
+/// Like etendue::set_path. `Location` is that of the path; if it has no line, errors in the value are reported there, too.
 void set_path_from(Component& root, const std::string& path, const std::string& expression, Location);
 
 }  // namespace etendue::language

@@ -1,5 +1,5 @@
 #pragma once
-// A text on its way through the parser, and the errors found in it.
+// A source text for the parser, and the errors found in it.
 
 #include <optional>
 #include <string>
@@ -9,27 +9,27 @@
 
 namespace etendue::language {
 
-/// One file, or a text that stands for one.
+/// The contents of a file, or a text in place of a file.
 struct Source {
-  const char* name = "";  ///< interned; what messages call it
-  std::string folder;     ///< that relative paths in it start from
+  const char* name = "";  ///< interned; the name in messages
+  std::string folder;     ///< the base of relative paths in the text
   std::string text;
-  /// For an expression within another text: its line there, and the column of each byte and of the end. Else none.
+  /// For an expression embedded in another text: its line there, and the columns of each byte and of the end. Otherwise empty.
   int line = 0;
   std::vector<int> columns = {};
 };
 
-/// Thrown when the limit of errors is reached.
+/// Thrown when the maximum number of errors is reached.
 struct TooManyErrors {};
 
-/// The way to what is evaluated now: the functions that were called and the loops that are run, innermost first.
+/// The context of the current evaluation: called functions and running loops, innermost first.
 class Trail {
  public:
   explicit Trail(const Trail* outer) : outer_(outer) {}
   virtual ~Trail() = default;
   Trail(const Trail&) = delete;
   Trail& operator=(const Trail&) = delete;
-  /// "in 'tree', called at line 12:5", "with i = 3"; "" where nothing can be said.
+  /// "in 'tree', called at line 12:5", "with i = 3"; "" if there is nothing to report.
   virtual std::string words(const Location& seen_from) const = 0;
   const Trail* outer() const { return outer_; }
 
@@ -37,37 +37,37 @@ class Trail {
   const Trail* outer_;
 };
 
-/// Collects what is wrong in one run.
+/// Collects the errors of one run.
 class Diagnostics {
  public:
   static constexpr size_t limit = 50;
-  /// What errors from now on are told with; null: nothing.
+  /// The context added to the messages of the following errors; null: none.
   const Trail* trail = nullptr;
-  /// Throws TooManyErrors when this was the last one worth showing.
+  /// Adds an error. Throws TooManyErrors when the limit is reached.
   void add(const Error&);
-  /// All those of a list at once.
+  /// Adds all errors of a list.
   void add(const Errors&);
   bool empty() const { return errors_.empty(); }
-  /// Throws what was found, in the order of the text; returns when nothing was.
+  /// Throws the errors found, in the order of the text; returns if there are none.
   void raise();
 
  private:
   std::string words_of_trail(const Location& seen_from) const;
 
   std::vector<Error> errors_;
-  std::vector<std::string> bare_;  // their messages without the trail: a mistake in a loop is told once
+  std::vector<std::string> bare_;  // the messages without the trail: an error in a loop is reported once
 };
 
-/// The error with a place: its own when it has one.
+/// The error with its own location, or else with the fallback.
 Error located(const Error&, Location fallback);
 
 /// Reads a whole file; throws Error at `at` with the system's reason.
 std::string read_text_file(const std::string& path, Location at);
 
-/// Keeps the text that goes by a name which is no file, so that `show` finds its lines. Replaces an earlier one.
+/// Stores a text under a name that is not a file, so that `show` finds its lines. Replaces an earlier text.
 void remember_text(const char* name, std::string text);
 
-/// Where the text stops being UTF-8; none when it is all valid.
+/// The position of the first invalid UTF-8 byte; nothing if the text is valid.
 std::optional<size_t> invalid_utf8(const std::string& text);
 
 /// "12:7" or "file:12:7", for messages that name a second place.

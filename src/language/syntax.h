@@ -1,5 +1,5 @@
 #pragma once
-// What the parser makes of a text: statements and expressions, nothing evaluated yet.
+// The syntax tree that the parser makes of a text: statements and expressions, not yet evaluated.
 
 #include <memory>
 #include <string>
@@ -25,24 +25,25 @@ enum class NodeType : std::uint8_t {
   sum,
   product,
   power,
-  range,          ///< whole numbers from the first child to the second, which is not one of them
-  comparison,     ///< of two children
+  range,          ///< integers from the first child (included) to the second (excluded)
+  comparison,     ///< of its two children
   conjunction,    ///< all of its children
   disjunction,    ///< any of its children
   inversion,      ///< not
   conditional,    ///< condition, value if it holds, value if not
-  index,          ///< a list and a place in it, from 0
-  argument,       ///< of a call, by the name in `text`
-  comprehension,  ///< an entry, then what each clause is of; `labels` are the clauses: the name after `for`, or "" of an `if`
-  json_text,      ///< a string of JSON: a text or an expression, as its member has it
-  bad             ///< could not be read; reported already
+  index,          ///< a list and an index into it, from 0
+  argument,       ///< a named argument of a call; its name is `text`
+  comprehension,  ///< the entry, then the list or condition of each clause; `labels`: for each clause the variable of `for`, or
+                  ///< "" for `if`
+  json_text,      ///< a JSON string: a text or an expression, depending on its member
+  bad             ///< has syntax errors, which are reported already
 };
 
-/// A name and its place: of a member, of a unit, of an operator.
+/// A name of a member, a unit or an operator, with its location.
 struct Label {
   std::string text;
   Location at;
-  size_t begin = 0;  ///< its first byte in the text; of member names and definitions of an .etd only
+  size_t begin = 0;  ///< byte offset in the text; only for member names and definitions of an .etd
 };
 
 struct Node {
@@ -50,35 +51,35 @@ struct Node {
   Location at;
   std::string text;                  ///< string, name, function or class
   bool json = false;                 ///< a list or object of JSON
-  bool damaged = false;              ///< a component some of whose members could not be read
+  bool damaged = false;              ///< a component with members that could not be parsed
   double number = 0;                 ///< number, boolean
   std::unique_ptr<Numbers> numbers;  ///< a packed list
   std::vector<Node> children;        ///< items, arguments, member values, operands
-  std::vector<Label> labels;         ///< member names; the unit; the operator before each operand but the first
-  /// Bytes of the text, from the first to the one behind the last, of an .etd only: of members' values, items, arguments, names
-  /// and of what is defined. `inside` is the byte behind the '{' of a component.
+  std::vector<Label> labels;         ///< member names; the unit; the operator before each operand except the first
+  /// Byte range of the node in the text, only in an .etd, and only for members' values, items, arguments, names and
+  /// definitions. `inside` is the byte after the '{' of a component.
   size_t begin = 0, end = 0, inside = 0;
 };
 
 /// A parameter of a function.
 struct Parameter {
   Label name;
-  std::unique_ptr<Node> standard;  ///< its default; null: it must be given
+  std::unique_ptr<Node> standard;  ///< default value; null: the argument is required
 };
 
 struct Definition {
   Label name;
   bool parameter = false;  ///< a param, which may be replaced
-  Node value;              ///< a function's body
+  Node value;              ///< the body, for a function
   bool function = false;
   std::vector<Parameter> parameters = {};  ///< of a function
 };
 
-/// include "file" with { param: value } as name
+/// An include statement: include "file" with { param: value } as name
 struct Inclusion {
   Label path;
-  std::vector<Definition> replaced;  ///< params of the file and what they are to be
-  Label name;                        ///< that stands before the names of the file; "": none does
+  std::vector<Definition> replaced;  ///< params of the file and their new values
+  Label name;                        ///< prefix of the names of the file; "": none
 };
 
 /// One parsed file.
@@ -86,13 +87,13 @@ struct Document {
   std::vector<Inclusion> includes;
   std::vector<Label> plugins;  ///< paths as written
   std::vector<Definition> definitions;
-  std::vector<Node> components;  ///< those that stand for themselves, such as the Job
-  bool whole = true;             ///< false when reading had to be given up before the end
+  std::vector<Node> components;  ///< unnamed components, such as the Job
+  bool whole = true;             ///< false if parsing was given up before the end
 };
 
-/// Reads statements, reporting what is wrong and going on after it.
+/// Parses statements; reports errors and continues after them.
 Document parse_document(const Source&, Diagnostics&);
-/// Reads one expression that ends with the text; null when it was wrong (and reported). `begin` is where it starts.
+/// Parses one expression that ends with the text; null if it has errors (which are reported). `begin` is its start.
 std::unique_ptr<Node> parse_expression(const Source&, Diagnostics&, size_t begin = 0);
 
 }  // namespace etendue::language

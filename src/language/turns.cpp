@@ -9,7 +9,7 @@
 namespace etendue::language {
 namespace {
 
-/// The one call to `rotate` among the factors of a transform; null: there is none, or there are several.
+/// The only call of `rotate` among the factors of a transform; null: there is none, or there are several.
 const Node* only_turn(const Node& node) {
   if (node.type == NodeType::call) return node.text == "rotate" && node.numbers ? &node : nullptr;
   if (node.type != NodeType::product) return nullptr;
@@ -24,7 +24,7 @@ const Node* only_turn(const Node& node) {
 
 }  // namespace
 
-// The node's numbers: the angle [deg], and the axis as a unit vector.
+// The numbers of the node become: the angle [deg], and the axis as a unit vector.
 void note_turn(Node& rotate, const std::vector<Value>& arguments) {
   const auto* angle = arguments[0].as<Number>();
   if (!angle) return;

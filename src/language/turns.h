@@ -1,5 +1,5 @@
 #pragma once
-// Turns between keys of a transform that go another way than they are written.
+// Warnings about rotations between keys of a transform that are interpolated in another way than they are written.
 
 #include <vector>
 
@@ -7,11 +7,11 @@
 
 namespace etendue::language {
 
-/// Keeps in the node of a call to `rotate`, which was evaluated, how far and about what it turns.
+/// Stores the angle and the axis in the node of an evaluated call of `rotate`.
 void note_turn(Node& rotate, const std::vector<Value>& arguments);
 
-/// Warns where two keys of a call to `keyframes` are written as turns about one axis that are more than 180 degrees apart: what
-/// is interpolated are the rotations, which do not say how often they went round, and goes the shorter way.
+/// Warns if two keys of a call of `keyframes` are rotations about the same axis that are more than 180 degrees apart. The
+/// interpolation between the two orientations takes the shorter way, since orientations do not contain whole turns.
 bool warn_of_long_turns(const Node& keyframes);
 
 }  // namespace etendue::language

@@ -1,4 +1,4 @@
-// Numbers, paths and colours as text.
+// Writer: numbers, paths and colours as text.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ namespace etendue::language {
 
 namespace {
 
-/// The fewest digits that give back the same double, once they are read in a unit.
+/// The shortest text that gives the same double when it is read in a unit.
 std::string exact_text(double value, double factor) {
   const double x = value / factor;
   for (const double near : {x, std::nextafter(x, -HUGE_VAL), std::nextafter(x, HUGE_VAL)})
@@ -65,7 +65,7 @@ std::string Writer::numbers(const Numbers& n, const Member* member, int indent, 
     for (size_t k = 0; k < width; ++k) text += (k > 0 ? ", " : "") + number_text(n.values[r * width + k], factor, whole, exact);
     return width > 1 ? text + "]" : text;
   };
-  // On one line when that is short; else filled lines.
+  // On one line if that is short; otherwise in filled lines.
   std::string text = "[";
   constexpr size_t short_line = 100, long_line = 120;
   size_t r = 0;
@@ -104,7 +104,7 @@ std::string path_text(const FilePath& file, const std::string& folder) {
   if (file.text.empty() || file.text.front() == '/' || file.folder == folder) return file.text;
   const std::string path = file.resolved();
   if (folder.empty()) return absolute(path).string();
-  if (path.starts_with(folder + "/")) return path.substr(folder.size() + 1);  // the spelling stays
+  if (path.starts_with(folder + "/")) return path.substr(folder.size() + 1);  // keeps the spelling
   return absolute(path).lexically_relative(absolute(folder)).string();
 }
 
@@ -125,7 +125,7 @@ std::string color_text(const SpectralFunction& color, const std::string& folder)
       const char escaped = expression[++end];
       path += escaped == 'n' ? '\n' : (escaped == 't' ? '\t' : escaped);
     }
-    // Only what lies in the folder or near it is written relative to it: a path up to the root says less than itself.
+    // Only paths in the folder or near it are written relative to it: a path that goes up to the root would be less clear.
     const std::filesystem::path here = absolute(folder), relative = absolute(path).lexically_relative(here);
     const auto up = std::count(relative.begin(), relative.end(), "..");
     const bool near = !relative.empty() && up < std::distance(here.begin(), here.end()) - 1;

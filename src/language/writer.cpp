@@ -1,4 +1,4 @@
-// Components: what is shared, what is named, what is written at all, and in which order.
+// Writer: components as text: which are shared and named, which members are written, and in which order.
 
 #include "writer.h"
 
@@ -18,7 +18,7 @@ namespace {
 constexpr int line_width = 100;
 constexpr int step = 4;
 
-/// Calls f for every component in a value.
+/// Calls f for each component in a value.
 template <class F>
 void for_components(const Value& value, F&& f) {
   if (const auto* c = value.as<Ref<Component>>()) {
@@ -28,7 +28,7 @@ void for_components(const Value& value, F&& f) {
   }
 }
 
-/// "PhongShader" as "phong_shader".
+/// Converts "PhongShader" to "phong_shader".
 std::string snake_case(const std::string& class_name) {
   std::string result;
   for (const char c : class_name) {

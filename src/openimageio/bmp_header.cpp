@@ -1,6 +1,6 @@
-// A BMP file is a header of 14 bytes ("BM", the file's size, four bytes of nothing, where the pixels begin) and one that
-// describes the picture, which begins with its own length: 12 bytes as OS/2 wrote it, where pixels are never packed, or 40 and
-// more (Microsoft, "Bitmap Header Types"; BITMAPINFOHEADER). All numbers have the lowest byte first.
+// A BMP file has a header of 14 bytes ("BM", the file's size, four unused bytes, the offset of the pixels) and one that
+// describes the image, which begins with its own length: 12 bytes in OS/2's version, where pixels are never compressed, or 40
+// and more (Microsoft, "Bitmap Header Types"; BITMAPINFOHEADER). All numbers are little endian.
 
 #include "bmp_header.h"
 
@@ -20,8 +20,7 @@ std::uint32_t number(const unsigned char* bytes, int count) {
   return n;
 }
 
-/// Whether pixels of so many bits may be packed in this way: 0 not at all, 1 and 2 by the lengths of runs, 3 with a mask for
-/// each colour.
+/// Whether pixels of so many bits can have this compression: 0 none, 1 and 2 run lengths, 3 with a bit mask for each colour.
 bool goes_with(std::uint32_t packing, std::uint32_t bits) {
   switch (packing) {
     case 0: return bits == 1 || bits == 2 || bits == 4 || bits == 8 || bits == 16 || bits == 24 || bits == 32;

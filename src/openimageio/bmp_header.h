@@ -4,8 +4,8 @@
 
 namespace etendue {
 
-/// Checks that a BMP file's way of packing is one that goes with its bits per pixel, and that its pixels begin within it: the
-/// library's reader takes that for granted. Throws Error with the reason alone. What does not begin as a BMP file passes.
+/// Checks that a BMP file's compression is valid for its bits per pixel, and that its pixels begin within the file, neither of
+/// which OpenImageIO's reader checks. Throws Error with the reason, without the path. Other files pass.
 void check_bmp_header(const std::string& path);
 
 }  // namespace etendue

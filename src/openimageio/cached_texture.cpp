@@ -1,4 +1,4 @@
-// Reading images into levels of averages.
+// Reads images and builds their MIP levels.
 
 #include "cached_texture.h"
 
@@ -15,8 +15,8 @@
 namespace etendue {
 namespace {
 
-/// Averages N texels to M = max(1, floor(N / 2)) along each side, by area: texel i of M covers [i N / M, (i + 1) N / M). When N
-/// is odd neighbours share texels, and the mean over the whole image stays what it is.
+/// Reduces N texels to M = max(1, floor(N / 2)) along each side by area averages: texel i of M covers [i N / M, (i + 1) N / M).
+/// If N is odd, neighbours share texels, so that the mean over the whole image is preserved.
 class Halving {
  public:
   Halving(int source_width, int source_height, int channels)
@@ -28,7 +28,7 @@ class Halving {
         channels_(size_t(channels)),
         row_(size_t(width) * size_t(channels)) {}
 
-  /// Adds part of a row of texels, from column `begin` on.
+  /// Adds part of a row of texels, starting at column `begin`.
   void add(int y, int begin, int count, const float* values) {
     std::fill(row_.begin(), row_.end(), 0.0f);
     for (int x = begin; x < begin + count; ++x, values += channels_)
@@ -45,7 +45,7 @@ class Halving {
   std::vector<float> texels;
 
  private:
-  /// The texels that texel x lies in, with the part of them it makes up; in units of 1 / M texels.
+  /// The destination texels that source texel x overlaps, with the overlap of each in units of 1 / M texels.
   template <class Use>
   static void share(std::int64_t x, std::int64_t n, std::int64_t m, Use use) {
     const std::int64_t begin = x * m, end = begin + m;
@@ -58,8 +58,8 @@ class Halving {
   std::vector<float> row_;
 };
 
-/// Half of the machine's memory. Maps are looked up at full size and all over an image, and a texel that is no longer there
-/// costs reading a strip of its file again.
+/// Half of the machine's memory. Textures are looked up at full resolution and in random order, and after a cache miss a strip
+/// of the file is read again.
 float cache_megabytes() {
   const double bytes = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
   return float(std::max(2048.0, bytes / 2 / (1 << 20)));
@@ -88,7 +88,7 @@ std::shared_ptr<const CachedTexture> CachedTexture::open(const std::string& path
     try {
       texture->read(key);
     } catch (const Error& e) {
-      // OpenImageIO's messages name our key; the path is what the user knows.
+      // OpenImageIO's messages contain the cache's key; the user expects the path.
       std::string reason = e.what();
       for (size_t at; (at = reason.find(key)) != std::string::npos;) reason.replace(at, key.size(), path);
       image_cache().invalidate(OIIO::ustring(key));
@@ -111,11 +111,11 @@ void CachedTexture::read_header(const OIIO::ImageSpec& spec) {
   const double area = double(width) * height;
   if (width < 1 || height < 1) throw Error("its display window is empty");
   if (area > 0x1p26 && area > 16.0 * pixels_x_ * pixels_y_) throw Error("its display window is far larger than what it shows");
-  levels_.reserve(32);  // as many as there can be: lookups in the first go on while the others are made
+  levels_.reserve(32);  // the largest possible number: references into levels_ stay valid while further levels are made
   levels_.push_back({width, height, {}});
 }
 
-/// Keeps all texels, if they fit; false: they do not.
+/// Stores all texels in memory if they fit; false: they do not.
 bool CachedTexture::keep(const std::string& key) {
   const std::unique_ptr<OIIO::ImageInput> input(make_linear_input());
   OIIO::ImageSpec spec;
@@ -133,7 +133,7 @@ bool CachedTexture::keep(const std::string& key) {
     }
     kept_ = std::move(kept);
     kept_whole_ = begin_x_ == 0 && begin_y_ == 0 && pixels_x_ == levels_[0].width && pixels_y_ == levels_[0].height;
-  } catch (const std::bad_alloc&) {  // other things take the memory
+  } catch (const std::bad_alloc&) {  // memory is used otherwise
     return false;
   }
   return true;
@@ -145,7 +145,7 @@ void CachedTexture::read(const std::string& key) {
   name_ = OIIO::ustring(key);
   if (!cache.add_file(name_, make_linear_input)) throw Error(cache.geterror());
   handle_ = cache.get_image_handle(name_);
-  // All of it, so that a damaged file is found now.
+  // Reads the whole file, so that damage is detected now.
   const size_t row = size_t(pixels_x_) * size_t(channels_);
   const auto use = [&](int begin, int end, const float* strip) {
     for (const float* value = strip; value != strip + row * size_t(end - begin); ++value)
@@ -173,7 +173,7 @@ bool CachedTexture::read_rows(Use use) const {
   return true;
 }
 
-/// A file that was removed since it was opened is black from where it cannot be read.
+/// If a file was removed after it was opened, the part that cannot be read is black.
 void CachedTexture::make_levels() const {
   const int width = levels_[0].width, height = levels_[0].height;
   Halving half(width, height, channels_);

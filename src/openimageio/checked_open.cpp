@@ -17,10 +17,10 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// The most numbers (channels of pixels) that a byte of a file can stand for. PNG: deflate makes 1032 bytes of one, each with
-/// up to eight pixels. JPEG: six blocks of at least one bit each for 256 pixels of three channels, twice that to be safe. TGA:
-/// a packet of five bytes for 128 pixels of four. BMP: two bytes for 255 pixels of four. TIFF, uncompressed: eight pixels of
-/// one bit. No other packs better than the last.
+/// The largest number of values (channels of pixels) that a byte of a file can encode. PNG: deflate expands one byte to 1032,
+/// each with up to eight pixels. JPEG: six blocks of at least one bit each for 256 pixels of three channels, twice that to be
+/// safe. TGA: a packet of five bytes for 128 pixels of four channels. BMP: two bytes for 255 pixels of four channels. TIFF,
+/// uncompressed: eight pixels of one bit. No other format exceeds the last value.
 double most_packed(const OIIO::ImageInput& input) {
   const std::string_view format = input.format_name();
   if (format == "png") return 8 * 1032;
@@ -35,7 +35,7 @@ void require_plausible(const OIIO::ImageInput& input, std::uint64_t file_size) {
   const OIIO::ImageSpec& spec = input.spec();
   if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) throw Error("it holds no pixels");
   if (spec.deep || spec.depth > 1) throw Error("it is a deep or volume image, which is not read");
-  constexpr int most = 1 << 29;  // sums, differences and doubles of places stay countable
+  constexpr int most = 1 << 29;  // sums, differences and doubled coordinates do not overflow
   for (const int number :
        {spec.x, spec.y, spec.width, spec.height, spec.full_x, spec.full_y, spec.full_width, spec.full_height})
     if (number < -most || number > most) throw Error(fmt::format("its windows reach to pixel {}", number));
@@ -50,15 +50,15 @@ void require_plausible(const OIIO::ImageInput& input, std::uint64_t file_size) {
   require_memory(values * sizeof(float), "it");
 }
 
-/// How the files of a format begin, and what the library calls its reader.
+/// The first bytes of a format's files, and OpenImageIO's name of its reader.
 struct Beginning {
   std::string_view bytes;
   const char* reader;
 };
 
-/// The formats that are read, each by its own reader only. The library knows 28 and would try all of them in turn; some read a
-/// file to its end before they give up, and those of rare formats crash or do not end with damaged files (IFF and DDS did with
-/// one of a hundred). These are the ones that tests/hostile attacks.
+/// The supported formats, each with its own reader only. OpenImageIO has 28 readers and would try all of them in turn; some
+/// read a file to its end before they give up, and those of rare formats crash or hang on damaged files (IFF and DDS did for
+/// one of a hundred). These are the formats that tests/hostile attacks.
 constexpr Beginning beginnings[] = {
     {"\x76\x2f\x31\x01"sv, "openexr"},
     {"\x89PNG"sv, "png"},
@@ -80,7 +80,7 @@ constexpr Beginning beginnings[] = {
     {"BM"sv, "bmp"},
 };
 
-/// The reader for a file. TGA begins with nothing of its own; the file's name must say it.
+/// The reader for a file. TGA has no signature; it is recognized by the file's name.
 const char* reader_for(RegularFile& file, const std::string& path) {
   char start[16];
   const std::string_view there(start, size_t(file.read_some(start, sizeof start)));
@@ -103,8 +103,8 @@ CheckedInput open_checked(const std::string& path) {
   check_bmp_header(path);
   std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(reader);
   if (!input) refuse(OIIO::geterror());
-  // Colours are not weighed by alpha where the file has them whole (PNG, TGA, WebP, most TIFFs): whoever wants that does it
-  // with numbers that are decoded.
+  // Colours are not premultiplied by alpha if the file stores them unassociated (PNG, TGA, WebP, most TIFFs): callers multiply
+  // decoded values if they need to.
   OIIO::ImageSpec ignored, wanted;
   wanted.attribute("oiio:UnassociatedAlpha", 1);
   if (!input->open(file->path_to_open(), ignored, wanted)) refuse(input->geterror());

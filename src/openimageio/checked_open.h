@@ -9,7 +9,7 @@
 
 namespace etendue {
 
-/// An image file that is open. The library may open it once more while it reads: what was unpacked from another file stays.
+/// An open image file. The library may open it again while it reads, so a temporary file unpacked from another file is kept.
 class CheckedInput {
  public:
   CheckedInput() = default;
@@ -25,8 +25,8 @@ class CheckedInput {
   std::unique_ptr<OIIO::ImageInput> input_;
 };
 
-/// Opens an image when it is a file and may hold what it claims; the library itself takes memory for whatever a header says.
-/// Throws Error with the reason alone.
+/// Opens an image if it is a regular file that can hold the pixels its header claims; the library itself allocates memory for
+/// any claim. Throws Error with the reason, without the path.
 CheckedInput open_checked(const std::string& path);
 
 }  // namespace etendue

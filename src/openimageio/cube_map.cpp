@@ -8,13 +8,13 @@
 namespace etendue {
 namespace {
 
-/// A face, and where in it from its upper left corner: 0 to 1 to the right and down.
+/// A face and a position in it, from its upper left corner: 0 to 1 to the right and down.
 struct Place {
   int face;
   double right, down;
 };
 
-/// Source: ImfEnvmap.h, whose picture of the cube names the corners of each face.
+/// Source: ImfEnvmap.h, whose diagram of the cube labels the corners of each face.
 Place place_in_cube(double x, double y, double z) {
   const double ax = std::abs(x), ay = std::abs(y), az = std::abs(z);
   const auto part = [](double a, double of) { return (a / of + 1) / 2; };
@@ -41,7 +41,7 @@ void CubeMap::add(double x, double y, double z, double weight, double* sum) cons
 }
 
 void CubeMap::row(int y, float* out) const {
-  constexpr int parts = 3;  // of a texel, along each side
+  constexpr int parts = 3;  // samples per texel, along each side
   for (int x = 0; x < width(); ++x) {
     std::array<double, 4> sum{};
     double weights = 0;

@@ -1,9 +1,9 @@
-// What an OpenEXR file claims, and whether it can be so.
+// Checks whether an OpenEXR file can hold the pixels that its header claims.
 //
 // The layout (Kainz, Bogart & Hess 2004, "The OpenEXR image file format"; openexr.com, "OpenEXR File Layout"): four bytes of
-// magic number, a 32-bit version with flags, a header for each part, and for each part a table with the 64-bit place of every
-// chunk (some rows of pixels, or a tile). A header is a list of attributes: name and type, each ended by a zero, a 32-bit size
-// and that many bytes; a zero ends it. All numbers are little endian.
+// magic number, a 32-bit version with flags, a header for each part, and for each part a table with the 64-bit offset of every
+// chunk (some rows of pixels, or a tile). A header is a list of attributes: name and type, each terminated by a zero, a 32-bit
+// size and that many bytes; a zero ends the list. All numbers are little endian.
 
 #include "exr_header.h"
 
@@ -26,7 +26,7 @@ enum Compression : std::uint8_t { none, rle, zips, zip, piz, pxr24, b44, b44a, d
 
 static_assert(std::endian::native == std::endian::little, "numbers are taken from the file as they are");
 
-/// The bytes of the headers, one after another.
+/// Reads the bytes of the headers in order.
 class Cursor {
  public:
   explicit Cursor(std::string_view bytes) : rest_(bytes) {}
@@ -43,7 +43,7 @@ class Cursor {
     rest_.remove_prefix(count);
     return taken;
   }
-  /// Up to a zero, which is taken as well.
+  /// A zero-terminated text; the zero is consumed too.
   std::string_view text() {
     const size_t end = rest_.find('\0');
     if (end == std::string_view::npos) throw Error("its header is damaged: it ends too early");
@@ -57,7 +57,7 @@ class Cursor {
   std::string_view rest_;
 };
 
-/// Corners of a window of pixels, both within it.
+/// Corners of a window of pixels, both inclusive.
 struct Window {
   std::int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   std::int64_t width() const { return std::int64_t(x1) - x0 + 1; }
@@ -68,21 +68,21 @@ struct Tiles {
   std::uint32_t width = 0, height = 0;
 };
 
-/// What matters here of one part of a file.
+/// The properties of one part of a file that are checked.
 struct Part {
   std::optional<Window> data;
   std::optional<Tiles> tiles;
   std::optional<std::uint32_t> chunks;
   std::uint8_t compression = none;
-  std::uint64_t pixel_bytes = 0;  ///< of all channels
+  std::uint64_t pixel_bytes = 0;  ///< size of a pixel with all channels
   std::uint64_t channels = 0;
-  bool cube = false;  ///< an image of surroundings, on the faces of a cube
+  bool cube = false;  ///< an environment map on the faces of a cube
 };
 
 Window window_of(Cursor& value) {
   Window w;
   for (std::int32_t* corner : {&w.x0, &w.y0, &w.x1, &w.y1}) *corner = value.number<std::int32_t>();
-  constexpr std::int32_t most = 1 << 30;  // differences and sums stay countable
+  constexpr std::int32_t most = 1 << 30;  // differences and sums do not overflow
   for (const std::int32_t corner : {w.x0, w.y0, w.x1, w.y1})
     if (corner < -most || corner > most)
       throw Error("its header is damaged: a window reaches to pixel " + std::to_string(corner));
@@ -90,7 +90,8 @@ Window window_of(Cursor& value) {
   return w;
 }
 
-/// name, type (0 and 2: four bytes, 1: two), linear, three reserved, sampling along x and y; a zero ends the list.
+/// A channel: name, type (0 and 2: four bytes, 1: two), linear, three reserved bytes, sampling along x and y; a zero ends the
+/// list.
 void read_channels(Cursor& value, Part& part) {
   part.channels = part.pixel_bytes = 0;
   while (!value.text().empty()) {
@@ -131,7 +132,7 @@ bool read_part(Cursor& cursor, Part& part) {
   return any;
 }
 
-/// Rows of pixels that are packed as one.
+/// Rows of pixels that are compressed as one chunk.
 std::int64_t rows_per_chunk(std::uint8_t compression) {
   switch (compression) {
     case zip:
@@ -145,9 +146,9 @@ std::int64_t rows_per_chunk(std::uint8_t compression) {
   }
 }
 
-/// The most bytes of pixels that a byte of the file can stand for. Runs of up to 128 bytes take two; deflate turns 258 bytes
-/// into two bits, and PXR24 has cut a quarter off before; Huffman codes of PIZ stand for runs of up to 255 numbers of two
-/// bytes; B44A packs 32 bytes into three. DWA deflates one number of two bytes for a block of 64.
+/// The largest number of pixel bytes that a byte of the file can encode. Run-length coding: runs of up to 128 bytes take two.
+/// Deflate encodes 258 bytes by two bits, and PXR24 drops a quarter before. The Huffman codes of PIZ encode runs of up to 255
+/// numbers of two bytes; B44A packs 32 bytes into three. DWA deflates one number of two bytes for a block of 64.
 double most_packed(std::uint8_t compression) {
   constexpr double deflate = 1032;
   switch (compression) {
@@ -164,7 +165,7 @@ double most_packed(std::uint8_t compression) {
 }
 
 void check_part(const Part& part, std::uint64_t file_size) {
-  if (!part.data || part.pixel_bytes == 0) return;  // the library says what is missing
+  if (!part.data || part.pixel_bytes == 0) return;  // the library reports what is missing
   const std::int64_t width = part.data->width(), height = part.data->height();
   const auto claims = [&](const std::string& what) {
     return Error(fmt::format("it claims {} x {} pixels of {} channels{}, which its {} bytes cannot hold", width, height,
@@ -177,7 +178,7 @@ void check_part(const Part& part, std::uint64_t file_size) {
     const std::int64_t w = part.tiles->width, h = part.tiles->height;
     if (w < 1 || h < 1 || w > INT32_MAX || h > INT32_MAX)
       throw Error("its header is damaged: its tiles have no size that makes sense");
-    // Memory is taken for whole tiles, and a little picture may well be less than one.
+    // Memory is allocated for whole tiles; a small image may well be smaller than one tile.
     constexpr double usual = 4096.0 * 4096;
     if (double(w) * double(h) > usual && (w > width || h > height))
       throw Error(fmt::format("it claims tiles of {} x {} pixels for a picture of {} x {}", w, h, width, height));
@@ -194,7 +195,7 @@ bool check_exr_header(const std::string& path) {
   std::uint32_t start[2] = {0, 0};
   if (file.read_some(start, sizeof start) < sizeof start || start[0] != magic_number) return false;
   if (start[1] & deep) throw Error("it is a deep image, which is not read");
-  // Headers hold texts and small previews; a limit keeps this quick for large files.
+  // Headers contain texts and small previews; the limit keeps this fast for large files.
   constexpr std::uint64_t most = 16u << 20;
   std::string bytes(size_t(std::min(file.size() - sizeof start, most)), '\0');
   bytes.resize(size_t(file.read_some(bytes.data(), bytes.size())));

@@ -4,9 +4,9 @@
 
 namespace etendue {
 
-/// Checks what an OpenEXR file says of itself against what it can hold, before a library takes memory for it. Throws Error with
-/// the reason alone. What does not begin as an OpenEXR file passes. Whether its first image is one of surroundings on the faces
-/// of a cube (its attribute `envmap`).
+/// Checks the claims of an OpenEXR file's header against its size, before a library allocates memory for them. Throws Error
+/// with the reason, without the path. Other files pass. Returns whether the first image is an environment map on the faces of a
+/// cube (attribute `envmap`).
 bool check_exr_header(const std::string& path);
 
 }  // namespace etendue

@@ -11,7 +11,7 @@
 namespace etendue {
 namespace {
 
-/// Texts of the file, without what only tells how it is packed.
+/// Text attributes of the file, except those about its encoding.
 std::map<std::string, std::string> texts(const OIIO::ImageSpec& spec) {
   std::map<std::string, std::string> found;
   for (const OIIO::ParamValue& p : spec.extra_attribs) {
@@ -23,16 +23,16 @@ std::map<std::string, std::string> texts(const OIIO::ImageSpec& spec) {
   return found;
 }
 
-/// What the file says, else sRGB for whole numbers and linear for the others.
+/// The transfer function that the file states, else sRGB for integers and linear for floats.
 std::string transfer(const OIIO::ImageSpec& spec) {
   const std::string space = spec.get_string_attribute("oiio:ColorSpace");
   if (space == "linear" || space == "Linear" || space == "scene_linear") return "linear";
   return spec.format.is_floating_point() ? "linear" : "srgb";
 }
 
-/// Whether a TGA file holds all its pixels, which the image library does not notice: after a header of 18 bytes (their
-/// meaning: Truevision TGA File Format Specification 2.0), a text and a palette come the pixels, plain or in packets of
-/// 1 to 128, of which those with the top bit set hold one pixel to be repeated.
+/// Whether a TGA file contains all its pixels, which OpenImageIO does not check: a header of 18 bytes (fields: Truevision TGA
+/// File Format Specification 2.0), a text and a palette precede the pixels, which are plain or in packets of 1 to 128, where a
+/// packet with the top bit set holds one pixel to be repeated.
 bool complete_targa(std::string_view file) {
   const auto byte = [&](size_t i) { return size_t(static_cast<unsigned char>(file[i])); };
   const auto word = [&](size_t i) { return byte(i) | byte(i + 1) << 8; };

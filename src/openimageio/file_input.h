@@ -1,5 +1,5 @@
 #pragma once
-// Whole image files as they are.
+// Reads whole image files without conversion.
 
 #include "images/image_library.h"
 

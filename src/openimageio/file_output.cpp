@@ -29,11 +29,11 @@ void add_channels(OIIO::ImageSpec& spec, const std::vector<ImageHeader::Channel>
     equal = equal && channels[i].type == channels[0].type;
     if (channels[i].name == "A") spec.alpha_channel = int(i);
   }
-  if (equal) spec.channelformats.clear();  // not all formats know types per channel
+  if (equal) spec.channelformats.clear();  // not all formats support types per channel
 }
 
 OIIO::ImageSpec spec_of(const std::string& extension, const ImageHeader& header) {
-  // Where types differ this is only that of the numbers on their way to the channels' own.
+  // If types differ, this is only the type in which values are passed to the library.
   const NumberType widest = std::max_element(header.channels.begin(), header.channels.end(), [](const auto& a, const auto& b) {
                               return a.type < b.type;
                             })->type;
@@ -55,9 +55,9 @@ OIIO::ImageSpec spec_of(const std::string& extension, const ImageHeader& header)
     spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), header.chromaticities->data());
   if (extension == ".exr") {
     spec.attribute("compression", "zip");
-    spec.attribute("DateTime", "");  // else the library writes the time, and equal pictures differ
+    spec.attribute("DateTime", "");  // otherwise the library writes the current time, and equal images differ
   }
-  if (spec.alpha_channel >= 0 && extension != ".exr") spec.attribute("oiio:UnassociatedAlpha", 1);  // as they are read
+  if (spec.alpha_channel >= 0 && extension != ".exr") spec.attribute("oiio:UnassociatedAlpha", 1);  // as when they are read
   for (const auto& [name, value] : header.texts) spec.attribute(name, value);
   if (header.transfer == "linear") spec.attribute("oiio:ColorSpace", "linear");
   if (header.transfer == "srgb") spec.attribute("oiio:ColorSpace", "sRGB");
@@ -80,7 +80,7 @@ std::vector<unsigned char> encode_file(const std::string& extension, const Image
       },
       pixels);
   if (header.channels.empty() || count != wanted) refuse("its numbers are not as many as its pixels have");
-  const std::string name = "picture" + extension;  // never opened: the bytes go to memory
+  const std::string name = "picture" + extension;  // never opened: the bytes stay in memory
   std::unique_ptr<OIIO::ImageOutput> encoder = OIIO::ImageOutput::create(name);
   if (!encoder) refuse(OIIO::geterror());
   if (!encoder->supports("ioproxy")) refuse(fmt::format("this image library cannot make {} files in memory", extension));

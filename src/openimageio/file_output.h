@@ -1,5 +1,5 @@
 #pragma once
-// Image files made in memory.
+// Encodes image files in memory.
 
 #include "images/image_library.h"
 

@@ -5,7 +5,7 @@
 
 namespace etendue {
 
-/// One cache for all maps, alive until the program ends.
+/// The cache shared by all textures, which lives until the program ends.
 OIIO::ImageCache& image_cache();
 
 }  // namespace etendue

@@ -46,7 +46,7 @@ void KeptTexels::add(const float* values, size_t count) {
   values_.insert(values_.end(), values, values + count);
 }
 
-/// Appends codes; false, and nothing, when there are too many different numbers.
+/// Appends 8-bit codes; false, with nothing appended, if there are too many different values.
 bool KeptTexels::code(const float* values, size_t count) {
   const size_t before = codes_.size();
   for (size_t i = 0; i < count; ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// All texels of an image in memory, as small as they can be without loss.
+// Stores all texels of an image in memory, in the smallest lossless form.
 
 #include <cstddef>
 #include <cstdint>
@@ -7,25 +7,25 @@
 
 namespace etendue {
 
-/// Numbers of an image in rows, decoded. An image of at most 256 different numbers, as one of 8 bits a channel has, takes a
-/// byte for each and a table; any other takes floats.
+/// The decoded values of an image in rows. An image of at most 256 different values, such as one of 8 bits per channel, takes a
+/// byte for each value and a table; any other takes floats.
 class KeptTexels {
  public:
-  /// Room for so many numbers. Throws std::bad_alloc.
+  /// Reserves memory for `count` values. Throws std::bad_alloc.
   explicit KeptTexels(size_t count);
   ~KeptTexels();
   KeptTexels(const KeptTexels&) = delete;
   KeptTexels& operator=(const KeptTexels&) = delete;
 
-  /// Whether that many numbers may be kept, if they should take floats: all that is kept in this process takes half of the
-  /// machine's memory at most.
+  /// Whether so many values may be stored, assuming floats: all stored texels of the process take at most half of the machine's
+  /// memory.
   static bool allowed(size_t count);
 
-  /// Appends numbers.
+  /// Appends values.
   void add(const float* values, size_t count);
 
   float operator[](size_t place) const { return codes_.empty() ? values_[place] : values_[codes_[place]]; }
-  /// sum += weight * (the numbers from a place on), three of them or one.
+  /// sum += weight * values, for one or three channels from index `place` on.
   void add_to(float* sum, size_t place, int channels, float weight) const {
     sum[0] += weight * (*this)[place];
     if (channels == 3) {
@@ -42,9 +42,9 @@ class KeptTexels {
   void account();
 
   size_t count_, accounted_ = 0;
-  std::vector<std::uint8_t> codes_;   // empty: values_ are the numbers themselves
-  std::vector<float> values_;         // of the codes
-  std::vector<std::int16_t> places_;  // a hash table of values_ by their bits, while codes are made; -1: free
+  std::vector<std::uint8_t> codes_;   // empty: values_ holds the values themselves
+  std::vector<float> values_;         // value of each code
+  std::vector<std::int16_t> places_;  // hash table of values_ by their bits, used while codes are made; -1: free
 };
 
 }  // namespace etendue

@@ -15,7 +15,7 @@
 namespace etendue {
 namespace {
 
-/// Undoes a transfer function for numbers that come from integers or floats.
+/// Decodes a transfer function for values that were stored as integers or floats.
 class Decoder {
  public:
   Decoder() = default;
@@ -23,7 +23,7 @@ class Decoder {
     const bool integer = !format.is_floating_point();
     if (transfer_ == automatic_transfer) transfer_ = integer ? "srgb" : "linear";
     if (transfer_ == "linear" || !integer) return;
-    // 65536 entries hold every 8 and 16 bit number exactly: 255 divides 65535.
+    // 65536 entries represent every 8- and 16-bit number exactly: 255 divides 65535.
     table_.resize(65536);
     for (size_t i = 0; i < table_.size(); ++i) table_[i] = float(decode_transfer(transfer_, double(i) / 65535));
   }
@@ -48,7 +48,7 @@ bool same_name(const std::string& a, const std::string& b) {
   });
 }
 
-/// The places of the channels that are meant, one or three; empty: there are none.
+/// The indices of the selected channels, one or three; empty: there are none.
 std::vector<int> find_channels(const OIIO::ImageSpec& spec, const std::string& channel) {
   if (channel.empty()) return spec.nchannels >= 3 ? std::vector<int>{0, 1, 2} : std::vector<int>{0};
   const auto place = [&](const std::string& name) {
@@ -98,7 +98,7 @@ class LinearInput final : public OIIO::ImageInput {
     const bool alpha = channels_.size() == 1 && channels_[0] == native.alpha_channel && part(1) == automatic_transfer;
     decoder_ = Decoder(alpha ? "linear" : part(1), native.format);
     strip_begin_ = strip_end_ = native.y;
-    // Only what places the pixels is taken over: other attributes speak of the numbers as they are in the file.
+    // Only the windows are copied: other attributes describe the values as stored in the file.
     m_spec = OIIO::ImageSpec(native.width, native.height, int(channels_.size()), OIIO::TypeDesc::FLOAT);
     m_spec.x = native.x;
     m_spec.y = native.y;
@@ -135,7 +135,7 @@ class LinearInput final : public OIIO::ImageInput {
   bool from_cube() const { return cube_.has_value(); }
 
  private:
-  /// Takes all pixels of a cube of surroundings: rows of the picture that it is given as are made of all its faces.
+  /// Reads all pixels of a cube map, since each row of the resulting image depends on all faces.
   bool open_cube() {
     const int side = m_spec.width;
     if (std::int64_t(m_spec.height) != 6 * std::int64_t(side)) {
@@ -156,10 +156,10 @@ class LinearInput final : public OIIO::ImageInput {
     return true;
   }
 
-  /// Reads the row of tiles, or the few scanlines, that hold a scanline.
+  /// Reads the row of tiles, or the few scanlines, that contain a scanline.
   bool read_strip(int y) {
     const OIIO::ImageSpec& native = file_->spec();
-    // All channels from the first to the last that are wanted are read, then the wanted ones picked.
+    // Reads all channels from the first to the last selected one, then picks the selected ones.
     const auto [least, most] = std::minmax_element(channels_.begin(), channels_.end());
     const int first = *least, stop_channel = *most + 1, end = native.y + native.height;
     const size_t channels = size_t(stop_channel - first);
@@ -183,7 +183,7 @@ class LinearInput final : public OIIO::ImageInput {
     return true;
   }
 
-  /// Keeps of each pixel the wanted channels, in place: there are never more of them than were read.
+  /// Keeps only the selected channels of each pixel, in place: there are never more than were read.
   void pick(size_t pixels, size_t channels, int first) {
     float pixel[3] = {};
     for (size_t i = 0; i < pixels; ++i) {
@@ -207,7 +207,7 @@ void check_file_channel(const std::string& path, const std::string& channel) {
   try {
     file = open_checked(path);
   } catch (const Error&) {
-    return;  // whoever reads it will say so
+    return;  // reported when the image is read
   }
   const std::vector<std::string>& known = file->spec().channelnames;
   if (channel.find(separator) == std::string::npos && !find_channels(file->spec(), channel).empty()) return;

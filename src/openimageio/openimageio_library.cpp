@@ -1,4 +1,4 @@
-// The image library as the rest sees it.
+// Registers OpenImageIO as the program's image library.
 
 #include "cached_texture.h"
 #include "checked_open.h"

@@ -4,8 +4,8 @@
 
 namespace etendue {
 
-/// Checks that a PNG file holds as many bytes as its pieces claim, before a library takes memory for them. Throws Error with
-/// the reason alone. What does not begin as a PNG file passes.
+/// Checks that a PNG file contains as many bytes as its chunks claim, before a library allocates memory for them. Throws Error
+/// with the reason, without the path. Other files pass.
 void check_png_chunks(const std::string& path);
 
 }  // namespace etendue

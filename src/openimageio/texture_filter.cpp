@@ -1,4 +1,4 @@
-// Lookups in images: texels, and means over ellipses.
+// Texture lookups: texels, and means over elliptical footprints.
 
 #include <algorithm>
 #include <cmath>
@@ -9,24 +9,23 @@
 
 namespace etendue {
 
-// The mean over an ellipse is taken as Feline does (McCormack, Perry, Farkas and Jouppi 1999, "Feline: fast elliptical lines
-// for anisotropic texture mapping"): by probes along its longer axis, each of which averages over a circle, by two of the
-// levels of halved images. What the parts add up to is chosen by their second moments, so that nothing is too sharp or too
-// soft:
-// - An ellipse w2 wide and w1 >= w2 long, uniformly filled, has variances w2^2 / 16 and w1^2 / 16 along its axes. It is that of
-// a
-//   circle of width w2 and a line of length l = sqrt(w1^2 - w2^2) with the density sqrt(1 - x^2), the projection of a circle.
+// The mean over an ellipse is computed as in Feline (McCormack, Perry, Farkas and Jouppi 1999, "Feline: fast elliptical lines
+// for anisotropic texture mapping"): by probes along its longer axis, each of which averages over a circle by two MIP levels.
+// The combined filter is chosen by its second moments, so that it is neither too sharp nor too soft:
+// - An ellipse w2 wide and w1 >= w2 long, uniformly filled, has variances w2^2 / 16 and w1^2 / 16 along its axes. These are the
+//   variances of a circle of width w2 convolved with a line of length l = sqrt(w1^2 - w2^2) with the density sqrt(1 - x^2), the
+//   projection of a circle.
 // - A texel of level L is the mean over a square of s = 2^L texels, variance (s^2 - 1) / 12, and the linear interpolation
-// between
-//   them has s^2 / 6. Without a footprint what is seen is the texels interpolated, 1 / 6. So level L blurs by a circle w wide
-//   when w^2 / 16 + 1 / 6 = (s^2 - 1) / 12 + s^2 / 6, or s^2 = 1 + w^2 / 4: level 0 when w = 0, as it should be.
-// - Between two levels the share goes by the fraction of detail, log2(s). By variance the coarser one would get a little less,
-//   but with this the result is nearer to the mean over an ellipse: on white noise by 5 to 25 percent of the error.
+//   between texels has s^2 / 6. Without a footprint the result is the interpolated texels, variance 1 / 6. So level L blurs by
+//   a circle of width w if w^2 / 16 + 1 / 6 = (s^2 - 1) / 12 + s^2 / 6, or s^2 = 1 + w^2 / 4: level 0 for w = 0, as it should
+//   be.
+// - Between two levels the weight is the fractional part of the level, log2(s). Weights by variance would give the coarser
+//   level a little less, but these are nearer to the mean over an ellipse: on white noise by 5 to 25 percent of the error.
 // Probes are no farther apart than texels of their level.
 
 namespace {
 
-/// Where a texel outside lies inside; -1: nowhere.
+/// The index inside the image for a texel index outside; -1: none (black).
 int wrapped(int i, int size, Wrap wrap) {
   switch (wrap) {
     case Wrap::repeat: i %= size; return i < 0 ? i + size : i;
@@ -41,8 +40,8 @@ int wrapped(int i, int size, Wrap wrap) {
 
 }  // namespace
 
-/// Adds texels of one level of an image. Of a full image that is not kept it holds on to four tiles of the cache, those that
-/// meet in a corner, as asking for one takes longer than many texels.
+/// Adds up weighted texels of one level of an image. For an image in the cache it keeps references to four tiles, those that
+/// meet in a corner, since requesting a tile takes longer than reading many texels.
 class TexelReader {
  public:
   TexelReader(const CachedTexture& texture, size_t level, Wraps wrap, float* sum)
@@ -58,7 +57,7 @@ class TexelReader {
   float width() const { return float(level_.width); }
   float height() const { return float(level_.height); }
 
-  /// A texel, times a weight.
+  /// Adds a texel times a weight.
   void add(int x, int y, float weight) {
     if (unsigned(x) >= unsigned(level_.width)) x = wrapped(x, level_.width, wrap_.u);
     if (unsigned(y) >= unsigned(level_.height)) y = wrapped(y, level_.height, wrap_.v);
@@ -78,7 +77,7 @@ class TexelReader {
       sum_[2] += weight * texel[2];
     }
   }
-  /// Between four texels, whose centres have whole coordinates.
+  /// Adds the bilinear interpolation of four texels, whose centres have integer coordinates.
   void add_between(float x, float y, float weight) {
     const float left = std::floor(x), top = std::floor(y), fx = x - left, fy = y - top;
     const int i = int(left), k = int(top);
@@ -89,7 +88,7 @@ class TexelReader {
   }
 
  private:
-  /// A texel of the full image; null where the display window is empty, and if its file was removed since it was opened.
+  /// A texel of level 0; null outside the stored pixels, and if the file was removed after it was opened.
   const float* cached(int x, int y) {
     x -= texture_.begin_x_;
     y -= texture_.begin_y_;
@@ -132,10 +131,10 @@ class TexelReader {
 
 namespace {
 
-/// The axes of an ellipse on the image, in texels.
+/// The axes of an elliptical footprint, in texels.
 struct Ellipse {
   float longer = 0, shorter = 0;
-  Vector2 direction{1, 0};  // of the longer one, unit
+  Vector2 direction{1, 0};  // of the longer axis, unit length
 };
 
 /// A footprint's two vectors are conjugate diameters. With A the matrix of them as columns, the axes are the square roots of
@@ -143,7 +142,7 @@ struct Ellipse {
 Ellipse ellipse_of(const UvFootprint& f, float width, float height) {
   double a = double(f.longer.x) * double(width), b = double(f.longer.y) * double(height);
   double c = double(f.shorter.x) * double(width), d = double(f.shorter.y) * double(height);
-  // Far beyond the image everything is its mean.
+  // Much larger footprints give the mean of the image.
   const double most = std::max({std::abs(a), std::abs(b), std::abs(c), std::abs(d)}), enough = 1e6;
   if (!(most < std::numeric_limits<double>::infinity())) return {float(enough), float(enough), {1, 0}};
   if (most > enough) a *= enough / most, b *= enough / most, c *= enough / most, d *= enough / most;
@@ -157,10 +156,10 @@ Ellipse ellipse_of(const UvFootprint& f, float width, float height) {
   return e;
 }
 
-/// The level that blurs by a circle of so many texels.
+/// The level that blurs by a circle of this width in texels.
 float detail_of(float width) { return 0.5f * std::log2(1 + square(width) / 4); }
 
-/// Coordinates near the image, where whole numbers can count texels; its longer side has so many.
+/// Moves coordinates so close to the image that integers can index texels; `texels`: number along its longer side.
 Point2 near(Point2 at, Wraps wrap, int texels) {
   if (!(std::isfinite(at.x) && std::isfinite(at.y))) return {NAN, NAN};
   const float far = std::min(1000.0f, 1e9f / float(texels));
@@ -191,8 +190,8 @@ void CachedTexture::bilinear(Point2 at, Wraps wrap, float* out) const {
   TexelReader(*this, 0, wrap, out).add_between(x, y, 1);
 }
 
-/// What TexelReader::add_between adds, of an image that is kept and fills its display window: the usual case, in half the time.
-/// False: some of the texels are nowhere.
+/// TexelReader::add_between for an image that is stored in memory and fills its display window: the usual case, in half the
+/// time. False: some of the texels are outside, where the image is black.
 bool CachedTexture::add_kept_between(float x, float y, Wraps wrap, float* out) const {
   const float left = std::floor(x), top = std::floor(y), fx = x - left, fy = y - top;
   int columns[2] = {int(left), int(left) + 1}, rows[2] = {int(top), int(top) + 1};

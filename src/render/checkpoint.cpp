@@ -1,4 +1,4 @@
-// Checkpoints of jobs: made, compared, merged.
+// Checkpoints of jobs: creation, comparison, merging.
 
 #include "checkpoint.h"
 
@@ -64,7 +64,7 @@ void drop_short_pass(std::vector<IndexRange>& ranges, std::uint32_t samples_per_
   if (last.begin == last.end) ranges.pop_back();
 }
 
-// ---- of a job -----------------------------------------------------------------------------------------------------------
+// ---- creation --------------------------------------------------------------------------------------------------------------
 
 Checkpoint empty_checkpoint(const Job& job, const Identity& identity, std::uint32_t samples_per_step) {
   Checkpoint c;
@@ -77,7 +77,7 @@ Checkpoint empty_checkpoint(const Job& job, const Identity& identity, std::uint3
   if (job.tone_map) c.tone_map = write_description(*job.tone_map);
   for (const Ref<Output>& output : job.outputs) {
     if (!output) continue;
-    // Wherever it is written from later, the file is where the description says.
+    // The absolute path that the description means, wherever the output is written from later.
     const Ref<Output> placed = ref_cast<Output>(copy(*output));
     if (!placed->file.empty()) placed->file = {std::filesystem::absolute(placed->file.resolved()).lexically_normal(), {}};
     c.outputs.push_back(write_description(*placed));
@@ -108,7 +108,7 @@ KeptPicture picture_of(const Checkpoint& c) {
   return {job, kept.picture()};
 }
 
-// ---- compared and merged --------------------------------------------------------------------------------------------------
+// ---- comparison and merging ------------------------------------------------------------------------------------------------
 
 std::string mismatch(const Checkpoint& a, const std::string& whose, const Checkpoint& b, const std::string& other_whose) {
   if (a.version != b.version)
@@ -140,7 +140,7 @@ std::vector<Error> reasons_against(const std::vector<Part>& parts) {
     for (const IndexRange& range : part.header.done) ranges.emplace_back(range, &part.path);
   }
   std::ranges::stable_sort(ranges, {}, [](const auto& r) { return r.first.begin; });
-  // Compared with the range that reaches farthest: the one before need not be it.
+  // Compared with the earlier range that ends last, which need not be the preceding one.
   for (size_t i = 1, far = 0; i < ranges.size(); ++i) {
     const auto& [range, path] = ranges[i];
     const auto& [other, other_path] = ranges[far];

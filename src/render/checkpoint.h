@@ -1,5 +1,6 @@
 #pragma once
-// The state of a render at a pass boundary: in a file, compared with a job, and added to that of other parts.
+// Checkpoint: the state of a render between two passes. It is written to files, compared with a job, and merged with the states
+// of other parts of the render.
 
 #include <iosfwd>
 #include <map>
@@ -12,7 +13,7 @@
 
 namespace etendue {
 
-/// What determines the samples of a job, besides the seed and the numbers of the samples.
+/// What determines the samples of a job, besides the seed and the indices of the samples.
 struct Identity {
   /// A file that the description names.
   struct File {
@@ -20,25 +21,26 @@ struct Identity {
     std::uint64_t size = 0, hash = 0;
     bool operator==(const File&) const = default;
   };
-  /// The description without seed, outputs, tone map, number of samples and limits, paths relative to its folder.
+  /// The description without seed, outputs, tone map, number of samples and limits; paths are relative to its folder.
   std::string text;
   std::vector<File> files;
 };
 
 /// Reads every file the description names, once.
 Identity identity_of(const Job&);
-/// The files that a component and its parts name to be read; outputs name none.
+/// The input files that a component and its parts name; outputs name no inputs.
 std::vector<std::string> files_named_by(const Component&);
-/// Notes all of them as inputs (files/input_files.h), whether or not they have been read yet: those of its parts, of spectra,
-/// of plugins that its classes come from.
+/// Registers these files as inputs (files/input_files.h), whether or not they have been read yet: files of the components, of
+/// spectra, and of plugins that define their classes.
 void note_inputs_of(const Component&);
-/// What differs, in words for the user; empty: nothing. `whose` and `other_whose` say whose they are: "the checkpoint".
+/// The first difference, as a text for the user; empty: there is none. `whose` and `other_whose` name the owners: "the
+/// checkpoint".
 std::string difference(const Identity&, const std::string& whose, const Identity& other, const std::string& other_whose);
 
 struct Checkpoint {
-  /// What the passes made, from which further ones go on.
+  /// The results of the passes, from which further passes continue.
   struct State {
-    std::vector<std::byte> image, renderer;  ///< of Film::save_state and Renderer::save_state
+    std::vector<std::byte> image, renderer;  ///< from Film::save_state and RenderProcess::save_state
   };
 
   std::string version;  ///< of the program
@@ -46,43 +48,44 @@ struct Checkpoint {
   std::uint64_t seed = 0;
   std::uint32_t samples_per_pass = 1;
   std::uint32_t samples_wanted = 0;  ///< of the whole render, of which this may be a part
-  std::vector<IndexRange> done;      ///< samples of each pixel: sorted, apart from each other
-  double seconds = 0;                ///< spent on them
+  std::vector<IndexRange> done;      ///< samples of each pixel: sorted disjoint ranges
+  double seconds = 0;                ///< spent on these samples
   State state;
-  /// The state before the last pass when that was shorter than others, since the samples wanted were no multiple. Going on
-  /// with more samples begins here: sums are then the same as if that many had been wanted at once.
+  /// The state before the last pass, if that pass was shorter than the others because the number of samples was no multiple of
+  /// a pass. A continuation with more samples starts from this state: its sums are then the same as if that many samples had
+  /// been wanted from the beginning.
   std::optional<State> before_short_pass;
 
-  // To write the picture without the scene: descriptions of the image, the tone map and the outputs of the file.
+  // Descriptions of the image, the tone map and the outputs, by which the picture can be written without the scene.
   std::string image, tone_map;
   std::vector<std::string> outputs;
   std::map<std::string, std::string> metadata;
 };
 
-/// The checkpoint of a prepared job that has not begun: all but the state.
+/// The checkpoint of a prepared job that has not begun: everything except the state.
 Checkpoint empty_checkpoint(const Job&, const Identity&, std::uint32_t samples_per_step);
 
-/// Writes beside the path and renames: a file is whole or as it was. Throws Error naming the path and the reason.
+/// Writes to a temporary file and renames it: the file is complete or unchanged. Throws Error with the path and the reason.
 void write_checkpoint(const Checkpoint&, const std::string& path);
-/// The same bytes. Throws Error when the stream does not take them.
+/// Writes the same bytes to a stream. Throws Error if the stream fails.
 void write_checkpoint(const Checkpoint&, std::ostream&);
-/// Throws Error naming the path and what is wrong: no checkpoint, too short, damaged, of another version.
+/// Throws Error with the path and the reason: not a checkpoint, too short, damaged, of another version.
 Checkpoint read_checkpoint(const std::string& path);
-/// Of a stream that holds one, and no more.
+/// Reads from a stream that contains one checkpoint and nothing else.
 Checkpoint read_checkpoint(std::istream&);
-/// The same without the states, which are large and are not looked at.
+/// Reads a checkpoint without its states, which are large; they are not checked either.
 Checkpoint read_checkpoint_header(const std::string& path);
-/// Removes what processes that were killed while they wrote this checkpoint left beside it.
+/// Removes the temporary files of this checkpoint that killed processes left in its folder.
 void remove_leftovers(const std::string& path);
 
-/// Why the samples of two must not be added; empty: they may.
+/// Why the samples of two checkpoints must not be added; empty: they may.
 std::string mismatch(const Checkpoint&, const std::string& whose, const Checkpoint& other, const std::string& other_whose);
 
 /// One checkpoint of all the samples in the files, which must be of the same job and have none in common; the order
 /// does not matter. Throws Error.
 Checkpoint merge_checkpoints(const std::vector<std::string>& paths);
 
-/// What writes the picture of a checkpoint: a job without a scene, and the picture.
+/// The picture of a checkpoint, and a job without a scene whose outputs write it.
 struct KeptPicture {
   Ref<Job> job;
   Image picture;
@@ -95,7 +98,7 @@ KeptPicture picture_of(const Checkpoint&);
 std::uint32_t count(const std::vector<IndexRange>&);
 /// Adds a range, joined to those it touches.
 void insert(std::vector<IndexRange>&, IndexRange);
-/// What is in `whole` and in none of the ranges.
+/// The parts of `whole` that are in none of the ranges.
 std::vector<IndexRange> missing(const std::vector<IndexRange>&, IndexRange whole);
 /// "samples 0 to 63, 128 to 191"
 std::string samples_text(const std::vector<IndexRange>&);

@@ -1,9 +1,9 @@
-// Checkpoints in files.
+// Checkpoints as files.
 //
-// All numbers as the machine has them (little endian). A preamble of 64-bit words: name and version of the format, the
-// length of the file, the lengths of the five parts that follow, the hash of the first of them, the hash of all the words
-// before. The parts: a header (see `header` below), the states of the image and the renderer, and both again from before a
-// short pass or nothing. Last comes the hash of all that.
+// All numbers are in the machine's byte order (little endian). The preamble consists of 64-bit words: name and version of the
+// format, the length of the file, the lengths of the five parts that follow, the hash of the first part, and the hash of all
+// preceding words. The parts are: a header (see `header` below), the states of the image and of the renderer, and the same two
+// states from before a short pass, which may be empty. The last word is the hash of everything before it.
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -80,7 +80,7 @@ Bytes header(const Checkpoint& c) {
   return std::move(w.bytes);
 }
 
-/// Returns whether there is a state from before a short pass. What version wrote it is checked before the rest is read.
+/// Returns whether there is a state from before a short pass. The program version is checked before the rest is read.
 bool read_header(const Bytes& bytes, Checkpoint& c) {
   ByteReader r(bytes, "its header");
   c.version = r.text();
@@ -120,7 +120,7 @@ bool read_header(const Bytes& bytes, Checkpoint& c) {
   return before;
 }
 
-/// Of a RegularFile, or of what can be read like one.
+/// Reads from a RegularFile, or from another source with its functions.
 template <class Source>
 Checkpoint read(Source& file, bool states) {
   const std::uint64_t size = file.size();
@@ -181,7 +181,7 @@ Checkpoint read(const std::string& path, bool states) {
 
 namespace {
 
-/// The bytes of a checkpoint, as pieces of it and of what belongs to it.
+/// The bytes of a checkpoint, as pieces that refer to it and to the header, preamble and hash stored here.
 class Pieces {
  public:
   explicit Pieces(const Checkpoint& c) : head_(header(c)) {
@@ -234,7 +234,7 @@ Checkpoint read_checkpoint(std::istream& from) {
     void seek(std::uint64_t offset) { at = size_t(offset); }
     void read(void* to, std::uint64_t count) {
       if (count > bytes.size() - at) throw Error("it ends too early");
-      if (count == 0) return;  // what is empty may have no place
+      if (count == 0) return;  // memcpy must not be given the null pointer of an empty part
       std::memcpy(to, bytes.data() + at, size_t(count));
       at += size_t(count);
     }

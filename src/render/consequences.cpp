@@ -16,7 +16,7 @@ void for_components(const Value& value, const std::function<void(Component&)>& c
   }
 }
 
-/// Whether a part is among what another one holds, at any depth, or is it.
+/// Whether a component is `part`, or contains it at any depth.
 bool holds(const Component& holder, const Component& part) {
   std::unordered_set<const Component*> seen;
   std::vector<const Component*> rest{&holder};
@@ -51,8 +51,9 @@ Holders::Holders(const Job& job) {
   }
 }
 
-// A member that holds a part says what becomes of an edit of it. One that is shown only is no more than shown. One that is
-// built from is built anew, unless it is an object whose own shape stays: what holds objects is built from their shapes.
+// An effect propagates from a component to its holders, and the holding member limits or raises it. A member with
+// Effect::retone reduces it to retone. A member with Effect::rebuild raises rerender to rebuild, unless the component is an
+// object, whose shape does not change: structures over objects are built from their shapes.
 void Consequences::spread(const Holders& holders, const Component& part, Effect effect) {
   const auto [at, fresh] = parts_.try_emplace(&part, effect);
   if (!fresh && at->second >= effect) return;
@@ -71,7 +72,7 @@ void Consequences::note(const Holders& holders, Component& part, const Member& m
   spread(holders, part, member.effect);
   if (auto* object = dynamic_cast<SceneObject*>(&part); object && member.kind == Kind::transform) {
     moved_.emplace(object, object->transform.outer());
-    // From where the objects within count depends on it.
+    // The origin of the objects within depends on this transform.
     everything_ |= !object->placed_within().empty() || dynamic_cast<Instance*>(object) != nullptr;
   }
   if (member.kind != Kind::component) return;
@@ -90,7 +91,7 @@ void Consequences::prepare(Job& job, const Holders& before) const {
   if (effect_ >= Effect::rerender) {
     bool everything = everything_ || job.centre_is_stale();
     if (effect_ == Effect::rebuild) {
-      // Where its objects are decides from where a scene counts, if it is far from its camera, or stands in several places.
+      // The positions of its objects determine the origin of a scene that is far from the camera, or that is instanced.
       everything |= !job.counts_from_camera();
       for (const auto& [part, effect] : parts_) {
         const auto* scene = dynamic_cast<const Scene*>(part);
@@ -105,7 +106,7 @@ void Consequences::prepare(Job& job, const Holders& before) const {
   if (effect_ == Effect::rebuild && job.centre_is_stale()) prepare_tree(job);
 }
 
-/// What a part holds comes before it. A stack of its own, as in prepare_tree: chains may be long.
+/// Prepares parts before their holders. Uses an explicit stack, as prepare_tree does: chains of components may be long.
 void Consequences::prepare_parts(Job& job, const Holders& before) const {
   struct Visit {
     Component* part;

@@ -1,5 +1,5 @@
 #pragma once
-// What an edit of some members of a job's parts forces to be prepared again, and no more.
+// Consequences: what must be prepared again after an edit of some members of a job's components, and nothing more.
 
 #include <map>
 #include <unordered_map>
@@ -10,7 +10,7 @@
 
 namespace etendue {
 
-/// Who holds whom among the parts of a job.
+/// The holders of each component of a job.
 class Holders {
  public:
   explicit Holders(const Job&);
@@ -18,7 +18,7 @@ class Holders {
   bool knows(const Component& part) const { return held_by_.contains(&part); }
   struct Holder {
     const Component* component;
-    const Member* member;  ///< by which it holds
+    const Member* member;  ///< the member that refers to the component
   };
   const std::vector<Holder>& of(const Component& part) const { return held_by_.at(&part); }
 
@@ -26,20 +26,21 @@ class Holders {
   std::unordered_map<const Component*, std::vector<Holder>> held_by_;
 };
 
-/// How an edit of members concerns the parts of a job.
+/// The effects of an edit on the components of a job.
 class Consequences {
  public:
-  /// Notes that a member of a part is edited. To be told of all edits before any is made.
+  /// Adds the edit of one member of a component. All edits must be noted before any of them is made.
   void note(const Holders&, Component& part, const Member&, const Value& now);
 
-  /// Of the whole edit, as it concerns the picture.
+  /// The effect of the whole edit on the picture.
   Effect effect() const { return effect_; }
-  /// Whether nothing but this part, and the job that holds it, is concerned.
+  /// Whether only this component, and the job that holds it, is affected.
   bool concern_only(const Component& part) const { return parts_.size() == 2 && parts_.contains(&part); }
-  /// Whether which parts the job has may change.
+  /// Whether the set of the job's components may change.
   bool structure() const { return structure_; }
 
-  /// Prepares again what is concerned, and for the first time what is new to `before`. Throws what preparing throws.
+  /// Prepares the affected components again, and those that are new since `before` for the first time. Passes on exceptions of
+  /// prepare.
   void prepare(Job&, const Holders& before) const;
 
  private:
@@ -47,7 +48,8 @@ class Consequences {
   void prepare_parts(Job&, const Holders& before) const;
 
   std::unordered_map<const Component*, Effect> parts_;
-  /// Objects whose transform is edited, and the point it counted from outside: a new one has to be told.
+  /// Objects whose transform is edited, with the origin of the outer space of the old transform, which the new one must get,
+  /// too.
   std::map<SceneObject*, DoublePoint3> moved_;
   Effect effect_ = Effect::none;
   bool structure_ = false, everything_ = false;

@@ -14,26 +14,26 @@
 namespace etendue {
 namespace {
 
-/// Camera paths as those of the renderer, that bring no light.
+/// Traces the camera paths of the renderer for features only; the radiance is 0.
 class GuideProcess final : public RenderProcess {
  public:
   using RenderProcess::RenderProcess;
 
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
-    // Between two mirrors that face each other paths go on for ever.
+    // Paths between two parallel mirrors would never end.
     constexpr int longest = 32;
-    Features* const features = std::exchange(sample.observe.features, nullptr);
+    Features* const features = std::exchange(sample.sink.features, nullptr);
     CameraWalk<> walk(context.scene, sample, ray, longest);
     const auto nothing = [](const SurfacePoint&) { return 0.0f; };
     Spectrum color;
     Vector3 normal;
     while (true) {
       if (!walk.next_vertex(nothing)) {
-        if (walk.vertex.kind == Vertex::Kind::escape && !context.scene.infinite_luminaires(walk.ray).empty())
+        if (walk.vertex.kind == PathVertex::Kind::escape && !context.scene.infinite_luminaires(walk.ray).empty())
           color = walk.throughput;
         break;
       }
-      const Vertex& v = walk.vertex;
+      const PathVertex& v = walk.vertex;
       if (v.in_medium() || v.scatters_smoothly() || v.point.object->luminaire() || walk.at_end()) {
         const bool shines = !v.in_medium() && v.point.object->luminaire();
         const Spectrum scattered = v.on_surface() && v.scatter ? v.scatter->albedo(v.out) : Spectrum();
@@ -57,7 +57,8 @@ class GuideProcess final : public RenderProcess {
   }
 };
 
-/// A layer that says how noisy the picture was, or holds a part of its light.
+/// Whether a channel describes the noise of the original picture or holds a part of its light; neither is valid for the
+/// denoised picture.
 bool tells_of_noise(const std::string& channel) {
   return channel.starts_with("variance.") || channel.starts_with("length_") || channel.starts_with("light.");
 }
@@ -139,7 +140,7 @@ std::vector<std::string> denoised_paths(const std::vector<Ref<Output>>& outputs,
 
 void require_denoisers(const std::vector<Ref<Output>>& outputs) {
   for_denoised(outputs, [](const DenoisedOutput& o) {
-    if (!o.denoiser) return;  // preparing says so
+    if (!o.denoiser) return;  // preparing reports it
     try {
       o.denoiser->require();
     } catch (const Error& error) {

@@ -1,39 +1,39 @@
 #pragma once
-// The last stage of a render: a second picture beside the one that was rendered, where an output wants it.
+// Denoising: the last stage of a render. It makes a second picture beside the rendered one, for outputs that request it.
 
 #include "etendue/denoised_output.h"
 #include "etendue/render/job.h"
 
 namespace etendue {
 
-/// What a denoiser is told of each pixel beside its light, from so many samples: see Denoiser::denoised. Of a prepared job,
-/// which must not change meanwhile; a function of it alone.
+/// The auxiliary features of each pixel for a denoiser, from this many samples: see Denoiser::denoised. The job must be
+/// prepared, and must not change meanwhile; the features depend on it alone.
 ///
-/// A camera path is followed through mirrors and clear glass, and what lets it pass, to the first vertex that scatters to all
-/// sides, shines, or is the last; there the colour of what is scattered of white light counts, weakened by what the way let
-/// through, and the normal towards the viewer. Luminaires, also far ones, are white; a medium has the colour of the way.
+/// A camera path is followed through specular and null scattering to the first vertex that has a non-delta lobe, emits, or is
+/// the last one. The albedo feature is the albedo at this vertex times the path's throughput, and the normal feature is the
+/// normal on the viewer's side. The albedo of emitters, of infinite ones too, and of media is 1.
 Image denoising_guides(const Job&, int samples, int threads);
 
-/// The picture as a denoiser makes it, marked as biased in its texts. Layers that tell of its noise, or of parts of its light,
-/// are left out. Throws Error.
+/// The denoised picture, with the bias recorded in its metadata. Channels that describe noise, or hold parts of the light, are
+/// left out. Throws Error.
 Image denoised(const Denoiser&, const Job&, const Image& picture, int threads);
 
-/// Wraps all outputs that are not wrapped yet: all pictures get a denoised one beside them.
+/// Wraps all outputs that are not wrapped yet, so that each picture gets a denoised version beside it.
 std::vector<Ref<Output>> with_denoising(const std::vector<Ref<Output>>&);
 
-/// Where the denoised pictures of those outputs go that have any; `stem` as for Output::path.
+/// The paths of the denoised pictures, for the outputs that have one; `stem` as for Output::path.
 std::vector<std::string> denoised_paths(const std::vector<Ref<Output>>&, const std::string& stem);
 
-/// Throws Errors when a denoiser of these outputs cannot work here.
+/// Throws Errors if a denoiser of these outputs cannot run on this machine.
 void require_denoisers(const std::vector<Ref<Output>>&);
 
-/// What the picture of an output is shown through; null: nothing.
+/// The tone map that is applied to the picture of an output; null: none.
 const ToneMap* tone_map_of(const Job&, const Output&);
 
-/// Warns when these outputs denoise a picture of a prepared job whose filter makes noise alike in neighbouring pixels.
+/// Warns if these outputs denoise a picture of a prepared job whose filter correlates the noise of neighbouring pixels.
 void warn_of_wide_filter(const Job&, const std::vector<Ref<Output>>&);
 
-/// Writes them, when the pictures themselves are written. Returns the paths of those that were; what went wrong is added to
+/// Writes the denoised pictures, after the pictures themselves are written. Returns the paths written; failures are added to
 /// `errors`.
 std::vector<std::string> write_denoised(const Job&, const std::vector<Ref<Output>>&, const Image& picture,
                                         const std::string& stem, int threads, std::vector<Error>& errors);

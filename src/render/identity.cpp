@@ -1,4 +1,4 @@
-// What determines a job's samples: its description and the contents of the files that names.
+// Identity: what determines a job's samples, which is its description and the contents of the files that it names.
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder of the file a job was written in.
+/// The folder of the file that contains the job.
 std::string folder_of(const Job& job) {
   const fs::path file = job.origin ? job.origin->location.file : "";
   std::error_code error;
@@ -35,7 +35,7 @@ class FileCollector {
 
   void visit(const Component& c) {
     if (!visited_.insert(&c).second) return;
-    if (dynamic_cast<const Output*>(&c)) return;  // what that names is written
+    if (dynamic_cast<const Output*>(&c)) return;  // outputs name files that are written, not read
     const ClassInfo& info = c.class_info();
     // The code of a plugin determines samples as well.
     if (!info.provider.empty()) add(info.provider);
@@ -70,7 +70,7 @@ class FileCollector {
       for (const Value& item : *list) visit(item);
     }
   }
-  /// `spectrum("path"`, anywhere in a colour's expression.
+  /// Adds the path of each call `spectrum("path"` in the expression of a colour.
   void visit_expression(const std::string& expression) {
     static constexpr std::string_view call = "spectrum(\"";
     for (size_t at = expression.find(call); at != std::string::npos; at = expression.find(call, at + 1)) {
@@ -86,7 +86,7 @@ class FileCollector {
       add(path);
     }
   }
-  /// A file, or the images of all unit squares that a name with <UDIM> stands for.
+  /// Adds a file, or the images of all unit squares for a name with <UDIM>.
   void add(const std::string& path) {
     for (const UdimFile& image : udim_files(path)) add_one(image.path);
     add_one(path);
@@ -99,10 +99,10 @@ class FileCollector {
 
   std::string folder_;
   std::set<const Component*> visited_;
-  std::map<std::string, std::string> paths_;  // as told, and as opened
+  std::map<std::string, std::string> paths_;  // by the name in the identity, the path to open
 };
 
-/// The line of `text` in which it begins to differ from `other`, quoted and short enough to be shown.
+/// The first line of `text` that differs from `other`, quoted and shortened.
 std::string different_line(const std::string& text, const std::string& other) {
   const auto at = size_t(std::ranges::mismatch(text, other).in1 - text.begin());
   const size_t before = at == 0 ? std::string::npos : text.rfind('\n', at - 1),
@@ -112,7 +112,7 @@ std::string different_line(const std::string& text, const std::string& other) {
   if (begin == end) return "nothing";
   constexpr size_t most = 60;
   if (end - begin <= most) return "'" + text.substr(begin, end - begin) + "'";
-  // The part with the difference, cut between characters.
+  // The part with the difference, cut between UTF-8 characters.
   size_t from = at > begin + most / 2 ? std::min(at - most / 2, end - most) : begin, to = from + most;
   const auto within_character = [&](size_t i) { return i < end && (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; };
   while (within_character(from)) ++from;
@@ -123,7 +123,7 @@ std::string different_line(const std::string& text, const std::string& other) {
 }  // namespace
 
 Identity identity_of(const Job& job) {
-  // A job of the same parts without those that do not matter, so that nothing is changed or copied but the renderer.
+  // A job of the same components without those that do not affect samples: only the renderer is copied, and nothing is changed.
   const std::string folder = folder_of(job);
   const Ref<Job> bare = make<Job>();
   bare->renderer = ref_cast<Renderer>(copy(*job.renderer));
@@ -133,7 +133,7 @@ Identity identity_of(const Job& job) {
   bare->image = job.image;
   bare->wavelengths = job.wavelengths;
   Identity identity;
-  // With this spelling of the folder no path in it keeps the spelling it was given with: "./a.ply" and "a.ply" are the same.
+  // Written with the folder as "folder/.", no path keeps its original spelling: "./a.ply" and "a.ply" become the same.
   identity.text = write_description(*bare, false, folder.empty() ? folder : folder + "/.");
   FileCollector files(folder);
   files.visit(*bare);
@@ -159,7 +159,7 @@ std::string difference(const Identity& a, const std::string& whose, const Identi
   const auto [x, y] = std::ranges::mismatch(a.files, b.files, same);
   if (x == a.files.end() && y == b.files.end()) return {};
   if (x == a.files.end() || y == b.files.end() || x->name != y->name) {
-    // In order of names: the first that only one of them has.
+    // The files are sorted by name: this is the first one that only one of the two has.
     const bool only_first = y == b.files.end() || (x != a.files.end() && x->name < y->name);
     return fmt::format("the description stands for other files: only {} has '{}'", only_first ? whose : other_whose,
                        only_first ? x->name : y->name);

@@ -13,7 +13,7 @@ namespace etendue {
 
 namespace {
 
-/// Bounds of all that has an end, as the scene will be when it is prepared: which these objects are for this.
+/// The bounding box of all finite objects, which are prepared for this as they will be in the scene.
 Bounds3 prepared_bounds(const Scene& scene) {
   Bounds3 all;
   for (const Ref<SceneObject>& object : scene.objects) {
@@ -35,8 +35,8 @@ DoubleVector3 sum(double a, const DoubleVector3& x, double b, const DoubleVector
   return {a * x.x + b * y.x + c * z.x, a * x.y + b * y.y + c * z.y, a * x.z + b * y.z + c * z.z};
 }
 
-/// A camera that sees all of a scene from the front, a little from the right and from above. "Front" is +z where y is up, as in
-/// glTF and most models, and -y where z is up, as in CAD.
+/// A camera that sees the whole scene from the front, a little from the right and from above. "Front" is +z if y is up, as in
+/// glTF and most models, and -y if z is up, as in CAD.
 Ref<Camera> camera_on(const Scene& scene, const Importing& importing) {
   const Bounds3 bounds = prepared_bounds(scene);
   const Location at = importing.at();
@@ -61,8 +61,8 @@ Ref<Camera> camera_on(const Scene& scene, const Importing& importing) {
   return ref_cast<Camera>(camera);
 }
 
-/// A studio around the model: a dim room, a large soft lamp above on the left behind the camera and a small one on the right,
-/// so that shapes can be told, shadows are soft and metals have something to mirror.
+/// Adds a studio environment: a dim room, a large soft lamp above on the left behind the camera and a small one on the right.
+/// Shapes are distinguishable, shadows are soft, and metals reflect something.
 void add_light(Scene& scene, const Importing& importing) {
   constexpr const char* studio =
       R"etd(EnvironmentEmission { radiance: MultiplyMap { first: illuminant("D65"), second: FormulaMap { formula: ")etd"
@@ -73,12 +73,12 @@ void add_light(Scene& scene, const Importing& importing) {
   const Location at = importing.at();
   Ref<Component> room = importing.make("Environment", at);
   set(*room, "emission", Value(parse_component(studio, "light added to " + importing.path()), at));
-  // Up is +y in it, and front +z.
+  // The environment's own axes have +y up and +z to the front.
   if (importing.up.z != 0) set(*room, "transform", Value(Transform::rotate(importing.up.z * double(pi) / 2, {1, 0, 0}), at));
   scene.objects.push_back(ref_cast<SceneObject>(room));
 }
 
-/// Adds light where there is none, unless `-D light=no`.
+/// Adds light if the scene has none, unless `-D light=no`.
 void light_if_dark(Scene& scene, Importing& importing, bool lit) {
   const std::string wanted = importing.parameter("light").value_or(lit ? "no" : "yes");
   if (wanted != "yes" && wanted != "no") throw Error("'light' is yes or no", importing.at());
@@ -97,7 +97,7 @@ Ref<Job> job_around(const Ref<Scene>& scene, Importing& importing) {
   return ref_cast<Job>(job);
 }
 
-/// What an importer read as a job that can be rendered.
+/// The result of an importer, completed to a job that can be rendered.
 Ref<Job> whole_job(const Ref<Component>& read, Importing& importing) {
   if (const Ref<Job> job = ref_cast<Job>(read)) {
     if (importing.is_lit) light_if_dark(*job->scene, importing, *importing.is_lit);
@@ -108,7 +108,7 @@ Ref<Job> whole_job(const Ref<Component>& read, Importing& importing) {
   return job_around(scene, importing);
 }
 
-/// What an include sees.
+/// A file of another program as an include statement uses it.
 class ImportedFile final : public language::OtherFile {
  public:
   ImportedFile(const Importer& importer, const std::string& path, const ImportOptions& options,
@@ -118,7 +118,7 @@ class ImportedFile final : public language::OtherFile {
   }
 
   Ref<Component> job() override { return whole_job(read_, importing_); }
-  // Notes about parameters that the file does not have stand where the command line has them.
+  // Messages about parameters that the file does not have are left out: unused_parameters returns these parameters.
   std::vector<Error> notes() override {
     std::vector<Error> all = importing_.notes();
     std::erase_if(all, [&](const Error& note) {

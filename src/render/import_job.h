@@ -1,5 +1,5 @@
 #pragma once
-// Files of other programs into jobs.
+// Import of files of other programs as jobs.
 
 #include "etendue/importer.h"
 #include "etendue/render/job.h"
@@ -9,14 +9,14 @@ namespace etendue {
 
 struct ImportedJob {
   Ref<Job> job;
-  std::vector<Error> notes;  ///< what is not as in the source, or was added for it
+  std::vector<Error> notes;  ///< differences from the source file, and additions to it
 };
 
-/// The job that a file of another program describes. To one that holds objects alone a camera that sees them all and a sky are
-/// added. Throws Errors; of the notes too when the options are strict.
+/// The job that a file of another program describes. If the file contains objects only, a camera that sees them all and an
+/// environment light are added. Throws Errors; with strict options also for the notes.
 ImportedJob import_job(const Importer&, const std::string& path, const LoadOptions&);
 
-/// How files of other programs are included in descriptions.
+/// The interface by which descriptions include files of other programs.
 const language::OtherFiles& imported_files();
 
 }  // namespace etendue

@@ -13,7 +13,7 @@
 namespace etendue {
 namespace {
 
-/// Whether a shader lets all light straight through, everywhere.
+/// Whether a shader is fully transparent everywhere, so that all light is null-scattered.
 bool lets_all_through(const Shader& shader) {
   const std::string& kind = shader.class_info().name;
   const char* const member = kind == "MaskShader" ? "opacity" : (kind == "Principled" ? "geometry_opacity" : nullptr);
@@ -36,7 +36,7 @@ struct Surfaces {
   }
 
  private:
-  // What has no shader is black, unless it only shines; what has a medium inside is seen by that.
+  // An object without a shader is black, unless it only emits; an object with a medium inside is visible by this medium.
   void add(const SceneObject& object) {
     if (const auto* const scene = dynamic_cast<const Scene*>(&object)) return add(*scene);
     bool holds_others = false;

@@ -1,12 +1,12 @@
 #pragma once
-// What an importer reads, with what only the whole of it tells.
+// Imports a file and checks it as a whole.
 
 #include "etendue/importer.h"
 
 namespace etendue {
 
-/// The Job or Scene that an importer makes of a file. That nothing of it can be seen, since all its surfaces are fully
-/// transparent, is told: mostly a file means something else by its numbers.
+/// The Job or Scene that an importer makes of a file. Warns if nothing in it is visible because all surfaces are fully
+/// transparent: then the importer has probably misread the opacity.
 Ref<Component> imported(const Importer&, Importing&);
 
 }  // namespace etendue

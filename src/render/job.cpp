@@ -52,9 +52,9 @@ void Job::count_from(const DoublePoint3& centre) {
   etendue::count_from(*scene, centre, camera->shutter_open);
 }
 
-/// The camera's place, rounded to 16 times the distance of what it looks at, up to a power of two: as floats are 2^-24 apart,
-/// this is fine enough for what is seen (decision 020), and a camera that is moved a little leaves the scene as it was
-/// prepared.
+/// The camera's position, rounded to multiples of 16 times its viewing distance (the distance rounded up to a power of two).
+/// Floats have a relative spacing of 2^-24, so this is fine enough for what the camera sees (decision 020), and a camera that
+/// moves a little leaves the prepared scene unchanged.
 DoublePoint3 Job::viewpoint() const {
   const std::optional<Camera::Place> place = camera->place();
   if (!place || !is_finite(place->position)) return {};
@@ -74,8 +74,8 @@ void Job::before_prepare() {
 
 namespace {
 
-/// Media that differ from place to place count in the coordinates of their object; within another scene those are not known to
-/// a path that is in the medium.
+/// Heterogeneous media are evaluated in the object space of their object. Within a nested scene a path inside the medium does
+/// not have this transform.
 void refuse_heterogeneous_media_within(const Scene& scene, bool nested) {
   for (const Ref<SceneObject>& object : scene.objects) {
     if (nested && object->interior && !object->interior->homogeneous())
@@ -86,7 +86,8 @@ void refuse_heterogeneous_media_within(const Scene& scene, bool nested) {
   }
 }
 
-/// Seen from far away a scene would be coarse where the picture is fine: it counts from its own middle then.
+/// Whether a scene is so far from the camera that coordinates relative to the camera would be too coarse for it. Its own centre
+/// is then the origin.
 bool is_far(const Camera& camera, const Scene& scene) {
   constexpr float far = 4;
   const Vector3 away = scene.centre() - Point3{};
@@ -115,7 +116,7 @@ void Job::prepare() {
   }
   refuse_heterogeneous_media_within(*scene, false);
   camera->set_film(image->width, image->height);
-  const LightGroups known(*scene, *image);  // throws when a name is unknown
+  const LightGroups known(*scene, *image);  // throws Error for an unknown name
 }
 
 void Job::prepare_again() {
@@ -126,7 +127,7 @@ void Job::prepare_again() {
 }
 
 bool Job::centre_is_stale() const {
-  if (!camera || !scene) return false;  // preparing says so
+  if (!camera || !scene) return false;  // preparing reports it
   return viewpoint() != viewpoint_ || camera->shutter_open != opened_ || (counts_from_camera() && is_far(*camera, *scene));
 }
 

@@ -5,18 +5,18 @@
 namespace etendue {
 namespace {
 
-// Beside the guide there are states of it, being made and kept.
+// The rest of the memory is for saved states of the guide, and copies of them being made.
 GuideSettings within(GuideSettings settings, size_t memory) {
   settings.memory = memory / 8;
   return settings;
 }
 
-/// Of the paths of a step, which part it learns from: all of the first, later fewer, as learning costs time.
+/// The fraction of a step's paths that are training paths: all in the first steps, later fewer, since training takes time.
 double part_of(std::uint32_t step) { return std::max(std::min(8 / double(step + 1), 1.0), 0.125); }
 
 }  // namespace
 
-// Samples have half of the memory, copies made on the way included.
+// Training samples get half of the memory, including temporary copies.
 LearnedGuide::LearnedGuide(GuideSettings settings, size_t memory)
     : room_(double(memory) / 2 / (5 * sizeof(GuideSample))), guide_(within(settings, memory)) {}
 
@@ -27,7 +27,7 @@ void LearnedGuide::begin_step(const PixelArea& area, const Step& step, int longe
 
 bool LearnedGuide::teaches(const SampleContext& sample) const {
   const SampleKey key = sample.numbers.key();
-  return sample.records && (mix_bits(key.walk + key.sample) >> 32) < taught_;
+  return sample.sink.records && (mix_bits(key.walk + key.sample) >> 32) < taught_;
 }
 
 void LearnedGuide::learn(Schedule& schedule, const std::vector<GuideSample>& samples) {
@@ -37,7 +37,7 @@ void LearnedGuide::learn(Schedule& schedule, const std::vector<GuideSample>& sam
   for (size_t r = 1; r < end.size(); ++r) end[r] += end[r - 1];
   std::vector<const GuideSample*> sorted(samples.size());
   for (const GuideSample& s : samples) sorted[end[s.region]++] = &s;
-  // Now `end` is of each region where its samples end, and those of the next begin.
+  // Now end[r] is the index where the samples of region r end and those of region r + 1 begin.
   schedule.collect<char>(guide_.regions(), [&](std::uint64_t item, auto&, Arena&) {
     const auto r = std::uint32_t(item);
     const size_t begin = r > 0 ? end[r - 1] : 0;
@@ -50,7 +50,7 @@ ShownLobes LearnedGuide::lobes(const Point3& position, const Normal3& normal) co
   const Guide::Region& region = guide_.at(position, normal);
   const SeenLobes seen(region.lobes(), position);
   ShownLobes shown{{}, region.share()};
-  constexpr int parts = 4;  // of a cell, either way: lobes may be narrower than it
+  constexpr int parts = 4;  // subdivisions of a cell along each axis: lobes may be narrower than a cell
   for (int row = 0; row < ShownLobes::rows; ++row)
     for (int column = 0; column < ShownLobes::columns; ++column) {
       float sum = 0;

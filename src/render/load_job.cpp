@@ -1,4 +1,4 @@
-// Render descriptions into jobs.
+// Loads render descriptions as jobs.
 
 #include "etendue/render/job.h"
 #include "language/loader.h"

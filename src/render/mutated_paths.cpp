@@ -1,4 +1,4 @@
-// MutatedPaths: chains around another process.
+// MutatedPaths: Markov chains over the primary samples of another process.
 
 #include <array>
 
@@ -21,7 +21,7 @@ MutatedPaths::MutatedPaths(const Renderer& r, const RenderContext& c, const Chai
 void MutatedPaths::prepare_step(Schedule& schedule, const Step& step) {
   paths_->prepare_step(schedule, step);
   if (direct_) direct_->prepare_step(schedule, step);
-  // A process whose samples are no paths by themselves, such as another of this kind, says so.
+  // Fails if the samples of the process are not paths, as those of another MutatedPaths.
   try {
     Arena arena;
     paths_->sample(area_.x0, area_.y0, step.samples.begin, arena);
@@ -31,7 +31,7 @@ void MutatedPaths::prepare_step(Schedule& schedule, const Step& step) {
 }
 
 void MutatedPaths::step(Schedule& schedule, const Step& step) {
-  if (direct_) RenderProcess::step(schedule, step);  // asks for `radiance`
+  if (direct_) RenderProcess::step(schedule, step);  // calls `radiance`
   const auto pixels = std::uint64_t(area_.width()) * std::uint64_t(area_.height());
   mutate_primary_samples(schedule, context.image, settings_, *this, mix_bits(context.seed + mix_bits(step.samples.begin)),
                          pixels * (step.samples.end - step.samples.begin), !direct_);
@@ -40,20 +40,22 @@ void MutatedPaths::step(Schedule& schedule, const Step& step) {
 Spectrum MutatedPaths::radiance(const Ray& ray, SampleContext& sample) const {
   std::array<Spectrum, direct_length + 1> lengths;
   std::vector<Splat> splats;
-  SampleContext own{sample.wavelengths, sample.numbers, sample.arena, {sample.observe.features, nullptr, lengths}, &splats,
-                    sample.abort};
+  SampleContext own{sample.wavelengths,
+                    sample.numbers,
+                    sample.arena,
+                    {.features = sample.sink.features, .lengths = lengths, .splats = &splats, .abort = sample.sink.abort}};
   direct_->radiance(ray, own);
   for (const Splat& s : splats)
-    if (is_direct(s.length)) sample.splat(s.film, s.value, s.wavelengths, s.length);
+    if (is_direct(s.length)) sample.sink.splat(s.film, s.value, s.wavelengths, s.length);
   Spectrum light;
   for (int length = 1; length <= direct_length; ++length) {
     light += lengths[size_t(length - 1)];
-    sample.observe.light(length, lengths[size_t(length - 1)]);
+    sample.sink.light(length, lengths[size_t(length - 1)]);
   }
   return light;
 }
 
-CameraSample MutatedPaths::sample(int, int, std::uint32_t, Arena&, const PathRequest&) const {
+CameraSample MutatedPaths::sample(int, int, std::uint32_t, Arena&, const PathSink&) const {
   renderer.fail({}, "its samples are mutations of one another: none belongs to a pixel, and none can be replayed by itself");
 }
 
@@ -63,12 +65,9 @@ void MutatedPaths::evaluate(const NumberSource& numbers, Arena& arena, const std
   splats.clear();
   lengths.assign(lengths_, {});
   f.clear();
-  PathRequest request;
-  request.observe.lengths = lengths;
-  request.splats = &splats;
-  request.abort = abort;
-  const CameraSample s = paths_->path(area_, numbers, {}, arena, request);
-  // What one path brings to the mean over the whole film, of a crop that all of them go through.
+  const PathSink sink{.lengths = lengths, .splats = &splats, .abort = abort};
+  const CameraSample s = paths_->path(area_, numbers, {}, arena, sink);
+  // The contribution of one path to the mean over the whole film, when all paths go through a crop of it.
   const auto share =
       float(double(area_.width()) * area_.height() / (double(context.image.width) * double(context.image.height)));
   const auto add = [&](const Spectrum& light, int length) { f.add({s.film, light * share, s.wavelengths, length}, area_); };
@@ -77,7 +76,8 @@ void MutatedPaths::evaluate(const NumberSource& numbers, Arena& arena, const std
     told += lengths[i];
     if (!is_direct(int(i) + 1)) add(lengths[i], int(i) + 1);
   }
-  // Light of which nobody tells the length is the chains', all of it. Less is rounding.
+  // Light whose path length the process does not report is carried by the chains completely. Smaller differences are rounding
+  // errors.
   const Spectrum untold = s.value + told * -1.0f;
   if (untold.maximum() > 1e-4f * s.value.maximum()) add(untold, 0);
   for (const Splat& splat : splats)

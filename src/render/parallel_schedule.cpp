@@ -25,7 +25,7 @@ struct ParallelSchedule::State {
   tbb::task_arena tasks;
   tbb::enumerable_thread_specific<Arena> arenas;
 
-  // Tiles go round: taken by a worker, given back after merging.
+  // Tiles are reused: a worker takes one, and returns it after merging.
   std::mutex mutex;
   std::vector<std::unique_ptr<ImageTile>> tiles;
 
@@ -63,13 +63,13 @@ ParallelSchedule::~ParallelSchedule() = default;
 
 namespace {
 
-/// Runs `make(item)` on all threads and `take(its result)` one after the other, in the order of items.
+/// Runs `make(item)` on all threads, and `take(result)` on one at a time, in the order of items.
 template <class Made, class Make, class Take>
 void in_order(tbb::task_arena& tasks, int threads, std::uint64_t count, const std::function<bool()>& aborted, const Make& make,
               const Take& take) {
   std::uint64_t next = 0;
   tasks.execute([&] {
-    // Enough results in flight that no thread waits for a slow one, few enough that memory stays small.
+    // Enough items in flight that no thread waits for a slow item, few enough that memory stays small.
     tbb::parallel_pipeline(size_t(4 * threads),
                            tbb::make_filter<void, std::uint64_t>(tbb::filter_mode::serial_in_order,
                                                                  [&](tbb::flow_control& flow) -> std::uint64_t {

@@ -1,5 +1,5 @@
 #pragma once
-// A schedule over the cores of this machine.
+// ParallelSchedule: a Schedule that uses the cores of this machine.
 
 #include <atomic>
 #include <functional>
@@ -10,15 +10,15 @@
 
 namespace etendue {
 
-/// How many samples per pixel a step of a picture of this size takes: few of large pictures, many of small ones. A function of
-/// the size alone, so that steps are the same however a render is stopped or continued; and a power of two, so that those of
-/// a crop are made of those of the whole picture.
+/// The samples per pixel of a step for a picture of this size: few for large pictures, many for small ones. Depends on the size
+/// alone, so that steps are the same however a render is interrupted or continued. It is a power of two, so that the steps of a
+/// crop consist of whole steps of the full picture.
 std::uint32_t samples_per_step(const PixelArea&);
 
 class ParallelSchedule final : public Schedule {
  public:
-  /// `threads`: 0 for all cores. `abort` lets what is done be thrown away; `tick(done, count)` is called from one thread at a
-  /// time, for items of the film.
+  /// `threads`: 0 for all cores. If `abort` becomes true, remaining items are skipped and the results will be dropped.
+  /// `tick(done, count)` is called from one thread at a time, after each item of the film.
   ParallelSchedule(Film& film, int threads, const std::atomic<bool>& abort,
                    std::function<void(std::uint64_t, std::uint64_t)> tick = {});
   ~ParallelSchedule() override;

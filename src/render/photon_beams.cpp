@@ -14,7 +14,7 @@ Spectrum PhotonBeam::light(float s, float t, const VolumeCoefficients& c) const 
 
 namespace {
 
-/// The least extinction of what a medium scatters [1/m]; 0: it scatters nothing.
+/// The least extinction among the wavelengths that a medium scatters [1/m]; 0: it scatters none.
 float least_extinction(const VolumeCoefficients& c) {
   float least = infinity;
   for (int i = 0; i < spectrum_size; ++i)
@@ -22,16 +22,16 @@ float least_extinction(const VolumeCoefficients& c) {
   return std::isfinite(least) ? least : 0;
 }
 
-/// Keeps the ways of one walk through media.
-struct BeamListener final : WalkListener {
+/// Stores the segments of one light subpath in media as beams.
+struct BeamEvents final : SegmentEvents {
   const BeamWalks& of;
   const Wavelengths& wavelengths;
   const std::vector<SubpathVertex>& walk;
   NumberStream chances;
   std::vector<PhotonBeam>& beams;
 
-  BeamListener(const BeamWalks& b, const Wavelengths& w, const std::vector<SubpathVertex>& v, const NumberStream& numbers,
-               std::vector<PhotonBeam>& all)
+  BeamEvents(const BeamWalks& b, const Wavelengths& w, const std::vector<SubpathVertex>& v, const NumberStream& numbers,
+             std::vector<PhotonBeam>& all)
       : of(b), wavelengths(w), walk(v), chances(numbers), beams(all) {}
 
   void through(const Medium& medium, const Ray& ray, float reach, const Spectrum& throughput) override {
@@ -70,8 +70,8 @@ void BeamWalks::operator()(std::uint64_t item, std::vector<PhotonBeam>& beams, A
     Wavelengths w = walks.wavelengths;
     const NumberStream numbers(walks.numbers,
                                SampleKey(walks.context.seed, -8 - int(walks.kinds), int(walks.step), std::uint32_t(n)));
-    SampleContext sample{w, numbers, arena, {}, nullptr, walks.abort};
-    BeamListener listener(*this, w, walk, numbers.fork("beam"), beams);
+    SampleContext sample{w, numbers, arena, {.abort = walks.abort}};
+    BeamEvents listener(*this, w, walk, numbers.fork("beam"), beams);
     generate_light_subpath(walks.context.scene, walks.lights, walks.time, walks.limits, sample, walk, light, walks.targets,
                            &listener);
     if (sample.aborted()) return;
@@ -82,7 +82,8 @@ void BeamMap::build(std::vector<PhotonBeam>&& beams, float radius) {
   beams_ = std::move(beams);
   radius_ = radius;
   boxes_.clear();
-  // Long boxes around slanted beams hold little but air, many small ones take memory and time: no more than nine for each beam.
+  // Large boxes around slanted beams are mostly empty, many small boxes take memory and time: at most nine pieces per beam on
+  // average.
   constexpr double pieces_of_a_beam = 8, radii_of_a_piece = 4;
   double all = 0;
   for (const PhotonBeam& beam : beams_) all += double(beam.length);
@@ -155,7 +156,8 @@ BeamMap::Passage BeamMap::passage(const Piece& piece, const Ray& ray, float reac
   return {s, t, 2 * radius_ * sine};
 }
 
-// Where along the ray q(t) = c + t d - o, without its part along e, is shorter than r, and the piece is beside it.
+// Finds where along the ray the vector q(t) = c + t d - o, without its component along e, is shorter than r, and within the
+// piece.
 BeamMap::Passage BeamMap::passage_of_parallel(const Piece& piece, const Ray& ray, float reach, NumberStream& numbers) const {
   const PhotonBeam& beam = beams_[piece.beam];
   const Vector3 off = ray.origin - beam.origin;
@@ -163,7 +165,7 @@ BeamMap::Passage BeamMap::passage_of_parallel(const Piece& piece, const Ray& ray
   const Vector3 q = off - s_0 * beam.direction, change = ray.direction - slope * beam.direction;
   const float a = length_squared(change), b = dot(q, change), c = length_squared(q) - square(radius_);
   float from = 0, to = reach;
-  if (a > 1e-13f) {  // else what is left of `change` is rounding
+  if (a > 1e-13f) {  // otherwise `change` is a rounding error
     const float discriminant = square(b) - a * c;
     if (!(discriminant > 0)) return {};
     from = std::max(from, (-b - std::sqrt(discriminant)) / a);

@@ -5,8 +5,8 @@
 namespace etendue {
 namespace {
 
-/// The chance of a photon to be kept, so that about `most` are. When walks cannot make as many, all are; else as many as some
-/// walks of other numbers made tell: `made(those walks)`.
+/// The probability to store a photon, so that about `most` are stored. It is 1 if the subpaths cannot produce more than `most`;
+/// otherwise the expected number is estimated from a pilot run of some subpaths with other random numbers, `made(subpaths)`.
 template <class Made>
 double chance_to_keep(const PhotonWalks& walks, std::uint64_t most, const Made& made) {
   if (double(walks.walks) * walks.limits.longest <= double(most)) return 1;
@@ -64,7 +64,8 @@ PhotonProcess::Photons PhotonProcess::make_photons(Schedule& schedule, const Ste
   return photons;
 }
 
-// A map's photons lie in it by their places: every n-th of them are spread over all places as all are.
+// The photons of a map are stored in spatial order, so every n-th of them gives a subset distributed over space as all of them
+// are.
 ShownPhotons PhotonProcess::some_of(std::initializer_list<const Photons*> maps, size_t most) const {
   ShownPhotons shown;
   for (const Photons* photons : maps) shown.all += photons->map.size();

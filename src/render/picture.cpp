@@ -1,4 +1,4 @@
-// What comes out of a render: pictures with their texts, and files of them.
+// The output of a render: metadata of pictures, and their files.
 
 #include "denoising.h"
 #include "etendue/render/render.h"

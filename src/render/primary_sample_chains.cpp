@@ -8,10 +8,10 @@
 namespace etendue {
 namespace {
 
-/// Independent paths, by what they bring to the parts of the film.
+/// A bootstrap pool of independent paths, stored as their luminance in the cells of the film.
 struct Pool {
   std::vector<Contribution::Brightness> parts;
-  std::vector<size_t> ends;  ///< of the parts of each path
+  std::vector<size_t> ends;  ///< end index in `parts` for each path
 
   std::span<const Contribution::Brightness> path(size_t i) const {
     const size_t begin = i > 0 ? ends[i - 1] : 0;
@@ -69,7 +69,7 @@ class PrimarySampleChains final : public Chains {
     Contribution current, proposed;
     path_.evaluate(numbers, arena, abort, current);
     numbers.accept();
-    double I = current.brightness(v), waiting = 0;  // what the current state counts for that is not added yet
+    double I = current.brightness(v), waiting = 0;  // the weight of the current state that is not yet added to the film
     for (std::uint64_t i = 0; i < states && !(abort && abort->load(std::memory_order_relaxed)); ++i) {
       const bool large = choices.next() < double(settings_.large_steps);
       if (large)
@@ -114,8 +114,8 @@ void run_chains(Schedule& schedule, const ImageBuffer& image, const ChainSetting
                "chains of mutated paths do not tell which luminaires their light comes from, so that they can keep no light "
                "groups; other renderers, such as BidirectionalPathTracer, can");
   const std::uint64_t mutations = paths * std::uint64_t(settings.mutations);
-  // Half of the chains begin with paths of one pool, the other half with those of another. Either takes what only weighs, v and
-  // b, from the other's pool, so that it depends on nothing it weighs.
+  // Half of the chains start with paths of one pool, the other half with paths of the other pool. Each half takes its weights v
+  // and b from the other half's pool, so that they are independent of the paths they weight.
   const auto pool = std::uint64_t(std::max(1.0, double(mutations) * double(settings.bootstrap) / 2));
   const std::array<Pool, 2> pools{make_pool(schedule, chains, seed, 0, pool), make_pool(schedule, chains, seed, 1, pool)};
   if (schedule.aborted()) return;

@@ -10,18 +10,18 @@
 namespace etendue {
 namespace {
 
-/// How the picture and the samples of a step are divided into items: tiles, and for small pictures parts of the sample
-/// range as well. Depends on nothing but the picture's size and the pass, so results do not depend on threads.
+/// Divides the picture and the samples of a step into items: tiles, and for small pictures parts of the sample range as well.
+/// The division depends only on the picture's size and the pass, so results do not depend on threads.
 ///
-/// A crop is divided as the whole picture is, with what does not reach it left out. Each of its pixels is then the same sum, of
-/// the same parts in the same order, as in the whole picture. Its passes hold several of those of the whole picture, one after
-/// the other: a small crop has few tiles, and the more items the more threads find work.
+/// A crop uses the tiles of the whole picture, without those outside of it. Each pixel is then the same sum, of the same terms
+/// in the same order, as in the whole picture. A pass of a crop contains several passes of the whole picture, one after the
+/// other: a small crop has few tiles, and more items keep more threads busy.
 class Division {
  public:
   struct Item {
     PixelArea area;
-    std::uint32_t first, last;  ///< samples, the last not included
-    std::uint32_t block;        ///< which step of the whole picture they belong to
+    std::uint32_t first, last;  ///< samples [first, last)
+    std::uint32_t block;        ///< the pass of the whole picture they belong to, by its first sample
   };
 
   Division(const ImageBuffer& image, IndexRange pass) : area_(image.sampled_area()) {
@@ -81,11 +81,11 @@ void record_camera(PathRecord& record, const Camera& camera, const Ray& ray) {
   record.vertices.push_back(std::move(v));
 }
 
-/// What observers were told of the sample's own value is weighted as that is.
-void weigh_parts(const Spectrum& weight, const PathObserver& observe) {
-  for (Spectrum& light : observe.lengths) light *= weight;
-  if (observe.record) [[unlikely]]
-    for (PathRecord::Contribution& part : observe.record->contributions)
+/// Multiplies the parts of the sample's value in the sink by the camera's weight, as the value is.
+void weigh_parts(const Spectrum& weight, const PathSink& sink) {
+  for (Spectrum& light : sink.lengths) light *= weight;
+  if (sink.record) [[unlikely]]
+    for (PathRecord::Contribution& part : sink.record->contributions)
       if (!part.splat) part.value *= weight;
   LightParts::weigh(weight);
 }
@@ -100,10 +100,10 @@ Spectrum RenderProcess::radiance(const Ray& ray, SampleContext& sample) const {
 }
 
 CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& source, SampleKey key, Arena& arena,
-                                 const PathRequest& request) const {
+                                 const PathSink& sink) const {
   const Camera& camera = context.camera;
   CameraSample s;
-  SampleContext sample{s.wavelengths, {source, key}, arena, request.observe, request.splats, request.abort, request.records};
+  SampleContext sample{s.wavelengths, {source, key}, arena, sink};
   NumberStream& numbers = sample.numbers;
   const Point2 within = numbers.next_pair();
   s.film = {float(area.x0) + within.x * float(area.width()), float(area.y0) + within.y * float(area.height())};
@@ -112,11 +112,11 @@ CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& sour
   const float at = still ? (numbers.skip(), camera.shutter_open) : time(numbers.next());
   s.wavelengths = wavelengths(key, numbers.next());
   CameraRay from;
-  PathRecord* const record = request.observe.record;
+  PathRecord* const record = sink.record;
   if (!camera.sample_ray(s.film, lens, at, s.wavelengths, from)) {
-    // Held back. What the algorithm brings elsewhere by paths from luminaires does not go this way, and comes all the same, as
-    // features do.
-    if (!renderer.splats() && !request.observe.features && !record) return s;
+    // The lens blocks the ray, so the sample is black. The algorithm's splats from light subpaths do not pass through this ray,
+    // and features do not depend on it: both are still computed.
+    if (!renderer.splats() && !sink.features && !record) return s;
     from.ray = camera.ray(s.film, lens, at);
     from.weight = {};
   }
@@ -126,9 +126,9 @@ CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& sour
   if (record) [[unlikely]]
     record_camera(*record, camera, from.ray);
   s.value = from.weight * radiance(from.ray, sample);
-  if (Features* const features = request.observe.features; features && features->depth > 0) [[unlikely]]
+  if (Features* const features = sink.features; features && features->depth > 0) [[unlikely]]
     features->depth += camera.reach(from.ray).nearest;
-  weigh_parts(from.weight, request.observe);
+  weigh_parts(from.weight, sink);
   arena.reset();
   if (record) [[unlikely]] {
     record->wavelengths = s.wavelengths;
@@ -137,15 +137,16 @@ CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& sour
   return s;
 }
 
-CameraSample RenderProcess::sample(int x, int y, std::uint32_t number, Arena& arena, const PathRequest& request) const {
-  return path({x, y, x + 1, y + 1}, *renderer.sampler, SampleKey(context.seed, x, y, number), arena, request);
+CameraSample RenderProcess::sample(int x, int y, std::uint32_t number, Arena& arena, const PathSink& sink) const {
+  return path({x, y, x + 1, y + 1}, *renderer.sampler, SampleKey(context.seed, x, y, number), arena, sink);
 }
 
-void RenderProcess::step(Schedule& schedule, const Step& step) { film_paths(schedule, step, nullptr, nullptr); }
+void RenderProcess::step(Schedule& schedule, const Step& step) { film_paths(schedule, step, nullptr); }
 
 size_t RenderProcess::path_items(const Step& step) const { return size_t(Division(context.image, step.samples).count()); }
 
-void RenderProcess::film_paths(Schedule& schedule, const Step& step, RecordsOf records_of, void* all) {
+void RenderProcess::film_paths(Schedule& schedule, const Step& step,
+                               const std::function<RecordList(std::uint64_t item)>& records_of) {
   const Division division(context.image, step.samples);
   const bool wants_features = context.image.wants_features();
   const LightGroups groups(context.scene, context.image);
@@ -155,10 +156,11 @@ void RenderProcess::film_paths(Schedule& schedule, const Step& step, RecordsOf r
     std::vector<Splat> splats;
     LightParts parts(context.image, groups);
     Features features;
-    const PathRequest request{{wants_features ? &features : nullptr, nullptr, parts.lengths()},
-                              &splats,
-                              schedule.abort,
-                              records_of ? records_of(all, item) : nullptr};
+    const PathSink sink{.features = wants_features ? &features : nullptr,
+                        .lengths = parts.lengths(),
+                        .splats = &splats,
+                        .records = records_of ? records_of(item) : RecordList(),
+                        .abort = schedule.abort};
     for (int y = area.y0; y < area.y1; ++y)
       for (int x = area.x0; x < area.x1; ++x)
         for (SampleKey key(context.seed, x, y, first); key.sample < last; ++key.sample) {
@@ -166,7 +168,7 @@ void RenderProcess::film_paths(Schedule& schedule, const Step& step, RecordsOf r
           if (wants_features) features = {};
           splats.clear();
           parts.clear();
-          const CameraSample s = path({x, y, x + 1, y + 1}, *renderer.sampler, key, arena, request);
+          const CameraSample s = path({x, y, x + 1, y + 1}, *renderer.sampler, key, arena, sink);
           tile.count_path();
           tile.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, 1, parts.all());
           for (const Splat& splat : splats)

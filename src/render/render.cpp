@@ -1,4 +1,4 @@
-// Render: steps, and what is told of them.
+// Render: the steps, the loop over them, and their progress reports.
 
 #include "etendue/render/render.h"
 
@@ -14,7 +14,7 @@ thread_local const Render::Members* within = nullptr;
 
 }  // namespace
 
-// ---- turns ------------------------------------------------------------------------------------------------------------------
+// ---- locking ---------------------------------------------------------------------------------------------------------------
 
 BetweenSteps::BetweenSteps(const Render::Members& m, bool interrupt) {
   if (within == &m)
@@ -34,7 +34,7 @@ WithinStep::WithinStep(const Render::Members& m) : before_(std::exchange(within,
 WithinStep::~WithinStep() { within = before_; }
 bool WithinStep::of(const Render::Members& m) { return within == &m; }
 
-// ---- making one -------------------------------------------------------------------------------------------------------------
+// ---- construction ----------------------------------------------------------------------------------------------------------
 
 Render::Render(Ref<Job> job, RenderSettings settings) : m(std::make_unique<Members>(std::move(job), std::move(settings))) {
   if (!m->job) throw Error("there is no job to render");
@@ -76,7 +76,7 @@ std::unique_ptr<RenderProcess> Render::Members::fresh_process() const {
   return rendering(*job, [&] { return job->renderer->start(context()); });
 }
 
-/// What it refers to is about to change.
+/// Saves the state of the process and destroys it, because what it refers to is about to change.
 void Render::Members::park_process() {
   if (process) process_state = process->save_state();
   process.reset();
@@ -99,15 +99,15 @@ void Render::restart(std::optional<std::uint64_t> seed) {
   m->empty();
 }
 
-// ---- a step -----------------------------------------------------------------------------------------------------------------
+// ---- one step --------------------------------------------------------------------------------------------------------------
 
 std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {
   while (true) {
     {
       std::unique_lock lock(turn);
       turned.wait(lock, [&] { return waiting == 0; });
-      // Of a word for an earlier run, or of who has been waited for: kept, it would throw away every step to come. Whoever says
-      // it from here on is heard, by the next line or within the step.
+      // A request to give up from an earlier run, or from a thread that was waited for, is cleared: it would abort every later
+      // step. Requests after this line are seen by the check of `abort` below or within the step.
       give_up = false;
     }
     const std::shared_lock sharing(description);
@@ -152,7 +152,7 @@ std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {
         m.at_hand = {};
         if (finished) return;
         m.film->drop_step();
-        m.process.reset();  // which may be anywhere within the step
+        m.process.reset();  // the process may be anywhere within the step
       }
     } guard{*this};
     const WithinStep no_edits(*this);
@@ -179,7 +179,7 @@ std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {
 
 namespace {
 
-/// What was asked of this run is not asked of the next one.
+/// Clears the requests to stop at the end of a run, so that they do not affect the next one.
 struct Forgotten {
   Render::Members& m;
   ~Forgotten() { m.stop = m.abort = m.give_up = false; }
@@ -194,7 +194,7 @@ std::optional<Ended> Render::step() {
   return m->step(schedule);
 }
 
-// ---- many -------------------------------------------------------------------------------------------------------------------
+// ---- all steps -------------------------------------------------------------------------------------------------------------
 
 std::optional<Ended> Render::Members::reason_to_stop() {
   const std::shared_lock sharing(description);
@@ -215,7 +215,7 @@ Ended Render::run() {
     const std::shared_lock sharing(m->description);
     m->wanted();
     if (keeps) {
-      m->identity.reset();  // of the files as they are now
+      m->identity.reset();  // hashes the files as they are now
       m->identity_now();
       remove_leftovers(m->settings.checkpoint_file);
     }

@@ -1,4 +1,4 @@
-// Edits of a Render: made whole, or not at all.
+// Edits of a Render, which are made completely or not at all.
 
 #include "describe/guard.h"
 #include "render_members.h"
@@ -6,10 +6,10 @@
 namespace etendue {
 namespace {
 
-/// Whoever looks at a render sees its parts as they are; here is where they change.
+/// Readers of a render get its components as const; only edits may change them, here.
 Component& editable(const Edit& edit) { return const_cast<Component&>(*edit.component); }
 
-/// Sets members, all or none; `put_back` makes them what they were.
+/// Sets all members or none; `put_back` restores the old values.
 class Changes {
  public:
   explicit Changes(std::span<const Edit> edits) {
@@ -51,7 +51,7 @@ void Render::edit(std::span<const Edit> edits) {
     if (!edit.component || !m->holders->knows(*edit.component))
       throw Error("what is to be edited is no part of the job that is rendered");
     const Member* member = edit.component->class_info().find(edit.member);
-    if (!member) get(*edit.component, edit.member);  // says what there is
+    if (!member) get(*edit.component, edit.member);  // throws Error with the list of members
     consequences.note(*m->holders, editable(edit), *member, edit.value);
   }
 
@@ -76,14 +76,14 @@ void Render::edit(std::span<const Edit> edits) {
   if (consequences.structure()) m->holders.reset();
 }
 
-/// After an edit: goes on, or begins anew. Throws before anything that was collected is lost.
+/// Continues or starts over after an edit. Throws before any collected samples are lost.
 void Render::Members::follow(const Consequences& consequences) {
   if (consequences.effect() == Effect::retone) return;
   wanted();
   identity.reset();
   const std::uint32_t size = samples_per_step();
   if (consequences.effect() == Effect::none) {
-    // More samples go on from those that are there; fewer are another picture.
+    // More samples continue from the existing ones; fewer give another picture.
     const bool too_many = !done.empty() && done.back().end > std::uint32_t(job->renderer->samples);
     if (too_many || size != step_size) empty();
   } else {

@@ -1,4 +1,4 @@
-// What a Render shows of itself: how far it is, its picture, single samples.
+// What a Render displays: its progress, its picture, single samples.
 
 #include "etendue/render/render.h"
 
@@ -7,7 +7,7 @@
 
 namespace etendue {
 
-// ---- looking ----------------------------------------------------------------------------------------------------------------
+// ---- progress and pictures -------------------------------------------------------------------------------------------------
 
 Progress Render::Members::progress_now() const {
   const bool stepping = at_hand.begin < at_hand.end;
@@ -23,7 +23,7 @@ Progress Render::Members::progress_now() const {
   p.samples_per_second = samples * pixels / std::max(p.seconds, 1e-9);
   p.fraction = samples / p.samples_wanted;
   if (job->time_limit > 0) p.fraction = std::max(p.fraction, p.seconds / job->time_limit);
-  // The error falls with the root of the number of samples.
+  // The error falls with the square root of the number of samples.
   if (job->error_limit > 0 && error > 0 && std::isfinite(error))
     p.fraction = std::max(p.fraction, (job->error_limit / error) * (job->error_limit / error));
   p.fraction = std::min(p.fraction, 1.0);
@@ -33,7 +33,7 @@ Progress Render::Members::progress_now() const {
 
 namespace {
 
-/// Shares the description, unless this thread is in a step, which does.
+/// Locks the description shared, unless this thread is within a step, which already holds the lock.
 std::shared_lock<std::shared_mutex> share(const Render::Members& m) {
   return WithinStep::of(m) ? std::shared_lock<std::shared_mutex>() : std::shared_lock(m.description);
 }
@@ -76,10 +76,10 @@ std::vector<std::string> Render::write_outputs(const std::string& default_stem) 
 
 // ---- single samples ---------------------------------------------------------------------------------------------------------
 
-/// Starting a process builds the light sampler that others use: nobody else may be at work.
+/// Starting a process builds the light sampler, which other processes use: none of them may be running.
 std::unique_ptr<RenderProcess> Render::Members::process_at(std::uint32_t sample) const {
   const std::uint32_t step = samples_per_step(), begin = sample / step * step;
-  Film unseen(*job->image);  // what steps before leave there is not looked at
+  Film unseen(*job->image);  // collects the light of the earlier steps, which is not used
   const std::atomic<bool> never{false};
   ParallelSchedule schedule(unseen, settings.threads, never);
   return rendering(*job, [&] {
@@ -104,9 +104,9 @@ Point2 Render::replay(int x, int y, std::uint32_t sample, PathRecord& record) co
     throw Error("there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in the picture");
   const std::unique_ptr<RenderProcess> process = m->process_at(sample);
   Arena arena;
-  PathRequest request;
-  request.observe.record = &record;
-  const Point2 film = rendering(*m->job, [&] { return process->sample(x, y, sample, arena, request); }).film;
+  PathSink sink;
+  sink.record = &record;
+  const Point2 film = rendering(*m->job, [&] { return process->sample(x, y, sample, arena, sink); }).film;
   record.count_from_world(m->job->world_centre());
   return film;
 }

@@ -1,10 +1,10 @@
 #pragma once
-// What a Render holds, and who may touch it when.
+// The members of a Render, and the locks that protect them.
 //
-// A step and a look share the description, which an edit, a load, an addition or a replay has alone (`description`). What shows
-// pictures (tone map, outputs) is apart from it (`look`), so that showing waits for no step. What is counted (`done`,
-// `seconds`, …) changes under `counts`, together with the film's ends of steps. Locks are taken in this order: editing,
-// description, look, counts, the film's.
+// `description`: a step or a query holds it shared; an edit, a load, an addition or a replay holds it exclusively. `look`
+// protects the display part of the description (tone map, outputs), so that displaying does not wait for a step. `counts`
+// protects the counters (`done`, `seconds`, …), which change together with the film's ends of steps. The order of locking is:
+// editing, description, look, counts, the film's mutex.
 
 #include <atomic>
 #include <chrono>
@@ -30,34 +30,34 @@ struct Render::Members {
   mutable std::shared_mutex look;
   mutable std::mutex counts;
 
-  // Under `description`, by who steps.
+  // Protected by `description`, for the thread that steps.
   std::unique_ptr<RenderProcess> process;
-  /// Its state when the last step began, or when it was put away: where there is no process, one goes on from here.
+  /// The state of `process` when the last step began, or when the process was destroyed: a fresh process continues from it.
   std::vector<std::byte> process_state;
-  /// The state before the last step, when that was shorter than others: more samples go on from there (Checkpoint).
+  /// The state before the last step, if that step was shorter than the others: more samples continue from it (Checkpoint).
   std::optional<Checkpoint::State> before_short_step;
-  mutable std::optional<Identity> identity;  ///< of the job; files are read for it, so it is found when it is needed
-  std::uint32_t step_size = 1;               ///< samples per step, before the next edit
-  std::string loaded_from;                   ///< the file whose state it still has; empty: none
+  mutable std::optional<Identity> identity;  ///< of the job; computed on demand, since it reads files
+  std::uint32_t step_size = 1;               ///< samples per step, until the next edit
+  std::string loaded_from;                   ///< the checkpoint file whose state the render still has; empty: none
   std::string broken;                        ///< why nothing can be rendered: an edit could be neither made nor undone
 
-  std::mutex editing;                ///< edits come one after the other
-  std::unique_ptr<Holders> holders;  ///< of the job's parts, for edits; found when it is needed
+  std::mutex editing;                ///< serializes edits
+  std::unique_ptr<Holders> holders;  ///< of the job's components, for edits; computed on demand
 
-  // Under `counts`.
+  // Protected by `counts`.
   std::vector<IndexRange> done;
   double seconds = 0;  ///< spent on whole steps
   IndexRange at_hand;
   std::chrono::steady_clock::time_point step_began;
-  double part_at_hand = 0;  ///< of the step at hand
+  double part_at_hand = 0;  ///< finished fraction of the current step
   double error = 0;
   std::string checkpoint_failure;
 
-  // Who wants to come between two steps is let in before the next one begins.
+  // Threads that wait for a moment between two steps get their turn before the next step begins.
   mutable std::mutex turn;
   mutable std::condition_variable turned;
   mutable int waiting = 0;
-  mutable std::atomic<bool> give_up{false};  ///< the step at hand
+  mutable std::atomic<bool> give_up{false};  ///< aborts the current step
   std::atomic<bool> stop{false}, abort{false};
 
   RenderContext context() const { return {*job->scene, *job->camera, *job->image, *job->wavelengths, job->seed}; }
@@ -70,10 +70,10 @@ struct Render::Members {
   void empty();
   std::optional<Ended> step(ParallelSchedule&);
   std::optional<Ended> reason_to_stop();
-  Progress progress_now() const;  ///< `counts` is held
+  Progress progress_now() const;  ///< requires that `counts` is held
   const Identity& identity_now() const;
   Checkpoint checkpoint() const;
-  Checkpoint state_now() const;  ///< at the end of the last step; `description` is held, and no step at hand
+  Checkpoint state_now() const;  ///< at the end of the last step; requires that `description` is held and no step is running
   void require_continuable(const Checkpoint&, const std::string& whose) const;
   void take_over(Checkpoint&&);
   void keep();
@@ -83,7 +83,7 @@ inline double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Does something in which any part of the job may throw: those of plugins whatever they like.
+/// Runs work in which any component of the job may throw; components of plugins may throw exceptions of any type.
 template <class Work>
 auto rendering(const Job& job, Work work) {
   try {
@@ -93,7 +93,7 @@ auto rendering(const Job& job, Work work) {
   }
 }
 
-/// Has the description alone while it lives: no step is at hand. With `interrupt`, one that is is given up.
+/// Holds the description exclusively while it exists, so that no step is running. With `interrupt`, a running step is aborted.
 class BetweenSteps {
  public:
   BetweenSteps(const Render::Members&, bool interrupt);
@@ -102,14 +102,15 @@ class BetweenSteps {
   std::unique_lock<std::shared_mutex> lock_;
 };
 
-/// While it lives, whoever wants to come between two steps from this thread would wait for itself, and is refused.
+/// Marks the thread as being within a step while it exists. A BetweenSteps on this thread would wait for itself; it throws
+/// Error.
 class WithinStep {
  public:
   explicit WithinStep(const Render::Members&);
   ~WithinStep();
   WithinStep(const WithinStep&) = delete;
   WithinStep& operator=(const WithinStep&) = delete;
-  /// Whether this thread is in one.
+  /// Whether this thread is within a step of this render.
   static bool of(const Render::Members&);
 
  private:

@@ -1,4 +1,4 @@
-// The state of a Render: saved, taken over, added to.
+// The state of a Render: saving, loading, adding.
 
 #include <fmt/format.h>
 
@@ -93,7 +93,7 @@ void Render::load(std::istream& stream) {
 void Render::load(const std::string& file) {
   Checkpoint from = read_checkpoint(file);
   const BetweenSteps alone(*m, true);
-  m->identity.reset();  // of the files as they are now
+  m->identity.reset();  // hashes the files as they are now
   m->require_continuable(from, "'" + file + "'");
   m->take_over(std::move(from));
   m->loaded_from = file;

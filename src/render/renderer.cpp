@@ -1,4 +1,4 @@
-// What all renderers share.
+// The common base of all renderers.
 
 #include "etendue/render/renderer.h"
 
@@ -50,7 +50,7 @@ std::unique_ptr<RenderProcess> Renderer::begin(const RenderContext& context) con
 
 void Renderer::refuse_samples_of(const Renderer& inner) const {
   if (!inner.origin) return;
-  for (const char* name : {"samples", "sampler"})  // be it what it would be anyway
+  for (const char* name : {"samples", "sampler"})  // even if set to the value it would have anyway
     if (std::ranges::any_of(inner.origin->members, [&](const auto& m) { return m.first == name; }))
       inner.fail(name, "has no effect here: say it of the " + class_info().name + " around");
 }
@@ -66,7 +66,7 @@ std::string Renderer::limits() const {
 
 namespace {
 
-/// The renderers that can be had, plugins' too, that find all light of a kind as they are without settings.
+/// The registered renderers, also those of plugins, that with default settings find all light of a kind.
 std::vector<std::string> renderers_for(PathClass kind) {
   std::vector<std::string> names;
   for (const ClassInfo* info : Registry::instance().subclasses(*Registry::instance().find("Renderer")))

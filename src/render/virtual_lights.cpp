@@ -5,7 +5,8 @@ namespace etendue {
 VirtualLights VirtualLightProcess::make_lights(Schedule& schedule, const Step& step, std::uint64_t walks) const {
   constexpr std::uint64_t item_size = 256;
   const std::uint64_t items = (walks + item_size - 1) / item_size;
-  // A light and the camera's vertex are two segments away from where the path ends at least.
+  // The path from a virtual light to the camera has at least two more segments: to the camera's vertex, and from there to the
+  // camera.
   const SubpathLimits limits{settings_.max_depth - 2, settings_.roulette_depth};
   VirtualLights made;
   made.walks = double(walks);
@@ -18,7 +19,7 @@ VirtualLights VirtualLightProcess::make_lights(Schedule& schedule, const Step& s
     for (std::uint64_t n = item * item_size; n < std::min(walks, (item + 1) * item_size) && !schedule.aborted(); ++n) {
       Wavelengths& w = *arena.make<Wavelengths>(wavelengths({}, 0));
       const NumberStream numbers(*renderer.sampler, SampleKey(context.seed, -6, int(step.number), std::uint32_t(n)));
-      SampleContext sample{w, numbers, arena, {}, nullptr, schedule.abort};
+      SampleContext sample{w, numbers, arena, {.abort = schedule.abort}};
       if (!generate_light_subpath(context.scene, *renderer.light_sampler, time(0), limits, sample, walk, light)) continue;
       for (size_t i = 1; i < walk.size(); ++i)
         if (walk[i].connectable()) lights.push_back({walk[i], int(i) + 1, walk[0].point.object});

@@ -1,4 +1,4 @@
-// Arguments of requests, checked.
+// Arguments of requests, with checks.
 
 #include <fmt/format.h>
 

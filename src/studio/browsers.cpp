@@ -1,10 +1,10 @@
-// The browsers that look at a studio, and what they are told.
+// The browsers connected to a studio, and the events sent to them.
 
 #include "studio.h"
 
 namespace etendue::studio {
 
-/// Texts from files may hold bytes that are not UTF-8.
+/// Serializes JSON for sending. Texts from files may contain invalid UTF-8, which is replaced.
 std::shared_ptr<const std::string> written(const Json& json) {
   return std::make_shared<const std::string>(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
@@ -30,7 +30,7 @@ void Studio::broadcast(const Json& event) {
   send_all(words);
 }
 
-/// Called while `browsers_guard_` is held.
+/// Requires that `browsers_guard_` is held.
 void Studio::send_all(const std::shared_ptr<const std::string>& words) {
   for (const auto& [number, weak] : browsers_)
     if (const auto browser = weak.lock()) browser->send(words);
@@ -53,7 +53,7 @@ Studio::Working::~Working() {
   if (!told) return;
   try {
     studio_.send_all(written({{"event", "working"}, {"what", nullptr}}));
-  } catch (const std::exception&) {  // no memory for it: the answer tells the same
+  } catch (const std::exception&) {  // no memory for the event: the answer ends the work, too
   }
 }
 
@@ -75,7 +75,7 @@ void Studio::Working::tell_when_long(const std::stop_token& over) {
   told = true;
   try {
     studio_.send_all(written(json()));
-  } catch (const std::exception&) {  // no memory for it: the answer comes anyway
+  } catch (const std::exception&) {  // no memory for the event: the answer comes anyway
   }
 }
 
@@ -83,7 +83,7 @@ void Studio::notice(const std::string& text, const char* kind) {
   broadcast({{"event", "notice"}, {"text", text}, {"kind", kind}});
 }
 
-/// Some times a second at most: it changes with every sample.
+/// Sends the state of the queue, at most a few times per second during a render, since it changes with every sample.
 void Studio::tell_queue() {
   const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
   const auto before = queue_told_.load();

@@ -1,4 +1,4 @@
-// A document's parts in JSON.
+// The components of a document as JSON.
 
 #include <fmt/format.h>
 
@@ -14,11 +14,11 @@ using language::NodeType;
 
 namespace {
 
-constexpr size_t most_numbers = 1000;      // of a list that is sent
+constexpr size_t most_numbers = 1000;      // in a list that is sent
 constexpr size_t longest_text = 16 << 10;  // of a member that is sent [bytes]
-constexpr size_t longest_part = 200;       // of one whose parts are sent by themselves
+constexpr size_t longest_part = 200;       // of a member whose components are sent separately
 
-/// A value that is larger than what a panel shows.
+/// Whether a value is too large to be displayed.
 bool large(const Value& value) {
   const auto* numbers = value.as<Numbers>();
   return numbers && numbers->values.size() > most_numbers;
@@ -88,7 +88,7 @@ Json member_json(const Document& document, const Component& part, const Member& 
   return json;
 }
 
-/// What is written of a part that a plain value stands for: that value, in the member that holds the part.
+/// The text of a component that is given by a plain value: this value, in the member that holds the component.
 std::optional<Span> literal_span(const Document& document, const Component& part) {
   const auto& uses = document.uses(part);
   if (uses.size() != 1 || part.origin) return {};
@@ -178,7 +178,7 @@ Json error_json(const Error& error, const Document* document) {
   json["column"] = at.column;
   json["shown"] = show(error);
   if (document && at.file == document->name() && at.line > 0) {
-    // A word is marked; else a character.
+    // Marks a whole word, or otherwise one character.
     const std::string& text = document->draft() ? document->draft()->text : document->text();
     const Places places(text);
     const size_t begin = places.byte(at);

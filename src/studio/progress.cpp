@@ -1,4 +1,4 @@
-// How far renders are, as pages are told.
+// The progress of renders, as sent to pages.
 
 #include "studio.h"
 
@@ -39,7 +39,7 @@ Studio::Shown Studio::shown() {
   now.status = runner_.status();
   now.generation = generation;
   now.coarse = coarse_shown;
-  // It is not over: the fine picture is still to come.
+  // The render is not finished: the full-resolution picture follows.
   if (now.coarse && now.status.state == Runner::State::finished) now.status = {Runner::State::rendering, {}, {}, {}};
   return now;
 }
@@ -113,7 +113,7 @@ Json Studio::course_json(int render) {
   return found == courses_.end() ? Json::array() : found->second.json();
 }
 
-/// Called while `browsers_guard_` is held.
+/// Requires that `browsers_guard_` is held.
 void Studio::note_shape(const Shown& now, const Image& picture) {
   Shape& shape = shapes_[now.number];
   shape = {now.generation, picture.width, picture.height, {}};

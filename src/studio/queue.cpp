@@ -75,7 +75,7 @@ Json Queue::json() const {
 
 namespace {
 
-/// Every picture that can be written is, whatever is wrong with others.
+/// Writes all outputs that can be written, even if others fail.
 void write_all(const Render& render, const std::string& stem, std::vector<std::string>& written, std::vector<Error>& errors) {
   const Job& job = render.job();
   const Image picture = render.picture();

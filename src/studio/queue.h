@@ -1,5 +1,5 @@
 #pragma once
-// Files that are rendered one after the other, as `etendue render` does.
+// Queue: files that are rendered one after the other, as by `etendue render`.
 
 #include <condition_variable>
 #include <deque>
@@ -19,14 +19,14 @@ using Json = nlohmann::ordered_json;
 
 class Queue {
  public:
-  /// `changed` is called from any thread when there is something new to be told.
+  /// `changed` is called from any thread when the state has changed.
   Queue(RenderSettings settings, std::function<void()> changed);
   ~Queue();
   Queue(const Queue&) = delete;
   Queue& operator=(const Queue&) = delete;
 
   void add(const std::string& file);
-  /// One that is being rendered is given up.
+  /// If the entry is being rendered, its render is aborted.
   void remove(int entry);
   void start();
   void stop();

@@ -1,4 +1,4 @@
-// Requests that move a camera: each is an edit of the text, shown coarse at once.
+// Requests that move a camera: each is an edit of the text, and is shown at once at low resolution.
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@ namespace etendue::studio {
 
 namespace {
 
-/// A picture that waits this long for the next step of a movement is made fine.
+/// Pause in a camera movement after which the picture is rendered at full resolution.
 constexpr auto rest = std::chrono::milliseconds(300);
 
-/// Shows the picture coarse until the camera rests.
+/// Switches to low resolution until the camera rests.
 void begin_movement(Studio& studio) {
   studio.fine_at = std::chrono::steady_clock::now() + rest;
   if (studio.coarse.exchange(true)) return;
@@ -25,7 +25,7 @@ void end_movement(Studio& studio) {
   if (studio.coarse.exchange(false)) studio.apply_overrides();
 }
 
-/// Makes the edits of one step of a movement.
+/// Applies the edits of one step of a camera movement.
 Json moved(const Call& call, const Ref<Component>& camera, const std::function<void(TextEditor&)>& edit) {
   Studio& studio = call.studio;
   if (!call.flag("final")) begin_movement(studio);
@@ -62,9 +62,9 @@ Json view(const Call& call) {
   });
 }
 
-// ---- cameras with a place and a point that they look at ---------------------------------------------------------------------
+// ---- cameras with a position and a target point -----------------------------------------------------------------------------
 
-/// Where such a camera is [m].
+/// Position, target and up vector of such a camera [m].
 struct Pose {
   DoublePoint3 from, to;
   DoubleVector3 up;
@@ -87,7 +87,7 @@ Pose pose_of(const Component& camera) {
   return pose;
 }
 
-/// A point in the unit that it was written in, with as many digits as a picture can tell.
+/// A point in the unit that it was written in, with as many digits as affect the picture.
 std::string point_text(const TextEditor& editor, const Slot& s, const DoublePoint3& p, double scale) {
   std::string unit = "m";
   const std::string before = editor.written(s);
@@ -115,7 +115,7 @@ Json placed(const Call& call, const Ref<Component>& camera, const Pose& pose) {
   });
 }
 
-/// A vector turned about an axis [rad].
+/// Rotates a vector about an axis by an angle [rad].
 DoubleVector3 turned(const DoubleVector3& v, const DoubleVector3& axis, double angle) {
   const DoublePoint3 p = Transform::rotate(angle, axis)(DoublePoint3{} + v);
   return p - DoublePoint3{};
@@ -123,7 +123,7 @@ DoubleVector3 turned(const DoubleVector3& v, const DoubleVector3& axis, double a
 
 DoubleVector3 normalize(const DoubleVector3& v) { return 1 / length(v) * v; }
 
-/// The axes of the picture: where it looks, and what is to the right and up in it.
+/// The axes of the image: view direction, right and up.
 struct Axes {
   DoubleVector3 forward, right, up;
 };
@@ -150,7 +150,7 @@ Json orbit(const Call& call) {
   }
   const double x = call.number_or("x", 0);
   double y = call.number_or("y", 0);
-  // Over the poles it would turn upside down.
+  // Limits the elevation, since the camera would turn upside down beyond the poles.
   const DoubleVector3 up = normalize(pose.up), away = normalize(pose.from - about);
   const double height = std::asin(std::clamp(dot(away, up), -1.0, 1.0));
   constexpr double highest = 1.55;
@@ -162,7 +162,7 @@ Json orbit(const Call& call) {
   return placed(call, camera, pose);
 }
 
-/// By fractions of what the picture shows at the distance of `to`.
+/// Moves the camera by fractions of the visible width at the distance of `to`.
 Json pan(const Call& call) {
   const Ref<Component> camera = camera_of(call);
   Pose pose = pose_of(*camera);
@@ -187,7 +187,7 @@ Json dolly(const Call& call) {
   return placed(call, camera, pose);
 }
 
-/// Moves by metres along the axes of the picture, and turns the view by radians.
+/// Moves the camera by metres along the image axes, and rotates the view direction by radians.
 Json fly(const Call& call) {
   const Ref<Component> camera = camera_of(call);
   Pose pose = pose_of(*camera);

@@ -1,4 +1,4 @@
-// Requests that change members, and what is told of changes.
+// Requests that change members, and events that report changes.
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ Json tell(const Call& call, const Applied& applied) {
   return {{"revision", call.studio.document().revision()}};
 }
 
-/// Applies what an editor made of the text.
+/// Applies the editor's text to the document.
 Json apply(const Call& call, const TextEditor& editor, const std::string& label) {
   return tell(call, call.studio.document().apply(editor.text(), {label, call.text_or("merge", "")}));
 }
@@ -29,12 +29,13 @@ TextEditor editor_for(const Call& call) {
 
 Slot slot_of(const Call& call) { return slot(call.component(), call.text("member"), call.index()); }
 
-// ---- telling ----------------------------------------------------------------------------------------------------------------
+// ---- events ----------------------------------------------------------------------------------------------------------------
 
 void Studio::tell_edit(const Applied& applied, const Call* call) {
   const std::shared_ptr<Render> render = document_.render();
   const Document& d = document_;
-  // The text of the revision before is gone; what was replaced had as many units as the places before and after differ by.
+  // The previous text is not kept: the length of the replaced part follows from the lengths of the text before and after the
+  // change.
   const TextChange& change = applied.change;
   const bool textual = change.begin != change.end || !change.insert.empty();
   runner_.follow(render);

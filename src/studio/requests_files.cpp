@@ -31,8 +31,8 @@ void require_free(const Call& call, const std::string& path) {
 
 namespace {
 
-/// The classes change with plugins alone, which are never unloaded: what is said of them is put together anew when there are
-/// more.
+/// The descriptions of all classes. They change only when plugins are loaded, which are never unloaded, so the number of
+/// classes identifies the version.
 const Json& known_classes() {
   static std::mutex guard;
   static std::map<size_t, Json> by_count;
@@ -96,7 +96,7 @@ Json save(const Call& call) {
   if (elsewhere && path != document.file()) {
     if (!path.ends_with(".etd")) throw Error("a description is saved as an .etd");
     require_free(call, path);
-    // Names of files in it count from where it is.
+    // Relative paths in the text start from its folder: checks that it loads in the new one.
     const std::string folder = fs::path(path).parent_path().string();
     if (folder != document.folder()) static_cast<void>(load_job_text(document.text(), path, folder));
   } else if (!call.flag("over") && document.changed_on_disk()) {
@@ -187,7 +187,7 @@ Json files(const Call& call) {
 
 Json manual(const Call& call) {
   const std::string name = call.text("class"), page = Studio::manual_page(name);
-  if (page.empty()) static_cast<void>(Registry::instance().create(name));  // says what there is
+  if (page.empty()) static_cast<void>(Registry::instance().create(name));  // throws Error with suggestions
   return {{"markdown", page}};
 }
 
@@ -199,7 +199,7 @@ Json queue(const Call& call) {
     for (const Json& file : call.request["add"]) {
       if (!file.is_string()) throw RequestError("bad_request", "'add' must be a list of files");
       paths.push_back(allowed_path(call, file.get<std::string>()));
-      // It is rendered as it is on the disk; what it writes must lie where this studio may write.
+      // The file is rendered as it is on disk; its output files must be in folders that this studio may use.
       for (const NamedFile& named : files_named_by(*load_job(paths.back())))
         if (!call.studio.folders().contains(named.path))
           throw RequestError("not_allowed", fmt::format("'{}' names '{}', outside of the folders that this studio may use",
@@ -215,7 +215,7 @@ Json queue(const Call& call) {
   return {{"queue", json}};
 }
 
-/// For all pages.
+/// Ends the program for all pages.
 Json shutdown(const Call& call) {
   require_saved(call);
   call.studio.shutdown(call.flag("discard"));

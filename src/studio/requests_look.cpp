@@ -1,4 +1,4 @@
-// Requests that look at what is rendered: what is seen in a pixel, how it came about.
+// Requests that inspect the render: what a pixel shows, and by which paths.
 
 #include <fmt/format.h>
 
@@ -90,7 +90,7 @@ Json replay(const Call& call) {
   return {{"replay", Json::parse(replay_json(render->job(), paths, document.file(), "etendue render " + document.file()))}};
 }
 
-/// Why no sample of a list can be replayed; null: it can.
+/// The reason why no sample of a list can be replayed; null: they can.
 Json refusal(const Render& render, const Json& list) {
   if (list.empty()) return {};
   const std::string why = replay_refusal(render);
@@ -159,7 +159,7 @@ class Wires {
       for (const int bit : {1, 2, 4})
         if (!(i & bit)) line(corner(i), corner(i | bit));
   }
-  /// Every edge of few triangles, some of those of many.
+  /// Draws all edges of small meshes, and some of those of large ones.
   void mesh(const TriangleView& view, size_t share) {
     const size_t step = std::max<size_t>(1, view.triangles.size() * 3 / std::max<size_t>(share, 3));
     for (size_t t = 0; t < view.triangles.size(); t += step)
@@ -176,7 +176,7 @@ class Wires {
   size_t most_;
 };
 
-/// One object of the scene itself; those inside nested scenes have no bounds in the world's coordinates.
+/// The wireframe of one object of the main scene; objects in nested scenes have no world space bounds.
 Json wires_of(const Job& job, const Component& wanted, size_t most) {
   Wires wires(job.world_centre(), most);
   Json reply = {{"lines", Json::array()}, {"whole", true}, {"low", nullptr}, {"high", nullptr}};

@@ -1,15 +1,16 @@
 #pragma once
-// Requests that look at what is rendered, from several files.
+// Requests that inspect the render, implemented in several files.
 
 #include "requests.h"
 
 namespace etendue::studio {
 
-/// A moving camera's coarse picture counts other pixels than those that are asked about: it is fine from now on.
+/// Switches from the low-resolution picture of a moving camera to full resolution, so that pixel coordinates refer to the
+/// latter.
 void make_fine(Studio&);
-/// Some of the photons that the renderer holds.
+/// A subset of the renderer's photons.
 Json photons(const Call&);
-/// What its guide has learned where a pixel looks.
+/// The pdf learned by the guide at the surface point seen in a pixel.
 Json lobes(const Call&);
 
 }  // namespace etendue::studio

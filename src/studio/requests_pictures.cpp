@@ -1,4 +1,4 @@
-// Requests about pictures that are not rendered: files that are viewed, and those that were pinned.
+// Requests about pictures that are not rendered: viewed files and pinned pictures.
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 namespace etendue::studio {
 
 void Studio::show_pictures(std::vector<std::pair<std::string, std::shared_ptr<const Image>>> pictures) {
-  begin("");  // an empty description, whose tone map shows them
+  begin("");  // an empty description, whose tone map is used
   const std::lock_guard lock(browsers_guard_);
   for (auto& [name, picture] : pictures) pins_[name] = std::move(picture);
 }

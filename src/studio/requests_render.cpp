@@ -1,4 +1,4 @@
-// Requests about the render: control, goals, pictures of it.
+// Requests about the render: control, limits, pictures.
 
 #include <fmt/format.h>
 
@@ -85,7 +85,7 @@ Json crop(const Call& call) {
   return {};
 }
 
-/// Pictures that one browser watches at once: the render, those beside it, and light groups.
+/// The most pictures that one browser watches at once: the render, those beside it, and light groups.
 constexpr int most_slots = 24;
 
 Json watch(const Call& call) {
@@ -98,15 +98,15 @@ Json watch(const Call& call) {
   else if (what != "none")
     throw RequestError("bad_request", "'what' must be linear, toned or none");
   watch.render = call.render_number();
-  if (watch.what != Watch::What::none) static_cast<void>(call.studio.runner_of(watch.render));  // throws when there is none
+  if (watch.what != Watch::What::none) static_cast<void>(call.studio.runner_of(watch.render));  // throws Error if there is none
   watch.layer = call.text_or("layer", "");
   watch.tone_map = call.text_or("tone_map", "");
-  if (!watch.tone_map.empty()) static_cast<void>(tone_map_of(watch.tone_map));  // throws when it is none
+  if (!watch.tone_map.empty()) static_cast<void>(tone_map_of(watch.tone_map));  // throws Error if it is not a tone map
   call.studio.set_watch(call.browser, int(call.integer_or("slot", 0, 0, most_slots - 1)), watch);
   return {};
 }
 
-/// The picture as it is to be saved: with its lights weighed, if that is asked.
+/// The picture to save, with weighted light groups if requested.
 Image picture_to_save(const Call& call, const Render& render) {
   const Image picture = render.picture();
   if (!call.has("lights")) return picture;

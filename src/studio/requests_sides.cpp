@@ -1,4 +1,4 @@
-// Requests about renders beside the document's own.
+// Requests about renders beside the document's own render.
 
 #include "requests.h"
 
@@ -53,7 +53,7 @@ Json renders(const Call& call) {
 
 Json course(const Call& call) {
   const int number = call.render_number();
-  static_cast<void>(call.studio.runner_of(number));  // throws when there is none
+  static_cast<void>(call.studio.runner_of(number));  // throws Error if there is none
   return {{"points", call.studio.course_json(number)}};
 }
 

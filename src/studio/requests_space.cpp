@@ -1,4 +1,4 @@
-// Requests for what a renderer holds of light in space: photons, and what a guide has learned.
+// Requests for spatial data of a renderer: photons, and the learned pdf of a guide.
 
 #include <fmt/format.h>
 
@@ -14,11 +14,11 @@ namespace etendue::studio {
 
 namespace {
 
-/// A process as it is in the last step that the render has done, for one thread and at once: while no edit can come.
+/// A process in the state of the last finished step. To be used by one thread and at once, before any edit.
 std::unique_ptr<RenderProcess> last_process(const Render& render) {
   const std::vector<IndexRange> done = render.samples_done();
   if (!render.job().renderer->steps_depend()) return render.start_at(done.empty() ? 0 : done.back().end - 1);
-  // What it has learned is in its state; to find it by rendering all steps again would take as long as the render has.
+  // Its learned state is taken from a checkpoint; rendering all steps again would take as long as the render did.
   std::unique_ptr<RenderProcess> process = render.start_at(0);
   std::stringstream state;
   render.save(state);

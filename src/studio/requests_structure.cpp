@@ -1,4 +1,4 @@
-// Requests by which parts come, go, and are put elsewhere.
+// Requests that add, remove and move components.
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@ namespace {
 
 const ClassInfo& class_named(const std::string& name) {
   const ClassInfo* info = Registry::instance().find(name);
-  if (!info || info->abstract()) static_cast<void>(Registry::instance().create(name));  // says what there is
+  if (!info || info->abstract()) static_cast<void>(Registry::instance().create(name));  // throws Error with suggestions
   return *info;
 }
 
-/// The part that stands in a slot now; 0 when there is none.
+/// The id of the component in a slot; 0 if there is none.
 int part_in(const Document& document, const Slot& s, size_t index) {
   const Value value = s.member->get(*s.part, *s.member);
   if (const auto* one = value.as<Ref<Component>>()) return *one ? document.id_of(**one) : 0;
@@ -33,7 +33,7 @@ Json replace(const Call& call) {
   TextEditor editor = editor_for(call);
   const Ref<Component> part = call.component();
   const ClassInfo& now = class_named(call.text("class"));
-  if (call.has("use")) {  // this use alone: it becomes a copy first
+  if (call.has("use")) {  // only this use: it becomes a copy first
     const Json& use = call.request["use"];
     if (!use.is_object()) throw RequestError("bad_request", "'use' must be {id, member, index}");
     const Call place{call.studio, call.browser, use, call.id};
@@ -99,7 +99,7 @@ Json move(const Call& call) {
   const Slot to = same ? Slot{from.part, from.member, {}} : slot(call.component("component_to"), call.text("member_to"));
   const auto place = size_t(call.integer("to", 0, 1'000'000'000));
   const std::string text = editor.written(from);
-  // In one list `to` is where the entry stands in the end.
+  // Within one list, `to` is the final index of the entry.
   if (same && place == *from.index) return {{"revision", call.studio.document().revision()}};
   editor.remove(from);
   editor.add(to, place, text);

@@ -1,4 +1,4 @@
-// Requests that take a while, and what is known of the description beside its errors.
+// Requests for longer tasks, and for warnings about the description.
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ std::vector<std::string> with_plugins(std::vector<std::string> arguments, const 
 
 const ClassInfo& known_class(const std::string& name) {
   const ClassInfo* info = Registry::instance().find(name);
-  if (!info) static_cast<void>(Registry::instance().create(name));  // says what was meant
+  if (!info) static_cast<void>(Registry::instance().create(name));  // throws Error with a suggestion
   return *info;
 }
 
@@ -28,7 +28,7 @@ Json conform(const Call& call) {
   return {{"task", call.studio.tasks().run("conform " + name, with_plugins({"conform", name, "--quick"}, call.studio))}};
 }
 
-/// The file as it is on the disk: by another process.
+/// Verifies the file on disk, in another process.
 Json verify(const Call& call) {
   const Document& document = call.studio.document();
   if (document.file().empty() || document.changed()) throw RequestError("busy", "what is verified is the file: save it first");
@@ -36,7 +36,7 @@ Json verify(const Call& call) {
   if (call.has("renderers")) {
     const std::string renderers = call.text("renderers");
     size_t begin = 0;
-    while (begin <= renderers.size()) {  // classes alone: expressions might name files
+    while (begin <= renderers.size()) {  // only class names: expressions might name files
       const size_t end = std::min(renderers.find(',', begin), renderers.size());
       static_cast<void>(known_class(renderers.substr(begin, end - begin)));
       begin = end + 1;
@@ -74,7 +74,7 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
   return text;
 }
 
-/// Linear sRGB as halves, the largest value near 1000.
+/// The picture as linear sRGB half floats, scaled so that the largest value is near 1000.
 Json picture_json(const Image& picture) {
   const auto& m = rgb_space("srgb").from_xyz;
   double largest = 0;
@@ -99,7 +99,7 @@ double mean_luminance(const Image& picture) {
   return sum / (double(picture.width) * double(picture.height));
 }
 
-/// A small render of its own, so that nothing waits for it.
+/// Uses a small separate render, so that nothing else waits for it.
 Json strategies(const Call& call) {
   Studio& studio = call.studio;
   const auto render = studio.valid_render();
@@ -129,7 +129,7 @@ Json strategies(const Call& call) {
                }
                return !work.ended.load();
              });
-             // No more than a page that reads slowly may be behind by.
+             // Limited to the data that may be queued for a page that reads slowly.
              constexpr size_t most = 24 << 20;  // [bytes]
              const size_t each = size_t(width) * size_t(height) * 16;
              Json list = Json::array();
@@ -147,7 +147,7 @@ Json strategies(const Call& call) {
 
 // ---- the program and the description ----------------------------------------------------------------------------------------
 
-/// What `etendue render` would warn of.
+/// The warnings that `etendue render` would print.
 Json warnings(const Call& call) {
   const auto render = call.studio.valid_render();
   const StudioSettings& settings = call.studio.settings();
@@ -163,7 +163,7 @@ Json warnings(const Call& call) {
   return {{"warnings", std::move(list)}, {"advice", std::move(advice)}};
 }
 
-/// Starts the program anew with its plugins as they are on the disk: what is loaded is never unloaded.
+/// Restarts the program with the current versions of its plugins, since loaded plugins are never unloaded.
 Json begin_again(const Call& call) {
   if (call.studio.document().changed())
     throw RequestError("busy", "there are changes that are not saved, and the program begins anew with what is on the disk");

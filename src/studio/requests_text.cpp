@@ -1,4 +1,4 @@
-// Requests about the text itself: typing, completing, looking things up.
+// Requests about the text itself: typing, completion, explanations.
 
 #include <fmt/format.h>
 
@@ -10,14 +10,14 @@ namespace etendue::studio {
 
 namespace {
 
-/// The text as it is typed: the draft, or what is given along.
+/// The text being typed: the draft, or the text in the request.
 std::string typed_text(const Call& call) {
   if (call.has("text")) return call.text("text");
   const Document& document = call.studio.document();
   return document.draft() ? document.draft()->text : document.text();
 }
 
-/// The text with the changes of a request, which count from the document's text.
+/// The document's text with the changes of a request applied.
 std::string changed_text(const Call& call) {
   const Document& document = call.studio.document();
   if (call.has("text")) return call.text("text");
@@ -74,7 +74,7 @@ Json drop_draft(const Call& call) {
   return {{"revision", call.studio.document().revision()}};
 }
 
-/// Where a request points into the text that is typed.
+/// The position that a request refers to in the text being typed.
 struct Pointed {
   std::string text;
   Places places;

@@ -1,5 +1,4 @@
-// Saved views: named cameras in the text that nothing uses. They are kept with the document, and are there for whoever reads
-// it.
+// Saved views: unused named cameras in the text. So they are stored in the document, and visible to its readers.
 
 #include <fmt/format.h>
 
@@ -12,7 +11,7 @@ namespace {
 
 using language::Definition;
 
-/// Whether a definition is a camera written out.
+/// Whether a definition is a camera component.
 bool is_camera(const Definition& d) {
   if (d.function || d.value.type != language::NodeType::component) return false;
   const ClassInfo* info = Registry::instance().find(d.value.text);
@@ -40,13 +39,13 @@ Json views(const Call& call) {
   return {{"views", std::move(list)}};
 }
 
-/// The text of the job's camera, written out in full.
+/// The complete text of the job's camera.
 std::string camera_text(const Call& call) {
   return TextEditor(call.studio.document()).written_out(*call.studio.document().job().camera);
 }
 
 Json save_view(const Call& call) {
-  static_cast<void>(editor_for(call));  // refuses when the text cannot be edited now
+  static_cast<void>(editor_for(call));  // throws if the text cannot be edited now
   const Document& document = call.studio.document();
   const std::string name = call.text("name");
   if (!language::is_name(name))
@@ -69,7 +68,7 @@ Json save_view(const Call& call) {
   return tell(call, call.studio.document().apply(text, {"save view " + name, ""}));
 }
 
-/// The job's camera becomes a copy of a view's, so that moving it leaves the view where it is.
+/// Sets the job's camera to a copy of a view, so that moving the camera does not change the view.
 Json use_view(const Call& call) {
   TextEditor editor = editor_for(call);
   const Definition& view = view_of(call);
@@ -85,7 +84,7 @@ Json remove_view(const Call& call) {
   const Document& document = call.studio.document();
   const std::string name = view.name.text;
   if (!document.outline().uses(name).empty()) throw Error(fmt::format("'{}' is in use", name));
-  // With its line, when nothing else stands there.
+  // Also removes the line, if nothing else is in it.
   const std::string& text = document.text();
   Span gone{view.name.begin, view.value.end};
   size_t end = gone.end;

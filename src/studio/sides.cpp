@@ -10,7 +10,7 @@
 
 namespace etendue::studio {
 
-// ---- a course ---------------------------------------------------------------------------------------------------------------
+// ---- error curve -----------------------------------------------------------------------------------------------------------
 
 void Course::add(const Point& p) {
   constexpr size_t most = 1000;
@@ -22,7 +22,7 @@ void Course::add(const Point& p) {
   if (!points_.empty() && p.seconds - points_.back().seconds < spacing_) return;
   points_.push_back(p);
   if (points_.size() < most) return;
-  // Half of them tell the same course; the next ones are as far apart.
+  // Keeps every other point; the next points get the same spacing.
   for (size_t i = 0; 2 * i < points_.size(); ++i) points_[i] = points_[2 * i];
   points_.resize((points_.size() + 1) / 2);
   spacing_ = 2 * (points_.back().seconds - points_.front().seconds) / double(most);
@@ -34,7 +34,7 @@ nlohmann::ordered_json Course::json() const {
   return list;
 }
 
-// ---- one render -------------------------------------------------------------------------------------------------------------
+// ---- one side render -------------------------------------------------------------------------------------------------------
 
 Side::Side(int n, Difference d, const RenderSettings& settings, const Folders& folders, Turns& turns)
     : number(n), difference(std::move(d)), document_(settings, folders), runner_(turns) {}
@@ -56,7 +56,7 @@ void Side::follow(const Document& leader, const std::map<std::string, std::strin
     TextEditor editor(leader);
     if (!difference.renderer.empty()) {
       const ClassInfo* info = Registry::instance().find(difference.renderer);
-      if (!info) static_cast<void>(Registry::instance().create(difference.renderer));  // says what was meant
+      if (!info) static_cast<void>(Registry::instance().create(difference.renderer));  // throws Error with a suggestion
       const Ref<Component> now(const_cast<Renderer*>(leader.job().renderer.get()));
       if (&now->class_info() != info) editor.replace_class(now, *info);
     }
@@ -96,11 +96,11 @@ std::vector<Error> Side::errors() const {
   return errors_;
 }
 
-// ---- all --------------------------------------------------------------------------------------------------------------------
+// ---- all side renders ------------------------------------------------------------------------------------------------------
 
 namespace {
 
-/// What the program holds, and what the system could still give [bytes]; 0 when the system does not tell.
+/// The memory used by this program, and the memory available in the system [bytes]; 0 if unknown.
 double held_memory() {
   double pages = 0, resident = 0;
   std::ifstream("/proc/self/statm") >> pages >> resident;
@@ -120,7 +120,7 @@ std::shared_ptr<Side> Sides::add(Difference difference, const Document& leader,
                                  const std::map<std::string, std::string>& overrides) {
   const size_t count = all().size();
   if (count >= most) throw Error(fmt::format("{} renders go on beside this one already: remove one first", most));
-  // Each has the scene once more: as much as there is for one.
+  // Each render has its own copy of the scene: estimates the memory of one.
   const double needed = held_memory() / double(1 + count), free = free_memory();
   if (free > 0 && needed > 0.8 * free)
     throw Error(
@@ -134,7 +134,7 @@ std::shared_ptr<Side> Sides::add(Difference difference, const Document& leader,
 
 void Sides::remove(int number) {
   static_cast<void>(find(number));
-  std::shared_ptr<Side> removed;  // ends when nothing is locked any more
+  std::shared_ptr<Side> removed;  // destroyed after the lock is released
   const std::lock_guard lock(guard_);
   for (auto& side : sides_)
     if (side->number == number) removed = side;
@@ -150,7 +150,7 @@ void Sides::clear() {
 void Sides::follow(const Document& leader, const std::map<std::string, std::string>& overrides) {
   for (const auto& side : all()) try {
       side->follow(leader, overrides);
-    } catch (const std::exception&) {  // it tells them, and follows again when it can
+    } catch (const std::exception&) {  // the side reports the error, and follows again later
     }
 }
 

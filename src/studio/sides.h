@@ -1,6 +1,6 @@
 #pragma once
-// Renders beside the document's own: of the same description with another renderer or other members, which follow its edits
-// and take turns with it. Two algorithms on one scene are seen side by side that way, at equal time.
+// Side renders: renders of the same description with another renderer or other members, which follow the document's edits and
+// take turns with its own render. They compare two algorithms on one scene, at equal time.
 
 #include <deque>
 #include <map>
@@ -15,42 +15,42 @@
 
 namespace etendue::studio {
 
-/// How far a render was at which time: what an error curve is drawn of. For one thread at a time.
+/// The error of a render over time, for an error curve. Used by one thread at a time.
 class Course {
  public:
   struct Point {
     double seconds = 0, error = 0;
     std::uint32_t samples = 0;
   };
-  /// A time before the last one, or fewer samples: it was begun anew.
+  /// A time or a number of samples below that of the last point means that the render was restarted: clears the curve.
   void add(const Point&);
   nlohmann::ordered_json json() const;
 
  private:
   std::vector<Point> points_;
-  double spacing_ = 0;  // [s] at least between two of them
+  double spacing_ = 0;  // [s] least spacing of points
 };
 
-/// What such a render differs in from the document.
+/// The difference of a side render from the document.
 struct Difference {
   std::string renderer;  ///< class of its renderer, which keeps members of the same name; empty: the document's
-  std::map<std::string, std::string> set;  ///< members by paths as of `--set`, with expressions
+  std::map<std::string, std::string> set;  ///< member paths as for `--set`, with expressions
 };
 
-/// One such render. It has a copy of the scene: what is prepared belongs to a render (docs/drive-a-render.md).
+/// A side render. It has its own copy of the scene, since prepared components belong to one render (docs/drive-a-render.md).
 class Side {
  public:
   Side(int number, Difference, const RenderSettings&, const Folders&, Turns&);
 
-  /// Becomes what the document is now, with `overrides` of the session. What does not go leaves errors, and it stands still.
+  /// Updates to the document's present state, with the session's `overrides`. On errors, these are stored and the render stops.
   void follow(const Document& leader, const std::map<std::string, std::string>& overrides);
-  /// Reads all files anew that it names.
+  /// Reads all files that it names again.
   void reload();
 
   const int number;
   const Difference difference;
   std::shared_ptr<Render> render() const { return document_.render(); }
-  /// What it is called: its renderer's class and what else is different. For any thread, as are those below.
+  /// Its title: the renderer's class and the other differences. This function and those below may be called from any thread.
   std::string title() const;
   std::vector<Error> errors() const;
   std::uint32_t generation() const { return generation_; }
@@ -69,19 +69,19 @@ class Side {
   std::vector<Error> errors_;
 };
 
-/// All of them. Changed by the thread that answers alone.
+/// All side renders. Modified only by the thread that answers requests.
 class Sides {
  public:
   static constexpr size_t most = 4;
   Sides(const RenderSettings& settings, const Folders& folders, Turns& turns)
       : settings_(settings), folders_(folders), turns_(turns) {}
 
-  /// Begins another one. Throws Error when there are too many, memory would not suffice, or it cannot be rendered.
+  /// Starts a side render. Throws Error if there are too many, memory is insufficient, or it cannot be rendered.
   std::shared_ptr<Side> add(Difference, const Document& leader, const std::map<std::string, std::string>& overrides);
   void remove(int number);
   void clear();
   void follow(const Document& leader, const std::map<std::string, std::string>& overrides);
-  /// For any thread. `find` throws Error when there is no such render.
+  /// May be called from any thread. `find` throws Error if there is no such render.
   std::vector<std::shared_ptr<Side>> all() const;
   std::shared_ptr<Side> find(int number) const;
 

@@ -1,4 +1,4 @@
-// Requests one after the other, and what becomes of them.
+// Studio: answers requests one after the other.
 
 #include "studio.h"
 
@@ -46,7 +46,7 @@ Studio::~Studio() {
   if (ending_) return;
   try {
     static_cast<void>(end());
-  } catch (const std::exception&) {  // nobody is left to be told
+  } catch (const std::exception&) {  // there is no one to report the error to
   }
 }
 
@@ -86,7 +86,7 @@ void Studio::open_first(Document::Source source) {
     const std::string folder = std::filesystem::path(source.file).parent_path().string();
     try {
       document_.open(std::move(source));
-    } catch (...) {  // no memory, perhaps; what is wrong with the text is a draft
+    } catch (...) {  // probably no memory; errors in the text are stored as a draft
       for (const Error& error : errors_at_hand()) notice(error.what(), "error");
       document_.create(folder);
     }
@@ -113,7 +113,7 @@ void Studio::answer() {
   while (!ending_) {
     const auto ready = [&] { return ending_ || !tasks_.empty(); };
     if (fine_at) {
-      // A camera that came to rest is shown fine.
+      // The camera rests: switches to full resolution.
       if (!tasks_changed_.wait_until(lock, *fine_at, ready)) {
         lock.unlock();
         fine_at.reset();
@@ -175,7 +175,7 @@ void Studio::answer(const Task& task) {
   }
   try {
     task.from->send(written(reply));
-  } catch (const std::exception&) {  // no memory for it: the page will ask again
+  } catch (const std::exception&) {  // no memory for the reply: the page will ask again
   }
   if (!goodbye_ || ended_before) return;
   broadcast({{"event", "goodbye"}});
@@ -214,11 +214,11 @@ void Studio::apply_overrides() {
   if (coarse && document_.valid()) {
     const ImageBuffer& image = *document_.job().image;
     constexpr int part = 4;
-    // A step of a small picture takes as many paths as one of a large picture; of these few are enough until it rests.
+    // Steps of small pictures take as many paths as those of large ones; during a movement fewer are enough.
     constexpr double most_paths = 1 << 15;
     const double pixels = std::max(double(image.width) * image.height / (part * part), 1.0);
     all["renderer.samples"] = std::to_string(int(std::clamp(most_paths / pixels, 1.0, 4.0)));
-    if (!document_.overrides().contains("image.width")) {  // else it is coarse already
+    if (!document_.overrides().contains("image.width")) {  // otherwise it is at low resolution already
       all["image.width"] = std::to_string(std::max(image.width / part, 1));
       all["image.height"] = std::to_string(std::max(image.height / part, 1));
       all["image.crop"] = "[]";

@@ -1,6 +1,6 @@
 #pragma once
-// The studio without its network: one document, its render, and all browsers that look at it. docs/studio-protocol.md is what
-// it speaks; src/studio/server brings it to browsers.
+// Studio: the studio without its network part: one document, its render, and all connected browsers. docs/studio-protocol.md
+// describes the messages; src/studio/server connects browsers.
 
 #include <atomic>
 #include <condition_variable>
@@ -27,36 +27,36 @@ struct StudioSettings {
   RenderSettings render;
   Folders folders;
   bool read_only = false;
-  bool viewing = false;              ///< it only shows pictures (Studio::show_pictures)
-  std::vector<std::string> plugins;  ///< that were named when it was started
-  /// What a user should know about a prepared job that is no error, with its kind; and which light its renderer misses.
+  bool viewing = false;              ///< shows pictures only (Studio::show_pictures)
+  std::vector<std::string> plugins;  ///< named at program start
+  /// Warnings about a prepared job, with their kinds; and advice about light that its renderer misses.
   std::function<std::vector<std::pair<std::string, Error>>(const Job&)> warnings;
   std::function<std::vector<std::string>(const Job&)> advice;
 };
 
-/// What a page wants to see.
+/// A picture that a page watches.
 struct Watch {
   enum class What : std::uint8_t { none, linear, toned } what = What::none;
-  int render = 0;        ///< 0: the document's own; else one beside it
+  int render = 0;        ///< 0: the document's own; otherwise a side render
   std::string layer;     ///< empty: the picture itself
   std::string tone_map;  ///< as text; empty: the job's
   bool operator==(const Watch&) const = default;
   auto operator<=>(const Watch&) const = default;
 };
 
-/// A page, as the studio sees it. `send` and `frame_ready` are called from any thread and do not wait.
+/// A connected page. `send` and `frame_ready` are called from any thread and do not block.
 class Browser {
  public:
   virtual ~Browser() = default;
   virtual void send(std::shared_ptr<const std::string> words) = 0;
-  /// There is another frame of what it watches (Studio::frame).
+  /// There is a new frame of a watched picture (Studio::frames).
   virtual void frame_ready() = 0;
-  /// One of its requests is answered.
+  /// Called when one of its requests is answered.
   virtual void answered() {}
   int number = 0;
 };
 
-/// An error that a page may have to act on.
+/// An error with a code, to which a page may react.
 class RequestError : public Error {
  public:
   RequestError(std::string c, const std::string& message) : Error(message), code(std::move(c)) {}
@@ -72,90 +72,89 @@ class Studio {
   Studio(const Studio&) = delete;
   Studio& operator=(const Studio&) = delete;
 
-  /// What it begins with; empty: an empty description in the working folder. Throws when the file itself cannot be read. The
-  /// rest, which takes long for a large scene, is done before the first request is answered; browsers may come meanwhile, and
-  /// are told.
+  /// Opens a file; empty: an empty description in the working directory. Throws if the file itself cannot be read. The
+  /// remaining work, which may take long for a large scene, is done before the first request is answered; browsers may connect
+  /// meanwhile and are informed.
   void begin(const std::string& file);
-  /// Whether that is still to be done.
+  /// Whether this work is still going on.
   bool beginning() const { return beginning_; }
-  /// Instead of that: pictures alone.
+  /// Instead of `begin`: shows pictures only.
   void show_pictures(std::vector<std::pair<std::string, std::shared_ptr<const Image>>>);
 
   void join(const std::shared_ptr<Browser>&);
   void leave(const Browser&);
-  /// A request; the answer goes to the browser's `send`. Never throws, whatever the text is.
+  /// Queues a request; the answer goes to the browser's `send`. Never throws, whatever the text is.
   void request(const std::shared_ptr<Browser>&, std::string text);
-  /// A browser watches several pictures, by slots of its own: the newest frame in each; null when there is none.
+  /// The newest frame of each picture that a browser watches, by the browser's slots; null if there is none.
   std::map<int, std::shared_ptr<const Frame>> frames(const Browser&) const;
 
-  /// Ends all threads. What was edited and not saved, unless a page gave it up, is written beside the description; the path of
-  /// that file, else empty. Throws Error when it cannot be written.
+  /// Ends all threads. Unsaved edits, unless a page discarded them, are written to a file next to the description; returns its
+  /// path, else "". Throws Error if it cannot be written.
   std::string end();
-  /// Called once when a page asked for the end.
+  /// Called once after a page requested the end of the program.
   std::function<void()> on_shutdown;
-  /// Whether it asked for a new beginning after that, with plugins as they are now.
+  /// Whether it requested a restart after the end, with the plugins' current versions.
   std::atomic<bool> begin_again{false};
-  /// The manual page of a class; empty when there is none.
+  /// The manual page of a class; empty if there is none.
   static std::string manual_page(const std::string& class_name);
   const StudioSettings& settings() const { return settings_; }
 
-  // ---- for requests (requests_*.cpp), in the thread that answers them
-  // --------------------------------------------------------
+  // ---- for requests (requests_*.cpp), in the answering thread --------------------------------------------------------------
 
   Document& document() { return document_; }
   Runner& runner() { return runner_; }
   Folders& folders() { return settings_.folders; }
   void broadcast(const Json& event);
   void notice(const std::string& text, const char* kind);
-  /// After an edit: tells all browsers what became of text and tree, and has the render go on.
+  /// After an edit: sends the changes of text and tree to all browsers, and updates the render.
   void tell_edit(const Applied&, const Call*);
-  /// After another document came.
+  /// After another document was opened: sends everything to all browsers.
   void tell_all();
   void tell_document();
   Json document_json() const;
   Json text_json() const;
   Json progress_json();
   std::shared_ptr<Render> valid_render();
-  /// The document's own render, or the one beside it that a number names. Throws Error when there is none.
+  /// The document's own render for 0, or the side render with this number. Throws Error if there is none.
   std::shared_ptr<Render> render_of(int number);
   Runner& runner_of(int number);
   Sides& sides() { return sides_; }
-  /// Those beside the document's follow what became of it; not while a camera moves.
+  /// Updates the side renders to the document; not while a camera moves.
   void follow_sides();
   void tell_sides();
   Json sides_json();
-  /// How the error of a render went down.
+  /// The error of a render over time.
   Json course_json(int render);
   void set_watch(const Browser&, int slot, const Watch&);
-  /// Keeps a picture for comparing; null: no longer.
+  /// Stores a picture for comparison; null removes it.
   void pin(const std::string& name, std::shared_ptr<const Image>);
-  /// Throws Error when there is none.
+  /// Throws Error if there is none.
   std::shared_ptr<const Image> pinned(const std::string& name) const;
   Json pictures_json() const;
-  /// Counts films begun anew.
+  /// Counts restarts of the film.
   std::atomic<std::uint32_t> generation{1};
-  std::atomic<bool> coarse{false};        ///< wanted
-  std::atomic<bool> coarse_shown{false};  ///< what the render makes
-  /// A moving camera's picture is made fine when this time has come.
+  std::atomic<bool> coarse{false};        ///< low resolution is requested
+  std::atomic<bool> coarse_shown{false};  ///< low resolution is rendered
+  /// The time at which a moving camera's picture switches to full resolution.
   std::optional<std::chrono::steady_clock::time_point> fine_at;
-  std::map<std::string, std::string> overrides;  ///< of the session, beside a coarse picture
+  std::map<std::string, std::string> overrides;  ///< of this session, in addition to those for low resolution
   void apply_overrides();
   size_t fireflies_kept = 0;
-  int movement = 0;  ///< counts movements of cameras: all steps of one are one step of undo
+  int movement = 0;  ///< number of the current camera movement, whose steps form one undo step
   Queue& queue() { return queue_; }
   Tasks& tasks() { return checks_; }
-  /// Ends the program once the request at hand is answered.
+  /// Ends the program after the current request is answered.
   void shutdown(bool discard);
   void wake_viewer();
 
  private:
   struct Task {
-    std::shared_ptr<Browser> from;  // null: the studio's own
+    std::shared_ptr<Browser> from;  // null: a task of the studio itself
     std::string text;
     std::function<void()> own = {};
   };
-  /// The request that is being answered. Browsers are told of it when it takes long, by a thread of its own: every other one may be
-  /// waiting for a lock that the request holds. The end of its scope is the end of the work.
+  /// The request that is being answered, for the scope of this object. If it takes long, browsers are informed by a separate
+  /// thread, since all others may be waiting for a lock that the request holds.
   class Working {
    public:
     Working(Studio&, std::string what, std::string file);
@@ -174,7 +173,7 @@ class Studio {
   };
   void send_all(const std::shared_ptr<const std::string>& words);
   void open_first(Document::Source);
-  /// A render as it is at a moment.
+  /// The state of a render at one moment.
   struct Shown {
     int number = 0;  // 0: the document's own
     std::shared_ptr<Render> render;
@@ -205,21 +204,21 @@ class Studio {
 
   mutable std::mutex browsers_guard_;
   std::map<int, std::weak_ptr<Browser>> browsers_;
-  std::map<int, std::map<int, Watch>> watches_;  // of browsers, by slots
+  std::map<int, std::map<int, Watch>> watches_;  // of browsers, by slot
   Frames frames_;
   int next_browser_ = 1;
-  Working* working_ = nullptr;  // guarded as browsers are
+  Working* working_ = nullptr;  // guarded by browsers_guard_
   struct Shape {
     std::uint32_t generation = 0;
     int width = 0, height = 0;
     std::vector<std::string> layers;
   };
-  std::map<int, Shape> shapes_;  // of the pictures that were looked at last, by render
+  std::map<int, Shape> shapes_;  // of the last displayed pictures, by render
   std::map<int, Course> courses_;
   std::uint64_t frame_number_ = 0;
   std::map<std::string, std::shared_ptr<const Image>> pins_;
   std::atomic<std::int64_t> queue_told_{0};
-  size_t text_units_ = 0;  // of the text that browsers have
+  size_t text_units_ = 0;  // length of the text that browsers have
 
   std::mutex tasks_guard_;
   std::condition_variable tasks_changed_;
@@ -229,15 +228,15 @@ class Studio {
   bool viewer_woken_ = false;
   std::atomic<bool> beginning_{false};
   std::atomic<bool> ending_{false};
-  std::atomic<bool> discarded_{false};  ///< a page gave up what is not saved
-  /// A page asked for the end: its own answer is the last. Of the thread that answers.
+  std::atomic<bool> discarded_{false};  ///< a page discarded unsaved edits
+  /// A page has requested the end: the answer to this request is the last one. Used only by the answering thread.
   bool goodbye_ = false;
   Queue queue_;
   Tasks checks_;
   std::thread answerer_, viewer_;
 };
 
-/// A request that is being answered.
+/// The arguments of a request that is being answered.
 struct Call {
   Studio& studio;
   Browser& browser;
@@ -245,7 +244,7 @@ struct Call {
   Json id;
 
   bool has(const char* key) const { return request.contains(key) && !request[key].is_null(); }
-  // Each throws RequestError when the argument is missing or of another type.
+  // Each function throws RequestError if the argument is missing or of the wrong type.
   std::string text(const char* key) const;
   std::string text_or(const char* key, const std::string& otherwise) const;
   bool flag(const char* key) const;
@@ -254,7 +253,7 @@ struct Call {
   double number(const char* key) const;
   double number_or(const char* key, double otherwise) const;
   std::optional<size_t> index(const char* key = "index") const;
-  /// The render that 'render' names; without it the document's own.
+  /// The render that the argument 'render' names; by default the document's own.
   int render_number() const;
   std::shared_ptr<Render> render() const { return studio.render_of(render_number()); }
   Ref<Component> component(const char* key = "component") const;
@@ -277,21 +276,20 @@ std::span<const Request> view_requests();
 std::span<const Request> picture_requests();
 std::span<const Request> task_requests();
 
-// ---- JSON of what there is (json_*.cpp)
-// ---------------------------------------------------------------------------------------
+// ---- JSON of components and errors (json_tree.cpp) -------------------------------------------------------------------------
 
 Json component_json(const Document&, const Component&);
 Json tree_json(const Document&);
 Json names_json(const Document&);
 Json error_json(const Error&, const Document*);
 Json errors_json(const std::vector<Error>&, const Document*);
-/// As it is sent.
+/// JSON as it is sent.
 std::shared_ptr<const std::string> written(const Json&);
-/// Of the exception at hand.
+/// The errors of the current exception.
 std::vector<Error> errors_at_hand();
-/// A tone map written as text that names no file. Throws Error or Errors when it is none.
+/// Parses a tone map, in which no files are allowed. Throws Error or Errors if the text is not a tone map.
 Ref<ToneMap> tone_map_of(const std::string&);
-/// What a page learns of the program when it says hello: classes, units, functions, names.
+/// The data about the program in the reply to "hello": classes, units, functions, names.
 Json vocabulary_json();
 
 }  // namespace etendue::studio

@@ -58,7 +58,7 @@ int Tasks::work(const std::string& title, std::function<Json(const Work&)> what)
                     },
                     [&](const std::string& more) {
                       text += more;
-                      // Of endless texts the end tells most.
+                      // For very long output the end is most informative.
                       if (text.size() > longest) text = "…" + text.substr(text.size() - longest / 2);
                       tell();
                     }};
@@ -94,7 +94,7 @@ void Tasks::end(int number) {
 
 namespace {
 
-/// A process of this program; what it says comes out of `output`. Ends with this object.
+/// A child process of this program; its output is read from `output`. It is killed when this object is destroyed.
 struct Process {
   explicit Process(const std::vector<std::string>& arguments) {
     int ends[2];
@@ -106,7 +106,7 @@ struct Process {
     posix_spawn_file_actions_adddup2(&files, ends[1], STDERR_FILENO);
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
-    sigset_t none, standard;  // signals are blocked here and ignored: not there
+    sigset_t none, standard;  // signals are blocked and ignored in this program, but not in the child
     sigemptyset(&none);
     sigemptyset(&standard);
     sigaddset(&standard, SIGPIPE);
@@ -134,7 +134,7 @@ struct Process {
     }
     close(output);
   }
-  /// Its exit status; negative when a signal ended it.
+  /// Its exit status; negative if a signal ended it.
   int wait() {
     int status = 0;
     waitpid(number, &status, 0);

@@ -1,5 +1,5 @@
 #pragma once
-// What takes a while: checks of classes, in processes of their own, and pictures computed beside the render.
+// Tasks that take long: checks of classes, in separate processes, and pictures computed beside the render.
 
 #include <atomic>
 #include <functional>
@@ -12,36 +12,36 @@
 
 namespace etendue::studio {
 
-/// Each has a thread; `tell` is called from those, with events for all browsers.
+/// Each task has a thread, which calls `tell` with events for all browsers.
 class Tasks {
  public:
   using Json = nlohmann::ordered_json;
   explicit Tasks(std::function<void(const Json&)> tell) : tell_(std::move(tell)) {}
-  /// Ends them all.
+  /// Ends all tasks.
   ~Tasks();
   Tasks(const Tasks&) = delete;
   Tasks& operator=(const Tasks&) = delete;
 
-  /// How a piece of work tells of itself.
+  /// The interface by which a task reports.
   struct Work {
-    const std::atomic<bool>& ended;               ///< it is to give up
-    std::function<void(double)> done;             ///< a fraction of it is done
-    std::function<void(const std::string&)> say;  ///< further text
+    const std::atomic<bool>& ended;               ///< the task should end
+    std::function<void(double)> done;             ///< reports the finished fraction
+    std::function<void(const std::string&)> say;  ///< reports further text
   };
-  /// Does something; what it returns goes along with the last event. The number that its events bear. Throws Error when too
-  /// much is going on already.
+  /// Starts a task; its return value is added to the last event. Returns the number in its events. Throws Error if there are
+  /// too many tasks.
   int work(const std::string& title, std::function<Json(const Work&)>);
-  /// Runs this program with other arguments, in a process of its own: what happens to it happens to nobody else.
+  /// Runs this program with other arguments in a separate process, so that a crash affects nothing else.
   int run(const std::string& title, std::vector<std::string> arguments);
-  /// Gives one up. Throws Error when there is none.
+  /// Ends a task. Throws Error if there is none with this number.
   void end(int number);
 
  private:
   struct Running {
     int number = 0;
-    std::atomic<bool> ended{false};  ///< it is to give up
-    std::atomic<bool> over{false};   ///< it has no more to do: whoever hears its last event finds it so
-    std::atomic<bool> told{false};   ///< and has said so: its thread may be waited for by who holds what `tell` needs
+    std::atomic<bool> ended{false};  ///< the task should end
+    std::atomic<bool> over{false};   ///< the work is done; set before the last event is sent
+    std::atomic<bool> told{false};   ///< the last event is sent: joining the thread cannot deadlock with locks of `tell`
     std::thread thread;
   };
   void sweep();

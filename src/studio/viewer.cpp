@@ -1,4 +1,4 @@
-// Looking at the render while it goes on: progress, and frames of the film for whoever watches.
+// The viewer thread: observes the render, and sends progress and frames to the browsers.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How much of the program's work looking may be: what is rendered should hardly notice.
+/// The fraction of the program's CPU time that may be spent on viewing, so that it hardly slows the render.
 constexpr double share = 0.03, share_when_fresh = 0.12;
 constexpr auto fresh = std::chrono::seconds(2);
 constexpr auto shortest = std::chrono::milliseconds(50), resting = std::chrono::milliseconds(250),
@@ -61,13 +61,13 @@ void Studio::wake_viewer() {
   viewer_changed_.notify_all();
 }
 
-// A look follows another when the rest of the program has worked so much longer that looking is a small part of it: by
-// processor time, which does not count what other programs do. What somebody did is shown at once.
+// Updates the view when the program's CPU time since the last update is so much longer that viewing stays a small fraction of
+// it. CPU time does not depend on other programs. Changes by users are shown at once.
 void Studio::look() {
   pthread_setname_np(pthread_self(), "viewer");
   std::uint64_t seen_changes = 0, seen_generations = 0;
   Clock::time_point looked{}, begun{};
-  double looked_at = 0, cost = 0;  // of the whole program, and of the last look [s of a processor]
+  double looked_at = 0, cost = 0;  // CPU time of the whole program at the last update, and cost of the last update [s]
   auto pause = shortest;
   while (!ending_) {
     bool woken = false;
@@ -92,7 +92,7 @@ void Studio::look() {
     pause = rendering || changed ? shortest : resting;
     if (!changed && !rendering) continue;
     const bool soon = coarse && Clock::now() - looked >= shortest;
-    // What was begun anew is looked at more often: of it most is to be seen.
+    // After a restart updates are more frequent, since most is to be seen then.
     const double part = Clock::now() - begun < fresh ? share_when_fresh : share;
     const bool due = part * (processor_time(CLOCK_PROCESS_CPUTIME_ID) - looked_at) >= cost;
     if (!changed && !soon && !due && Clock::now() - looked < longest) continue;
@@ -120,7 +120,7 @@ void Studio::look() {
 
 namespace {
 
-/// Where a picture stands in the whole one, as it says itself.
+/// The position of a picture within the whole one, from its metadata.
 FrameInfo place_of(const Image& picture, FrameInfo info) {
   const auto number_in = [&](const char* key, int otherwise) {
     const auto found = picture.metadata.find(key);
@@ -163,7 +163,7 @@ std::shared_ptr<const Frame> Studio::make_frame(const Watch& watch, const Render
   return Frame::make(Frame::Kind::toned, shown, 0, false, info, number, before);
 }
 
-/// One frame for each kind of watching, and how far it is.
+/// Makes one frame for each distinct Watch, and broadcasts the progress.
 void Studio::look_once() {
   std::map<int, std::set<Watch>> wanted;  // by render
   Frames before, frames;
@@ -205,7 +205,7 @@ void Studio::show(const Shown& now, const std::set<Watch>& wanted, const Frames&
     const auto had = before.find(watch);
     try {
       made[watch] = make_frame(watch, *now.render, picture, info, had == before.end() ? nullptr : had->second.get());
-    } catch (const std::exception& error) {  // of a tone map; whoever watches keeps what is on the screen
+    } catch (const std::exception& error) {  // an error of a tone map; the browsers keep their last frame
       notice(error.what(), "error");
       if (had != before.end()) made[watch] = had->second;
     }

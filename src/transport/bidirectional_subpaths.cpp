@@ -8,10 +8,12 @@ namespace {
 
 bool emitter_can_be_hit(const SubpathVertex& luminaire) { return !luminaire.point.object->delta(); }
 
-std::vector<SubpathVertex>& kept_on_this_thread(int which) {
-  static thread_local std::vector<SubpathVertex> walks[2];
-  walks[which].clear();
-  return walks[which];
+/// Memory of this thread that is used again by each sample: the rendering loop allocates nothing.
+template <class T>
+std::vector<T>& reused(int which) {
+  static thread_local std::vector<T> memory[2];
+  memory[which].clear();
+  return memory[which];
 }
 
 }  // namespace
@@ -22,29 +24,32 @@ BidirectionalSubpaths::BidirectionalSubpaths(const RenderContext& context, const
       lights_(lights),
       sample_(sample),
       weights_(weights),
-      camera_(kept_on_this_thread(0)),
-      light_(kept_on_this_thread(1)),
+      camera_(reused<SubpathVertex>(0)),
+      light_(reused<SubpathVertex>(1)),
+      segment_emission_(reused<PathContribution>(0)),
+      hits_(reused<PathContribution>(1)),
       light_wavelengths_(sample.wavelengths),
       front_(context.scene) {}
 
-void BidirectionalSubpaths::from_camera(const Ray& ray, const SubpathLimits& limits, LightListener& listener) {
-  struct Growing final : WalkListener {
-    const BidirectionalSubpaths& walks;
-    LightListener& listener;
-    Growing(const BidirectionalSubpaths& w, LightListener& l) : walks(w), listener(l) {}
-    void emitted(int length, const Spectrum& light) override { listener.found({0, length + 1, false, light}); }
-    void crossed_luminaire() override { walks.meet(walks.camera_vertices(), listener); }
-  } growing(*this, listener);
+void BidirectionalSubpaths::from_camera(const Ray& ray, const SubpathLimits& limits) {
+  struct Emission final : SegmentEvents {
+    BidirectionalSubpaths& paths;
+    explicit Emission(BidirectionalSubpaths& p) : paths(p) {}
+    void emitted(int length, const Spectrum& light) override {
+      paths.segment_emission_.push_back({0, length + 1, false, light});
+    }
+    void crossed_luminaire() override { paths.add_emitter_hits(paths.camera_vertices(), paths.segment_emission_); }
+  } emission(*this);
   directions_ = limits.directions;
-  generate_camera_subpath(context_, ray, limits, sample_, camera_, growing);
+  generate_camera_subpath(context_, ray, limits, sample_, camera_, emission);
 }
 
 void BidirectionalSubpaths::from_luminaire(float time, const SubpathLimits& limits) {
-  SampleContext light{light_wavelengths_, sample_.numbers.fork("light"), sample_.arena, {}, nullptr, sample_.abort};
+  SampleContext light{light_wavelengths_, sample_.numbers.fork("light"), sample_.arena, {.abort = sample_.sink.abort}};
   EmittedLight emitted;
   generate_light_subpath(context_.scene, lights_, time, {limits.longest, limits.roulette_depth, directions_}, light, light_,
                          emitted);
-  if (light_.size() > 1) direct_ = pdf_next_event(lights_, light_[1], light_[0], light_[1].out);
+  if (light_.size() > 1) y0_pdf_next_event_ = pdf_next_event(lights_, light_[1], light_[0], light_[1].out);
 }
 
 bool BidirectionalSubpaths::has_specular_prefix(int t) const {
@@ -53,9 +58,15 @@ bool BidirectionalSubpaths::has_specular_prefix(int t) const {
   return true;
 }
 
-void BidirectionalSubpaths::meet(int t, LightListener& listener) const {
+std::span<const PathContribution> BidirectionalSubpaths::emitter_hits(int t) const {
+  hits_.clear();
+  add_emitter_hits(t, hits_);
+  return hits_;
+}
+
+void BidirectionalSubpaths::add_emitter_hits(int t, std::vector<PathContribution>& hits) const {
   const SubpathVertex& z = camera_vertex(t);
-  if (z.kind == Vertex::Kind::escape) {
+  if (z.kind == PathVertex::Kind::escape) {
     SurfacePoint point;
     Ray ray;
     ray.origin = camera_vertex(t - 1).point.position;
@@ -64,14 +75,15 @@ void BidirectionalSubpaths::meet(int t, LightListener& listener) const {
     ray.of_camera = t == 2;
     for (const SceneObject* far : context_.scene.infinite_luminaires(ray)) {
       far->surface_point(ray, {}, point);
-      meet_at(z, point, t, listener);
+      add_emitter_hit(z, point, t, hits);
     }
   } else if (z.on_surface() && z.point.object->luminaire()) {
-    meet_at(z, z.point, t, listener);
+    add_emitter_hit(z, z.point, t, hits);
   }
 }
 
-void BidirectionalSubpaths::meet_at(const SubpathVertex& z, const SurfacePoint& point, int t, LightListener& listener) const {
+void BidirectionalSubpaths::add_emitter_hit(const SubpathVertex& z, const SurfacePoint& point, int t,
+                                            std::vector<PathContribution>& hits) const {
   PathContribution found{0, t, false, z.throughput * point.object->emission->radiance(point, z.out, sample_.wavelengths),
                          point.object};
   if (found.light.black()) return;
@@ -86,10 +98,10 @@ void BidirectionalSubpaths::meet_at(const SubpathVertex& z, const SurfacePoint& 
         vertex_pdf(x0.infinite ? 1 : point.object->emission->pdf(point, z.out), x0, x1, z.out, z.mean_transmittance, front_);
     if (path.pdf_emission_origin > 0) found.weight = bidirectional_weight(path, weights_.heuristic);
   }
-  listener.found(found);
+  hits.push_back(found);
 }
 
-std::optional<PathContribution> BidirectionalSubpaths::sample_luminaire(int t) const {
+std::optional<PathContribution> BidirectionalSubpaths::next_event(int t) const {
   const SubpathVertex& z = camera_vertex(t);
   NumberStream numbers = sample_.numbers.fork("luminaire", std::uint32_t(t));
   const auto c = connect_to_luminaire(context_.scene, lights_, z, sample_.wavelengths, numbers, sample_.arena);
@@ -116,9 +128,18 @@ std::optional<PathContribution> BidirectionalSubpaths::connect(int s, int t) con
   if (!c) return {};
   PathContribution found{s, t, false, c->light, light_[0].point.object};
   if (weights_.weighted) {
-    ConnectedPath path{
-        light_.data(),   s, camera_.data(), t, 0, 0, 0, 0, direct_, light_[0].pdf_forward, emitter_can_be_hit(light_[0]),
-        weights_.merging};
+    ConnectedPath path{light_.data(),
+                       s,
+                       camera_.data(),
+                       t,
+                       0,
+                       0,
+                       0,
+                       0,
+                       y0_pdf_next_event_,
+                       light_[0].pdf_forward,
+                       emitter_can_be_hit(light_[0]),
+                       weights_.merging};
     const float at_z = camera_pdf(directions_, z, z.out, c->direction, c->pdf_at_z);
     path.light_last_from_camera = vertex_pdf(at_z, z, y, c->direction, c->mean_transmittance, front_);
     path.light_before_from_camera = before_from(light_, s, -c->direction, Transport::radiance);
@@ -138,7 +159,7 @@ std::optional<PathContribution> BidirectionalSubpaths::connect_to_lens(int s) co
   if (weights_.weighted) {
     const Vector3& direction = c->lens.direction;
     ConnectedPath path{
-        light_.data(),   s, &c->camera, 1, 0, 0, 0, 0, direct_, light_[0].pdf_forward, emitter_can_be_hit(light_[0]),
+        light_.data(),   s, &c->camera, 1, 0, 0, 0, 0, y0_pdf_next_event_, light_[0].pdf_forward, emitter_can_be_hit(light_[0]),
         weights_.merging};
     path.light_last_from_camera = vertex_pdf(c->pdf_at_lens, c->camera, y, -direction, c->mean_transmittance, front_);
     path.light_before_from_camera = before_from(light_, s, direction, Transport::radiance);
@@ -173,9 +194,9 @@ float BidirectionalSubpaths::before_from(const std::vector<SubpathVertex>& walk,
 }
 
 void BidirectionalSubpaths::record() const {
-  PathRecord* record = sample_.observe.record;
+  PathRecord* record = sample_.sink.record;
   if (!record) return;
-  record_subpath(record->vertices, std::span<const SubpathVertex>(camera_).subspan(1));
+  if (!camera_.empty()) record_subpath(record->vertices, std::span<const SubpathVertex>(camera_).subspan(1));
   record_subpath(record->light_vertices, light_);
 }
 
@@ -186,9 +207,9 @@ void add_contribution(SampleContext& sample, const Wavelengths& of_light, const 
     splat_light(sample, found.film, light, of_light, found.length(), found.luminaire);
   } else {
     radiance += light;
-    report_light(sample.observe, found.length(), light, found.luminaire);
+    report_light(sample.sink, found.length(), light, found.luminaire);
   }
-  if (PathRecord* record = sample.observe.record) [[unlikely]]
+  if (PathRecord* record = sample.sink.record) [[unlikely]]
     record->contribute({std::to_string(found.s) + " from the luminaire, " + std::to_string(found.t) + " from the camera" +
                             (found.merged ? ", merged" : ""),
                         found.length(), found.weight, light, found.film, splat});

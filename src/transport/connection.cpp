@@ -3,6 +3,15 @@
 #include "etendue/transport/visibility.h"
 
 namespace etendue {
+namespace {
+
+/// L_e |cos| / (P p_A) of a point of a luminaire, the first vertex of a light subpath.
+Spectrum emitted_towards(const SubpathVertex& y, const Vector3& direction, const Wavelengths& wavelengths) {
+  return y.point.object->emission->radiance(y.point, direction, wavelengths) *
+         (std::abs(dot(y.point.normal, direction)) / y.pdf_forward);
+}
+
+}  // namespace
 
 std::optional<Connection> connect(const Scene& scene, const SubpathVertex& y, const SubpathVertex& z,
                                   const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena) {
@@ -44,7 +53,7 @@ std::optional<LuminaireConnection> connect_to_luminaire(const Scene& scene, cons
   LuminaireConnection c;
   c.light = z.throughput * f.value * emission.radiance(l.point, -l.direction, wavelengths) / (choice.probability * l.pdf);
   if (c.light.black() || !scene.in_front(l.point, -l.direction)) return {};
-  c.luminaire.kind = Vertex::Kind::luminaire;
+  c.luminaire.kind = PathVertex::Kind::luminaire;
   c.luminaire.infinite = l.infinite;
   c.luminaire.point = l.point;
   c.direction = l.direction;
@@ -65,21 +74,31 @@ std::optional<LuminaireConnection> connect_to_luminaire(const Scene& scene, cons
 std::optional<LensConnection> connect_to_lens(const RenderContext& context, const SubpathVertex& y,
                                               const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena) {
   const Camera& camera = context.camera;
+  const bool emits = y.kind == PathVertex::Kind::luminaire;
   if (unseen(y)) return {};
+  if (emits && (y.infinite || y.point.normal == Normal3{})) return {};  // a delta light has no image on the film
   const std::optional<LensSample> lens = camera.sample_lens(y.point.position, y.point.time, numbers.next_pair());
   if (!lens || !(lens->pdf > 0)) return {};
-  const ScatterValue f = scattering(y, y.out, lens->direction, Transport::importance);
   LensConnection c;
   c.lens = *lens;
-  c.light = y.throughput * f.value * (lens->importance / lens->pdf) * camera.lens_weight(*lens, wavelengths);
+  if (SurfacePoint seen = y.point; emits && !context.scene.in_front(seen, lens->direction)) return {};
+  const Spectrum sent = emits ? emitted_towards(y, lens->direction, wavelengths)
+                              : y.throughput * scattering(y, y.out, lens->direction, Transport::importance).value;
+  c.light = sent * (lens->importance / lens->pdf) * camera.lens_weight(*lens, wavelengths);
   if (c.light.black()) return {};
+  const Ray ray_to_lens = lens_ray(y, *lens);
   MediumStack scratch;
+  const MediumStack* media = media_towards(y, lens->direction, scratch);
+  if (emits && media) {  // those of the subpath are on the side where it began
+    media_at(context.scene, ray_to_lens.origin, ray_to_lens.time, scratch);
+    media = &scratch;
+  }
   Spectrum likely;
-  const Spectrum visible = shadow_transmittance(context.scene, lens_ray(y, *lens), media_towards(y, lens->direction, scratch),
-                                                wavelengths, numbers, arena, Transport::importance, &likely);
+  const Spectrum visible =
+      shadow_transmittance(context.scene, ray_to_lens, media, wavelengths, numbers, arena, Transport::importance, &likely);
   if (visible.black()) return {};
   c.light *= visible;
-  c.camera.kind = Vertex::Kind::camera;
+  c.camera.kind = PathVertex::Kind::camera;
   c.camera.parallel = camera.parallel();
   c.camera.point.position = lens->lens;
   c.camera.point.time = y.point.time;

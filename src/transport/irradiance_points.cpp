@@ -49,7 +49,7 @@ void IrradiancePoints::find(const Scene& scene, const PhotonMap& map, const Esti
   scene_ = &scene;
 }
 
-const Spectrum* IrradiancePoints::at(const Vertex& v) const {
+const Spectrum* IrradiancePoints::at(const PathVertex& v) const {
   constexpr size_t most = 8;
   const Vector3 normal = on_side(Vector3(v.point.normal), v.out);
   std::vector<PointTree::Near>& near = PointTree::near_on_this_thread();

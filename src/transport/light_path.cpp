@@ -10,7 +10,7 @@ double squared_distance(const Point3& a, const Point3& b) {
   const double x = double(a.x) - double(b.x), y = double(a.y) - double(b.y), z = double(a.z) - double(b.z);
   return x * x + y * y + z * z;
 }
-double cosine(const PathVertex& v, const Vector3& direction) { return double(std::abs(dot(v.point.normal, direction))); }
+double cosine(const ChainVertex& v, const Vector3& direction) { return double(std::abs(dot(v.point.normal, direction))); }
 
 /// Whether two unit vectors are the same, up to what the places of vertices near each other are exact to.
 bool same(const Vector3& a, const Vector3& b) { return dot(a, b) > 0.999f; }
@@ -23,14 +23,14 @@ int LightPath::smooth_before(int i) const {
 }
 
 double LightPath::camera_angle(int i) const {
-  const PathVertex &v = x[size_t(i)], &to = x[size_t(i) + 1];
+  const ChainVertex &v = x[size_t(i)], &to = x[size_t(i) + 1];
   return cosine(v, v.out) / squared_distance(to.point.position, v.point.position);
 }
 
 double LightPath::light_angle(int i) const {
-  const PathVertex &b = x[size_t(i)], &before = x[size_t(i) - 1];
+  const ChainVertex &b = x[size_t(i)], &before = x[size_t(i) - 1];
   if (!before.specular) return cosine(b, before.out) / squared_distance(b.point.position, before.point.position);
-  const PathVertex& a = x[size_t(smooth_before(i))];
+  const ChainVertex& a = x[size_t(smooth_before(i))];
   double J = cosine(b, before.out) / cosine(a, a.out);
   for (int j = i - 1; specular(j); --j) J *= x[size_t(j)].beam;
   return J * camera_angle(i - 1);
@@ -51,7 +51,7 @@ void PathSpace::begin(LightPath& y, const LightPath& x, int vertices) const {
 
 void PathSpace::move(LightPath& path, Arena& to) const {
   path.arena = &to;
-  for (PathVertex& v : path.x)
+  for (ChainVertex& v : path.x)
     if (!v.on_surface()) {
       v.point.media = v.media = nullptr;  // of a luminaire that was met; a walk from there finds them anew
       v.scatter = nullptr;
@@ -63,7 +63,7 @@ void PathSpace::move(LightPath& path, Arena& to) const {
 
 /// Of a specular vertex: what it does to light either way. False: radiance does not come this way.
 bool PathSpace::fill_specular(LightPath& path, int i) const {
-  PathVertex& v = path.x[size_t(i)];
+  ChainVertex& v = path.x[size_t(i)];
   const Vector3 out = v.out, in = -path.x[size_t(i) - 1].out;
   const auto radiance = follow_specular(v, out, Transport::radiance, v.lobe);
   if (!radiance || !same(radiance->direction, in)) return false;
@@ -97,7 +97,7 @@ bool PathSpace::weigh_camera(LightPath& path, const Ray& ray) const {
 namespace {
 
 /// Lets `out` be another direction, and the media stay those on its side: a walk from a luminaire had come from the other one.
-void turn(PathVertex& v, const Vector3& out, Arena& arena) {
+void turn(ChainVertex& v, const Vector3& out, Arena& arena) {
   MediumStack other;
   if (media_towards(v, out, other) == &other) v.point.media = v.media = arena.make<MediumStack>(other);
   v.out = out;
@@ -106,12 +106,12 @@ void turn(PathVertex& v, const Vector3& out, Arena& arena) {
 }  // namespace
 
 bool PathSpace::complete(LightPath& path) const {
-  std::vector<PathVertex>& x = path.x;
+  std::vector<ChainVertex>& x = path.x;
   const int k = path.length();
   path.f = {};
   path.seen = path.wavelengths;
   if (k < 2) return false;
-  const auto at = [&](int i) -> PathVertex& { return x[size_t(i)]; };
+  const auto at = [&](int i) -> ChainVertex& { return x[size_t(i)]; };
   for (int i = 0; i < k; ++i) {
     const Vector3 way = at(i + 1).point.position - at(i).point.position;
     if (!(length_squared(way) > 0)) return false;
@@ -123,7 +123,7 @@ bool PathSpace::complete(LightPath& path) const {
   const SceneObject& luminaire = *at(0).point.object;
   at(0).from_light = double(lights.probability(luminaire)) * double(luminaire.area_pdf(at(0).point));
   for (int i = 1; i < k; ++i) {
-    const PathVertex& from = at(i - 1);
+    const ChainVertex& from = at(i - 1);
     double p = 0;
     if (from.specular) {
       p = from.lobe_from_light;
@@ -152,7 +152,7 @@ bool PathSpace::complete(LightPath& path) const {
   if (!context.scene.in_front(at(0).point, at(0).out)) return false;
   Spectrum f = luminaire.emission->radiance(at(0).point, at(0).out, path.wavelengths);
   for (int i = k - 2; i >= 0; --i) {
-    const PathVertex& from = at(i + 1);
+    const ChainVertex& from = at(i + 1);
     if (from.specular) {
       at(i).from_camera = from.lobe_from_camera;
       f *= from.fraction;

@@ -9,7 +9,7 @@ namespace etendue {
 inline constexpr Lobes lobe_groups[] = {smooth_lobes, specular_reflection, specular_transmission};
 
 /// The probability of one of them, for a walk that came from `out`: in proportion to the light that it sends on.
-inline double lobe_share(const PathVertex& v, const Vector3& out, Lobes group) {
+inline double lobe_share(const ChainVertex& v, const Vector3& out, Lobes group) {
   if (!v.scatter || !v.scatter->has(group)) return 0;
   if (!v.scatter->has(Lobes(vertex_lobes & ~group))) return 1;
   double sum = 0, own = 0;
@@ -22,7 +22,7 @@ inline double lobe_share(const PathVertex& v, const Vector3& out, Lobes group) {
 }
 
 /// Where a specular lobe leads.
-inline std::optional<ScatterSample> follow_specular(const PathVertex& v, const Vector3& out, Transport transport, Lobe lobe) {
+inline std::optional<ScatterSample> follow_specular(const ChainVertex& v, const Vector3& out, Transport transport, Lobe lobe) {
   if (!v.scatter) return {};
   const auto s = v.scatter->sample(out, 0, {}, transport, lobe);
   if (!s || enters_subsurface(v.point, *s)) return {};

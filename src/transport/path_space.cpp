@@ -19,13 +19,13 @@ struct NoNumbers final : NumberSource {
   Point2 pair(SampleKey, std::uint32_t) const override { return {0.5f, 0.5f}; }
 };
 
-bool is_luminaire(const PathVertex& v) { return v.point.object->luminaire() && !v.point.object->delta(); }
+bool is_luminaire(const ChainVertex& v) { return v.point.object->luminaire() && !v.point.object->delta(); }
 
 }  // namespace
 
-PathVertex PathSpace::lens(const LightPath& y) const {
-  PathVertex v;
-  v.kind = Vertex::Kind::camera;
+ChainVertex PathSpace::lens(const LightPath& y) const {
+  ChainVertex v;
+  v.kind = PathVertex::Kind::camera;
   v.point.position = context.camera.lens_point(
       context.camera.ray({0.5f * float(context.image.width), 0.5f * float(context.image.height)}, y.lens, time));
   v.point.time = time;
@@ -36,10 +36,10 @@ Vector3 PathSpace::camera_direction(Point2 film, const LightPath& y) const {
   return context.camera.ray(film, y.lens, time).direction;
 }
 
-bool PathSpace::follow(const PathVertex& from, const Vector3& direction, LightPath& y, PathVertex& to) const {
+bool PathSpace::follow(const ChainVertex& from, const Vector3& direction, LightPath& y, ChainVertex& to) const {
   const Scene& scene = context.scene;
   Ray ray = leaving_ray(from, direction);
-  if (from.kind == Vertex::Kind::camera) {
+  if (from.kind == PathVertex::Kind::camera) {
     const Camera::Reach reach = context.camera.reach(ray);
     ray.origin = ray(reach.nearest);
     ray.maximum = reach.farthest - reach.nearest;
@@ -80,7 +80,7 @@ bool PathSpace::follow(const PathVertex& from, const Vector3& direction, LightPa
 std::optional<Vector3> PathSpace::follow_lobes(Walk& walk, const Vector3& direction, std::span<const Lobe> lobes,
                                                Transport transport, LightPath& y) const {
   Vector3 way = direction;
-  PathVertex to;
+  ChainVertex to;
   for (const Lobe lobe : lobes) {
     if (!follow(walk.back(), way, y, to)) return {};
     const auto s = follow_specular(to, to.out, transport, lobe);
@@ -96,11 +96,11 @@ std::optional<Vector3> PathSpace::follow_lobes(Walk& walk, const Vector3& direct
 bool PathSpace::follow_chain(Walk& walk, const Vector3& direction, std::span<const Lobe> lobes, Transport transport,
                              LightPath& y, bool to_luminaire) const {
   const std::optional<Vector3> way = follow_lobes(walk, direction, lobes, transport, y);
-  PathVertex to;
+  ChainVertex to;
   if (!way || !follow(walk.back(), *way, y, to)) return false;
   if (to_luminaire) {
     if (!is_luminaire(to)) return false;
-    to.kind = Vertex::Kind::luminaire;
+    to.kind = PathVertex::Kind::luminaire;
   } else if (!to.scatters_smoothly()) {
     return false;
   }
@@ -119,23 +119,23 @@ bool PathSpace::walk(Walk& walk, int count, Transport transport, ChoiceNumbers& 
                      bool to_luminaire) const {
   const size_t given = walk.size();
   for (; count > 0; --count) {
-    PathVertex to;
+    ChainVertex to;
     if (walk.empty()) {
       const LightChoice choice = lights.choose(next(choices));
       if (!choice.luminaire || choice.luminaire->infinite() || choice.luminaire->delta()) return false;
       const SurfaceSample s = choice.luminaire->sample_area(next_pair(choices), time);
       if (!(s.pdf > 0)) return false;
-      to.kind = Vertex::Kind::luminaire;
+      to.kind = PathVertex::Kind::luminaire;
       to.point = s.point;
       walk.push_back(to);
       continue;
     }
-    PathVertex& from = walk.back();
+    ChainVertex& from = walk.back();
     Vector3 way;
-    if (from.kind == Vertex::Kind::camera) {
+    if (from.kind == PathVertex::Kind::camera) {
       const Point2 u = next_pair(choices);
       way = camera_direction({u.x * float(context.image.width), u.y * float(context.image.height)}, y);
-    } else if (from.kind == Vertex::Kind::luminaire) {
+    } else if (from.kind == PathVertex::Kind::luminaire) {
       const DirectionSample d = from.point.object->emission->sample(from.point, next_pair(choices));
       if (!(d.pdf > 0)) return false;
       way = d.direction;
@@ -158,7 +158,7 @@ bool PathSpace::walk(Walk& walk, int count, Transport transport, ChoiceNumbers& 
     }
     if (!follow(from, way, y, to)) return false;
     const bool ends = to_luminaire && count == 1;
-    if (ends && is_luminaire(to)) to.kind = Vertex::Kind::luminaire;
+    if (ends && is_luminaire(to)) to.kind = PathVertex::Kind::luminaire;
     walk.push_back(to);
     if (ends ? !is_luminaire(to) : !to.scatter || !to.scatter->has(vertex_lobes)) return false;
   }
@@ -166,10 +166,10 @@ bool PathSpace::walk(Walk& walk, int count, Transport transport, ChoiceNumbers& 
 }
 
 bool PathSpace::visible(const LightPath& path, int i) const {
-  const PathVertex &a = path.x[size_t(i)], &b = path.x[size_t(i) + 1];
-  const PathVertex &from = a.on_surface() ? a : b, &to = a.on_surface() ? b : a;
+  const ChainVertex &a = path.x[size_t(i)], &b = path.x[size_t(i) + 1];
+  const ChainVertex &from = a.on_surface() ? a : b, &to = a.on_surface() ? b : a;
   Ray ray;
-  if (to.kind == Vertex::Kind::camera) {
+  if (to.kind == PathVertex::Kind::camera) {
     const Vector3 way = to.point.position - from.point.position;
     ray = leaving_ray(from, normalize(way));
     Ray seen = ray;
@@ -178,7 +178,7 @@ bool PathSpace::visible(const LightPath& path, int i) const {
   } else {
     ray = connecting_ray(from, to);
   }
-  ray.of_camera = b.kind == Vertex::Kind::camera;
+  ray.of_camera = b.kind == PathVertex::Kind::camera;
   if (ray.of_camera && unseen(a)) return false;
   if (!context.scene.has_interiors()) return !context.scene.any(ray);
   MediumStack scratch;
@@ -196,25 +196,25 @@ bool PathSpace::joined(LightPath& y, const Walk& light, int b, const Walk& camer
   if (b == 0) {
     if (!is_luminaire(y.x.front())) return false;
     y.x.front().specular = false;
-    y.x.front().kind = Vertex::Kind::luminaire;
+    y.x.front().kind = PathVertex::Kind::luminaire;
     return complete(y);
   }
   for (const int end : {b - 1, b}) {
-    PathVertex& v = y.x[size_t(end)];
+    ChainVertex& v = y.x[size_t(end)];
     v.specular = false;
     if (v.on_surface() && !v.scatters_smoothly()) return false;
   }
   return complete(y) && visible(y, b - 1);
 }
 
-bool PathSpace::join(LightPath& y, const std::vector<PathVertex>& rest, int r, ChoiceNumbers& choices) const {
+bool PathSpace::join(LightPath& y, const std::vector<ChainVertex>& rest, int r, ChoiceNumbers& choices) const {
   const int b = std::min(int(choices.next() * (r + 1)), r);
   const bool meets = y.x.empty() && b == 0;
   if (!walk(y.x, b, Transport::importance, choices, y)) return false;
   // The camera's walk comes against the order of vertices.
-  std::vector<PathVertex> camera(rest.rbegin(), rest.rend());
+  std::vector<ChainVertex> camera(rest.rbegin(), rest.rend());
   if (!walk(camera, r - b, Transport::radiance, choices, y, meets)) return false;
-  const auto joins = [](const PathVertex& v) { return !v.on_surface() || v.scatters_smoothly(); };
+  const auto joins = [](const ChainVertex& v) { return !v.on_surface() || v.scatters_smoothly(); };
   if (!meets && !(joins(y.x.back()) && joins(camera.back()))) return false;
   const int joint = int(y.x.size()) - 1;
   y.x.insert(y.x.end(), camera.rbegin(), camera.rend());

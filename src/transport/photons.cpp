@@ -13,7 +13,7 @@ Spectrum carried(const Spectrum& light, bool single, const Carrying& to) {
   return one;
 }
 
-Spectrum scattered_from_photon(const Vertex& at, const Photon& photon, const Carrying& to) {
+Spectrum scattered_from_photon(const PathVertex& at, const Photon& photon, const Carrying& to) {
   const Spectrum light = carried(photon, to);
   if (at.in_medium()) {
     if (!photon.in_medium) return {};
@@ -92,7 +92,7 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
     Wavelengths w = wavelengths;
     NumberStream walk_samples(numbers, SampleKey(context.seed, -2 - int(kinds), int(step), std::uint32_t(n)));
     NumberStream chances = walk_samples.fork("kept");
-    SampleContext sample{w, walk_samples, arena, {}, nullptr, abort};
+    SampleContext sample{w, walk_samples, arena, {.abort = abort}};
     if (!generate_light_subpath(context.scene, lights, time, limits, sample, walk, light, targets)) continue;
     if (sample.aborted()) return;
     const float luminaire_pdf = walk.size() > 1 && against ? pdf_next_event(lights, walk[1], walk[0], walk[1].out) : 0;

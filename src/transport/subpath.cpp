@@ -16,41 +16,41 @@ SubpathVertex& add(const Growing& walk, float pdf, const EmissionPlane& front, s
   return v;
 }
 
-struct StoringListener : NoListener {
+struct StoringEvents : NoEvents {
   const Growing& walk;
   const EmissionPlane& front;
   std::vector<SubpathVertex>& subpath;
-  WalkListener* listener;
+  SegmentEvents* events;
   const float& pdf;
 
   void emitted(const Spectrum& light) const {
-    if (listener) listener->emitted(walk.length, light);
+    if (events) events->emitted(walk.length, light);
   }
   void through(const Medium& medium, float reach) const {
-    if (listener) listener->through(medium, walk.ray, reach, walk.throughput);
+    if (events) events->through(medium, walk.ray, reach, walk.throughput);
   }
   void crossed_luminaire() const {
-    if (!listener) return;
+    if (!events) return;
     add(walk, pdf, front, subpath);
-    listener->crossed_luminaire();
+    events->crossed_luminaire();
     subpath.pop_back();
   }
 };
 
 /// Lets a walk grow whose first vertex is kept already. `density`: of its first direction.
-void grow(Growing& walk, float pdf, const SubpathLimits& limits, std::vector<SubpathVertex>& subpath, WalkListener* listener) {
+void grow(Growing& walk, float pdf, const SubpathLimits& limits, std::vector<SubpathVertex>& subpath, SegmentEvents* events) {
   const EmissionPlane front(walk.scene);
   const Roulette roulette{limits.roulette_depth};
   const bool from_camera = walk.transport == Transport::radiance;
   CameraDirections* const chosen = from_camera ? limits.directions : nullptr;
   float more = 1;  // the product of what directions are more likely than by scattering: so much more would be left without
   walk.stores_subpath = walk.observed = true;
-  const StoringListener at{{}, walk, front, subpath, listener, pdf};
+  const StoringEvents at{{}, walk, front, subpath, events, pdf};
   while (walk.length < walk.longest && walk.next_vertex(at)) {
     if (subpath.size() % 64 == 0 && walk.sample.aborted()) return;
-    if (walk.vertex.kind == Vertex::Kind::escape && walk.transport == Transport::importance) return;
+    if (walk.vertex.kind == PathVertex::Kind::escape && walk.transport == Transport::importance) return;
     SubpathVertex& v = add(walk, pdf, front, subpath);
-    if (v.kind == Vertex::Kind::escape) return;
+    if (v.kind == PathVertex::Kind::escape) return;
     const bool chooses = chosen || (v.scatter && v.scatter->has_choice());
     const float choice = chooses ? walk.numbers.next() : (walk.numbers.skip(), 0.0f);
     const Point2 u = walk.numbers.next_pair();
@@ -75,8 +75,8 @@ void grow(Growing& walk, float pdf, const SubpathLimits& limits, std::vector<Sub
 
 void store_vertex(const Walk<false>& walk, const SubpathVertex& before, float pdf, const EmissionPlane& front,
                   SubpathVertex& v) {
-  static_cast<Vertex&>(v) = walk.vertex;
-  v.infinite = v.kind == Vertex::Kind::escape;
+  static_cast<PathVertex&>(v) = walk.vertex;
+  v.infinite = v.kind == PathVertex::Kind::escape;
   v.single = walk.sample.wavelengths.single();
   v.throughput = walk.throughput;
   v.mean_transmittance = walk.segment_transmittance.average();
@@ -88,7 +88,7 @@ void store_vertex(const Walk<false>& walk, const SubpathVertex& before, float pd
 float vertex_pdf(float pdf, const SubpathVertex& a, const SubpathVertex& b, const Vector3& direction, float mean_transmittance,
                  const EmissionPlane& front) {
   pdf *= mean_transmittance;
-  if (b.infinite || b.kind == Vertex::Kind::escape) return pdf;
+  if (b.infinite || b.kind == PathVertex::Kind::escape) return pdf;
   if (b.in_medium())
     pdf *= b.extinction;
   else if (b.point.normal != Normal3{})
@@ -104,27 +104,27 @@ float camera_direction_pdf(const Camera& camera, const Ray& ray) {
 }
 
 void generate_camera_subpath(const RenderContext& context, const Ray& ray, const SubpathLimits& limits, SampleContext& sample,
-                             std::vector<SubpathVertex>& subpath, WalkListener& listener) {
+                             std::vector<SubpathVertex>& subpath, SegmentEvents& events) {
   subpath.clear();
   SubpathVertex& lens = subpath.emplace_back();
-  lens.kind = Vertex::Kind::camera;
+  lens.kind = PathVertex::Kind::camera;
   lens.parallel = context.camera.parallel();
   lens.point.position = context.camera.lens_point(ray);
   lens.point.time = ray.time;
   Growing walk(context.scene, sample, ray, limits.longest);
   if (context.scene.has_interiors()) media_at(context.scene, ray.origin, ray.time, walk.media);
-  grow(walk, camera_direction_pdf(context.camera, ray), limits, subpath, &listener);
+  grow(walk, camera_direction_pdf(context.camera, ray), limits, subpath, &events);
 }
 
 bool generate_light_subpath(const Scene& scene, const LightSampler& lights, float time, const SubpathLimits& limits,
                             SampleContext& sample, std::vector<SubpathVertex>& subpath, EmittedLight& light,
-                            const ProjectionMap* targets, WalkListener* listener) {
+                            const ProjectionMap* targets, SegmentEvents* events) {
   subpath.clear();
   const bool leaves = targets ? targets->sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light)
                               : sample_emitted_light(scene, lights, sample.wavelengths, time, sample.numbers, light);
   if (!leaves && !light.placed) return false;
   SubpathVertex& first = subpath.emplace_back();
-  first.kind = Vertex::Kind::luminaire;
+  first.kind = PathVertex::Kind::luminaire;
   first.infinite = light.infinite;
   first.point = light.point;
   first.pdf_forward = light.choice * (light.infinite ? light.direction : light.position);
@@ -145,7 +145,7 @@ bool generate_light_subpath(const Scene& scene, const LightSampler& lights, floa
     }
   }
   // From infinity, places in the scene are given by where the ray crosses the disc around it.
-  grow(walk, light.infinite ? 1 : light.direction, limits, subpath, listener);
+  grow(walk, light.infinite ? 1 : light.direction, limits, subpath, events);
   return true;
 }
 
@@ -172,11 +172,11 @@ void record_subpath(std::vector<PathRecord::Vertex>& vertices, std::span<const S
   for (const SubpathVertex& w : walk) {
     PathRecord::Vertex v;
     switch (w.kind) {
-      case Vertex::Kind::camera: v.kind = "camera"; break;
-      case Vertex::Kind::luminaire: v.kind = "luminaire"; break;
-      case Vertex::Kind::surface: v.kind = "surface"; break;
-      case Vertex::Kind::medium: v.kind = "volume"; break;
-      case Vertex::Kind::escape: v.kind = "escaped"; break;
+      case PathVertex::Kind::camera: v.kind = "camera"; break;
+      case PathVertex::Kind::luminaire: v.kind = "luminaire"; break;
+      case PathVertex::Kind::surface: v.kind = "surface"; break;
+      case PathVertex::Kind::medium: v.kind = "volume"; break;
+      case PathVertex::Kind::escape: v.kind = "escaped"; break;
     }
     if (w.point.object && !w.in_medium()) v.object = object_name(*w.point.object);
     v.position = w.point.position;
@@ -205,7 +205,7 @@ void note_first_surface(const Scene& scene, const Ray& camera_ray, SampleContext
       continue;
     }
     const Scatter* scatter = shader ? bound(*shader, point, sample.wavelengths, sample.arena) : nullptr;
-    sample.observe.first_surface(scene, point, hit, scatter, -ray.direction, sample.wavelengths, null_crossed_distance);
+    sample.sink.first_surface(scene, point, hit, scatter, -ray.direction, sample.wavelengths, null_crossed_distance);
     return;
   }
 }

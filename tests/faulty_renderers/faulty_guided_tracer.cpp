@@ -39,7 +39,7 @@ class FaultyGuidedTracer final : public Renderer {
     };
     while (walk.next_vertex(met) && !walk.at_end()) {
       const NumberStream::Bounce u = walk.numbers.next_bounce();
-      const Vertex& v = walk.vertex;
+      const PathVertex& v = walk.vertex;
       const bool guided = v.scatters_smoothly();
       walk.add_direct(*light_sampler, u, Heuristic::power, [&](const Vector3& in) {
         ScatterValue f = scattering(v, v.out, in, Transport::radiance);

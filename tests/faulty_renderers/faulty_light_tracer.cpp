@@ -43,7 +43,7 @@ class FaultyLightTracer final : public Renderer {
                                     sample.wavelengths, numbers, sample.arena, Transport::importance);
       if (fault == Fault::lens_importance) value *= square(lens->distance) / lens->pdf;
       if (fault == Fault::skipped_length && i + 1 == 4) continue;
-      sample.splat(lens->film, value, sample.wavelengths, int(i) + 1);
+      sample.sink.splat(lens->film, value, sample.wavelengths, int(i) + 1);
     }
     return {};
   }

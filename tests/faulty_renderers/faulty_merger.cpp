@@ -35,14 +35,15 @@ class Process final : public PhotonProcess {
   const double radius_;
   Photons photons_;
 
-  struct Found final : LightListener {
+  struct Sum {
     const BidirectionalSubpaths& walks;
     SampleContext& sample;
-    Spectrum radiance;
-    Found(const BidirectionalSubpaths& w, SampleContext& at) : walks(w), sample(at) {}
-    void found(const PathContribution& light) override { add_contribution(sample, walks.light_wavelengths(), light, radiance); }
+    Spectrum radiance = {};
     void add(const std::optional<PathContribution>& light) {
-      if (light) found(*light);
+      if (light) add_contribution(sample, walks.light_wavelengths(), *light, radiance);
+    }
+    void add(std::span<const PathContribution> all) {
+      for (const PathContribution& light : all) add(std::optional(light));
     }
   };
 
@@ -65,11 +66,12 @@ class Process final : public PhotonProcess {
     const int max_depth = settings_.max_depth;
     const Fault fault = settings_.fault;
     BidirectionalSubpaths walks(context, *settings_.light_sampler, sample, {Heuristic::power, true, photons_.merging});
-    Found found(walks, sample);
-    walks.from_camera(ray, {max_depth, 5}, found);
+    Sum found{walks, sample};
+    walks.from_camera(ray, {max_depth, 5});
+    found.add(walks.segment_emission());
     walks.from_luminaire(ray.time, {max_depth - 1, 5});
     for (int t = 2; t <= walks.camera_vertices(); ++t) {
-      walks.meet(t, found);
+      found.add(walks.emitter_hits(t));
       const SubpathVertex& z = walks.camera_vertex(t);
       if (!z.connectable()) continue;
       photons_.near(context.scene, z, [&](const Photon& photon, float) {
@@ -80,7 +82,7 @@ class Process final : public PhotonProcess {
           light->light *= float(photons_.merging.surface / (photons_.walks * M_PI * radius_ * radius_));
         found.add(light);
       });
-      if (t <= max_depth) found.add(walks.sample_luminaire(t));
+      if (t <= max_depth) found.add(walks.next_event(t));
       for (int s = 2; s <= walks.light_vertices() && s + t - 1 <= max_depth; ++s)
         if (walks.light_vertex(s).connectable()) found.add(walks.connect(s, t));
     }

@@ -33,10 +33,10 @@ class Process final : public RenderProcess {
 
   void evaluate(const NumberSource& numbers, Contribution& f, Arena& arena, bool direct) const {
     std::array<Spectrum, 3> lengths;
-    PathRequest request;
-    request.observe.lengths = lengths;
+    PathSink sink;
+    sink.lengths = lengths;
     const PixelArea whole{0, 0, context.image.width, context.image.height};
-    const CameraSample s = inner_->path(whole, numbers, {}, arena, request);
+    const CameraSample s = inner_->path(whole, numbers, {}, arena, sink);
     f.clear();
     f.add({s.film, direct ? s.value : lengths[2], s.wavelengths, 0}, whole);
   }
@@ -86,7 +86,7 @@ class Process final : public RenderProcess {
 
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
     std::array<Spectrum, 3> lengths;
-    sample.observe.lengths = lengths;
+    sample.sink.lengths = lengths;
     inner_->radiance(ray, sample);
     return lengths[0] + lengths[1];
   }

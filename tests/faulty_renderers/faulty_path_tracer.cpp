@@ -33,11 +33,11 @@ class FaultyPathTracer final : public Renderer {
     const auto add = [&](int length, const Spectrum& light) {
       if (fault == Fault::skipped_length && length == 4) return;
       radiance += light;
-      sample.observe.light(length, light);
+      sample.sink.light(length, light);
     };
     while (walk.next_vertex()) {
-      Vertex& v = walk.vertex;
-      if (v.kind == Vertex::Kind::escape) {
+      PathVertex& v = walk.vertex;
+      if (v.kind == PathVertex::Kind::escape) {
         for (const SceneObject* far : context.scene.infinite_luminaires(walk.ray)) {
           far->surface_point(walk.ray, walk.hit, v.point);
           add(walk.length, met(walk));
@@ -75,7 +75,7 @@ class FaultyPathTracer final : public Renderer {
 
   Spectrum arriving(Walk<false>& walk, const DirectLight& direct) const {
     MediumStack scratch;
-    const Vertex& v = walk.vertex;
+    const PathVertex& v = walk.vertex;
     const Spectrum visible = shadow_transmittance(walk.scene, direct.shadow, media_towards(v, direct.shadow.direction, scratch),
                                                   walk.sample.wavelengths, walk.numbers, walk.sample.arena);
     Spectrum light = direct.light * visible;

@@ -45,10 +45,10 @@ class MetropolisProcess final : public RenderProcess {
   void evaluate(const MutatedPrimarySamples& numbers, Contribution& f, Arena& arena, const std::atomic<bool>* abort) const {
     const ImageBuffer& image = context.image;
     f.parts.clear();
-    PathRequest request;
-    request.splats = &f.parts;
-    request.abort = abort;
-    const CameraSample s = inner_->path({0, 0, image.width, image.height}, numbers, {}, arena, request);
+    PathSink sink;
+    sink.splats = &f.parts;
+    sink.abort = abort;
+    const CameraSample s = inner_->path({0, 0, image.width, image.height}, numbers, {}, arena, sink);
     f.parts.push_back({s.film, s.value, s.wavelengths, 0});
     f.brightness = 0;
     for (const Splat& part : f.parts) f.brightness += std::max(0.0, double(to_xyz(part.value, part.wavelengths).y));
@@ -116,7 +116,7 @@ class MetropolisProcess final : public RenderProcess {
 
   void prepare_step(Schedule& schedule, const Step& step) override { inner_->prepare_step(schedule, step); }
 
-  CameraSample sample(int, int, std::uint32_t, Arena&, const PathRequest&) const override {
+  CameraSample sample(int, int, std::uint32_t, Arena&, const PathSink&) const override {
     renderer.fail({}, "its samples are mutations of one another: none belongs to a pixel, and none can be replayed by itself");
   }
 

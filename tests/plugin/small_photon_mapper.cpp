@@ -99,12 +99,12 @@ class PhotonProcess final : public RenderProcess {
     Spectrum light;
     const auto add = [&](int length, const Spectrum& value) {
       light += value;
-      sample.observe.light(length, value);
+      sample.sink.light(length, value);
     };
     Walk<true> walk(context.scene, sample, ray, settings_.max_depth);
     while (walk.next_vertex()) {
-      const Vertex& v = walk.vertex;
-      if (v.kind == Vertex::Kind::escape) {
+      const PathVertex& v = walk.vertex;
+      if (v.kind == PathVertex::Kind::escape) {
         for (const SceneObject* far : context.scene.infinite_luminaires(walk.ray)) {
           SurfacePoint p;
           far->surface_point(walk.ray, walk.hit, p);
@@ -127,7 +127,7 @@ class PhotonProcess final : public RenderProcess {
  private:
   template <class Add>
   void gather(const Walk<true>& walk, const Add& add) const {
-    const Vertex& v = walk.vertex;
+    const PathVertex& v = walk.vertex;
     for (int dz = -1; dz <= 1; ++dz)
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {

@@ -21,7 +21,7 @@ class TurnMutation final : public Mutation {
     const int k = x.length(), moved = 1 + int(choices.next() * (k - 1));
     space.begin(y, x, moved);
     const float angle = small_change(choices.next(), largest / 1000, largest);
-    PathVertex met;
+    ChainVertex met;
     if (x.specular(moved) || x.specular(moved - 1) || x.specular(moved + 1)) return {};
     if (!space.follow(y.x.back(), turned(x.x[size_t(moved - 1)].out, angle, choices.next()), y, met)) return {};
     if (!met.scatters_smoothly()) return {};

@@ -20,7 +20,7 @@ class NotingProcess final : public RenderProcess {
     noted.insert(noted.end(), heroes.begin(), heroes.end());
   }
   Spectrum radiance(const Ray&, SampleContext& sample) const override {
-    sample.record(sample.wavelengths[0] + sample.numbers.next());
+    sample.sink.records.add(sample.wavelengths[0] + sample.numbers.next());
     return Spectrum(1.0f);
   }
   Wavelengths wavelengths(SampleKey, float) const override { return context.wavelengths.sample(SampleKey(1, 2, 3, 4), 0.5f); }

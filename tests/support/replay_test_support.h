@@ -59,11 +59,11 @@ class Sprinkler final : public Renderer {
     else if (u < 0.25f)
       own.set(1, -0.0001f);  // the colour of the whole is positive all the same
     for (const Point2 film : {Point2(2.5f, 3.25f), Point2(-4.0f, 3.0f)}) {
-      sample.splat(film, Spectrum(u), sample.wavelengths, 3);
-      if (sample.observe.record)
-        sample.observe.record->contributions.push_back({"1 from the luminaire", 3, 1, Spectrum(u), film, true});
+      sample.sink.splat(film, Spectrum(u), sample.wavelengths, 3);
+      if (sample.sink.record)
+        sample.sink.record->contributions.push_back({"1 from the luminaire", 3, 1, Spectrum(u), film, true});
     }
-    if (sample.observe.record) sample.observe.record->contributions.push_back({"met", 1, 1, own, {}, false});
+    if (sample.sink.record) sample.sink.record->contributions.push_back({"met", 1, 1, own, {}, false});
     return own;
   }
 };

@@ -22,9 +22,9 @@ class Ready {
  public:
   explicit Ready(const std::string& text) : render_(load_job_text(text, "test.etd")), process_(render_.start_at(0)) {}
   CameraSample sample(int x, int y, std::uint32_t n, std::span<Spectrum> lengths = {}) {
-    PathRequest request;
-    request.observe.lengths = lengths;
-    return process_->sample(x, y, n, arena_, request);
+    PathSink sink;
+    sink.lengths = lengths;
+    return process_->sample(x, y, n, arena_, sink);
   }
   /// The components of linear sRGB of a sample.
   Vector3 rgb(int x, int y, std::uint32_t n = 0) {

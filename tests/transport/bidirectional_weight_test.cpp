@@ -81,7 +81,7 @@ struct MadeUp {
   }
   SubpathVertex vertex(int i, float pdf_forward, float pdf_reverse) const {
     SubpathVertex v;
-    v.kind = i == 0 ? Vertex::Kind::luminaire : i == last ? Vertex::Kind::camera : Vertex::Kind::surface;
+    v.kind = i == 0 ? PathVertex::Kind::luminaire : i == last ? PathVertex::Kind::camera : PathVertex::Kind::surface;
     v.specular = specular[size_t(i)];
     v.pdf_forward = pdf_forward;
     v.pdf_reverse = pdf_reverse;

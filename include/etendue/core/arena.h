@@ -1,5 +1,6 @@
 #pragma once
-// Memory for what one sample needs: handed out in sequence, taken back in the opposite order or all at once.
+// Arena: a memory arena (pbrt's MemoryArena) for the objects of one sample. Memory is allocated sequentially, and freed in
+// reverse order or all at once.
 
 #include <cstddef>
 #include <memory>
@@ -24,13 +25,13 @@ class Arena {
 
   void reset() { rewind({}); }
 
-  /// How far the arena is used. A path notes it where it begins, and goes back to it at each vertex whose predecessors are no
-  /// longer needed: it then takes the memory of one vertex, however long it grows.
+  /// A position in the arena. A path stores its mark at the start, and rewinds to it at each vertex whose predecessors are no
+  /// longer needed: it then uses the memory of one vertex, whatever its length.
   struct Mark {
     size_t block = 0, used = 0;
   };
   Mark mark() const { return {block_, used_}; }
-  /// Takes back all that was handed out since the mark.
+  /// Frees everything allocated since the mark.
   void rewind(const Mark& mark) {
     block_ = mark.block;
     used_ = mark.used;
@@ -56,7 +57,7 @@ class Arena {
   size_t block_ = 0, used_ = 0;
 };
 
-/// Takes back, at its end, what was handed out while it lived.
+/// Frees in its destructor everything that was allocated during its lifetime.
 class ArenaScope {
  public:
   explicit ArenaScope(Arena& arena) : arena_(arena), begun_(arena.mark()) {}

@@ -1,5 +1,5 @@
 #pragma once
-// Errors that say where they come from.
+// Error: exceptions with the location in the input that caused them.
 
 #include <stdexcept>
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace etendue {
 
-/// A place in a text: a file's name as the user wrote or reached it (or "-D name", "--set …" for the command line).
-/// Lines and columns count from 1, columns in characters; line 0 means the file as a whole or nothing at all.
+/// A location in a text: the file's name as written by the user or found by searching (or "-D name", "--set …" for the command
+/// line). Lines and columns count from 1, columns in characters; line 0 means the file as a whole, or no location.
 struct Location {
   const char* file = "";  ///< interned, lives as long as the program
   int line = 0, column = 0;
@@ -16,10 +16,11 @@ struct Location {
   bool operator==(const Location&) const = default;
 };
 
-/// A file name that lives for ever, for Location.
+/// A copy of a file name that is never freed, for Location.
 const char* intern(const std::string&);
 
-/// Something the user can put right: bad input, a missing file, a value out of range. `what()` is the bare message.
+/// An error that the user can correct: bad input, a missing file, a value out of range. `what()` is the message without the
+/// location.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& message, Location at = {}) : std::runtime_error(message), location(at) {}

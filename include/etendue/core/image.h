@@ -1,5 +1,5 @@
 #pragma once
-// Image: plain pixels with named channels. What is developed from a Film, toned, written and compared.
+// Image: pixels with named channels. The result of Film::develop; tone maps, outputs and comparisons work on it.
 
 #include <cstddef>
 #include <map>
@@ -13,7 +13,7 @@ struct Image {
   int width = 0, height = 0;
   std::vector<std::string> channels;  ///< "X" "Y" "Z", "R" "G" "B", or "layer.name" as in OpenEXR
   std::vector<double> values;
-  /// What is known of the picture: "color_space", "file_hash", "seed", "samples", "version", …
+  /// Metadata: "color_space", "file_hash", "seed", "samples", "version", …
   std::map<std::string, std::string> metadata;
 
   Image() = default;

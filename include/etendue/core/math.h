@@ -29,11 +29,11 @@ constexpr float clamp(float x, float low, float high) { return x < low ? low : (
 /// sqrt(max(x, 0)): for quantities that are negative only by rounding.
 inline float safe_sqrt(float x) { return std::sqrt(std::max(x, 0.0f)); }
 
-/// 1/sqrt(x) to about two units in the last place. The processor's estimate and a step of Newton's method take little more than
-/// half the time of a root and a division one after the other.
+/// 1/sqrt(x) to about two units in the last place. The processor's estimate with a step of Newton's method takes little more
+/// than half the time of a square root followed by a division.
 inline float inverse_sqrt(float x) {
 #if defined(__AVX512F__)
-  if (!(x > 1e-30f && x < 1e30f)) [[unlikely]]  // zero and others that the estimate's square is not a number for
+  if (!(x > 1e-30f && x < 1e30f)) [[unlikely]]  // zero and others for which the Newton step gives NaN
     return 1 / std::sqrt(x);
   const __m128 wide = _mm_set_ss(x);
   const float y = _mm_cvtss_f32(_mm_rsqrt14_ss(wide, wide));
@@ -57,7 +57,7 @@ constexpr float radians(float degrees) { return degrees * (pi / 180); }
 
 constexpr float degrees(float radians) { return radians * (180 / pi); }
 
-/// Bound of the relative error after n floating-point operations (Higham 2002, section 3.1).
+/// Upper bound of the relative error after n floating-point operations (Higham 2002, section 3.1).
 constexpr float rounding_bound(int n) {
   constexpr float half_epsilon = std::numeric_limits<float>::epsilon() / 2;
   return (float(n) * half_epsilon) / (1 - float(n) * half_epsilon);
@@ -70,7 +70,7 @@ inline float difference_of_products(float a, float b, float c, float d) {
 }
 
 /// Sine and cosine of (pi/4) t for t in [-1, 1], to about 1e-7: minimax polynomials (coefficients of S. Moshier's Cephes
-/// library, sinf.c). No range reduction, no call: directions are made from these for every sample.
+/// library, sinf.c). Without range reduction and without a call, as sampling a direction uses it for every sample.
 inline void sin_cos_eighth(float t, float& sine, float& cosine) {
   const float x = (pi / 4) * t, z = x * x;
   sine = x + x * z * (-1.6666654611e-1f + z * (8.3321608736e-3f + z * -1.9515295891e-4f));

@@ -10,74 +10,75 @@ namespace etendue {
 class SceneObject;
 class MediumStack;
 
-/// Points on a ray are origin + t * direction for t in (0, maximum). The direction has unit length in the scene a
-/// renderer sees; inside objects and nested scenes it is transformed, not normalized, so that t stays the same.
+/// The points origin + t * direction for t in (0, maximum). The direction has unit length in the outermost scene; in object
+/// spaces and nested scenes it is transformed and not normalized, so that t stays the same.
 struct Ray {
   Point3 origin;
   Vector3 direction;
   float maximum = infinity;
   float time = 0;  ///< [s]
-  /// A cone around the ray, for filtering maps: width [m] at the origin and its growth per distance (Akenine-Möller
+  /// A ray cone, for texture filtering: its width [m] at the origin and the growth of the width per distance (Akenine-Möller
   /// et al. 2021, "Improved shader and texture level of detail using ray cones").
   float width = 0, spread = 0;
-  /// Joins the camera to what it sees first, whichever way it goes: what the camera is not to see is not there
-  /// (SceneObject::visible_to_camera).
+  /// Whether the ray is the segment between the camera and the first vertex, traced in either direction. It ignores objects
+  /// that are invisible to the camera (SceneObject::visible_to_camera).
   bool of_camera = false;
 
   Point3 operator()(float t) const { return origin + t * direction; }
 };
 
-/// What an intersection found: enough to find everything else on demand.
+/// The result of an intersection test (ShapeIntersection in pbrt, PreliminaryIntersection in Mitsuba), from which the
+/// SurfacePoint can be computed on demand.
 struct Hit {
   static constexpr int deepest_nesting = 8;
 
   float distance = infinity;                   ///< t along the ray
   const SceneObject* object = nullptr;         ///< the innermost object; null when nothing was hit
-  std::uint32_t primitive = 0;                 ///< part of the object (a triangle of a mesh)
-  float u = 0, v = 0;                          ///< coordinates on the part, as the object defines them
-  int depth = 0;                               ///< how many nested scenes the object lies in
-  const SceneObject* scenes[deepest_nesting];  ///< those scenes, innermost first; only `depth` of them are set
+  std::uint32_t primitive = 0;                 ///< index of the part of the object (a triangle of a mesh)
+  float u = 0, v = 0;                          ///< coordinates on the part, as defined by the object
+  int depth = 0;                               ///< number of nested scenes that contain the object
+  const SceneObject* scenes[deepest_nesting];  ///< these scenes and instances, innermost first; only the first `depth` are set
 
   explicit operator bool() const { return object != nullptr; }
 };
 
-/// A point on a surface, in the coordinates of the scene the renderer sees.
+/// A point on a surface (SurfaceInteraction in pbrt and Mitsuba), in the coordinates of the outermost scene.
 struct SurfacePoint {
   Point3 position;
-  float error = 0;             ///< bound of the distance of `position` from the true surface [m]
-  Normal3 normal;              ///< unit, geometric; points to the front
+  float error = 0;             ///< upper bound of the distance of `position` from the true surface [m]
+  Normal3 normal;              ///< unit, geometric; points to the front side
   Normal3 shading_normal;      ///< unit; equals `normal` unless the object interpolates or a map perturbs it
   Point2 uv;                   ///< surface coordinates
-  Vector3 dpdu, dpdv;          ///< change of position with uv; zero until the object's `tangents` was asked
-  Point3 object_position;      ///< before the object's transform
-  Normal3 object_normal;       ///< unit, before the object's transform
-  float footprint = 0;         ///< width of the ray's cone here, across the ray [m]
-  float footprint_cosine = 1;  ///< between the ray and the normal: the footprint is this much longer along one direction
+  Vector3 dpdu, dpdv;          ///< derivatives of position by u and v; zero until SceneObject::tangents was called
+  Point3 object_position;      ///< in object space
+  Normal3 object_normal;       ///< unit, in object space
+  float footprint = 0;         ///< width of the ray cone at the point, perpendicular to the ray [m]
+  float footprint_cosine = 1;  ///< |cos| of ray and normal: on the surface the footprint is longer by 1/cos along one direction
   float time = 0;              ///< [s]
   const SceneObject* object = nullptr;
   std::uint32_t primitive = 0;
-  float u = 0, v = 0;                  ///< of the hit
-  const MediumStack* media = nullptr;  ///< media around the ray that came here; null: vacuum
-  Vector3 ray_direction;               ///< of the ray that came here: the footprint is longer along it; zero: unknown
+  float u = 0, v = 0;                  ///< of the Hit
+  const MediumStack* media = nullptr;  ///< the media that contain the ray that hit the point; null: vacuum
+  Vector3 ray_direction;               ///< of the ray that hit the point: the footprint is longer along it; zero: unknown
 
-  /// A ray that leaves the surface without meeting it again: the origin is moved along the normal beyond the error.
+  /// A ray that leaves the surface without self-intersection: its origin is offset along the normal by the error bound.
   Ray leave(const Vector3& direction) const {
     Ray ray;
     leave(direction, ray);
     return ray;
   }
-  /// The same into a ray that is there already (a copy of what was just written would wait for it).
+  /// The same, written into an existing ray (copying a ray that was just written would cause a store-forwarding stall).
   void leave(const Vector3& direction, Ray& ray) const {
     ray.origin = exit(direction);
     ray.direction = direction;
     ray.maximum = infinity;
     ray.time = time;
   }
-  /// Where such a ray begins.
+  /// The offset origin of such a ray.
   Point3 exit(const Vector3& direction) const {
     return position + std::copysign(error, dot(normal, direction)) * Vector3(normal);
   }
-  /// A ray to another point, of unit direction, that ends just before it.
+  /// A ray of unit direction to another point, which ends just before that point: a shadow ray.
   Ray towards(const SurfacePoint& p) const {
     Ray ray;
     towards(p, ray);
@@ -88,15 +89,15 @@ struct SurfacePoint {
     end_at(p, ray);
     ray.time = time;
   }
-  /// Lets a ray end just before a point: on its side of that surface, beyond the error.
+  /// Lets a ray end just before a point: on the ray's side of the point's surface, outside the error bound.
   [[gnu::always_inline]] static inline void end_at(const SurfacePoint& p, Ray& ray) {
     const Vector3 d = p.exit(ray.origin - p.position) - ray.origin;
     const float squared = length_squared(d), inverse = inverse_sqrt(squared);
     ray.direction = inverse * d;
     ray.maximum = squared * inverse * almost_there;
   }
-  /// What part of the way to a point is free of it for sure: intersections are exact to a few units in the last place of
-  /// the distance.
+  /// The fraction of the distance to a point at which shadow rays end, so that they do not hit the point's own surface:
+  /// intersections are exact to a few units in the last place of the distance.
   static constexpr float almost_there = 1 - 2e-6f;
 };
 

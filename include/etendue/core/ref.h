@@ -1,5 +1,5 @@
 #pragma once
-// Shared ownership of components: an intrusive count, so that a plain pointer can always become a Ref again.
+// Ref: shared ownership of components, by an intrusive reference count, so that a Ref can be made from a plain pointer.
 
 #include <cstddef>
 #include <functional>
@@ -44,7 +44,7 @@ Ref<T> make(Args&&... args) {
   return Ref<T>(new T(std::forward<Args>(args)...));
 }
 
-/// A Ref to a derived type, or null when the object is of another.
+/// A Ref to a derived type, or null if the object is not of that type.
 template <class T, class U>
 Ref<T> ref_cast(const Ref<U>& r) {
   return Ref<T>(dynamic_cast<T*>(r.get()));

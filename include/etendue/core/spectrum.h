@@ -1,5 +1,5 @@
 #pragma once
-// The light a path carries: values at the path's few wavelengths.
+// Spectrum: values at the few wavelengths of a path (SampledSpectrum in pbrt), and Wavelengths (SampledWavelengths in pbrt).
 
 #include <array>
 #include <bit>
@@ -10,10 +10,10 @@
 
 namespace etendue {
 
-/// Wavelengths per path; docs/decisions tells how the number was chosen.
+/// The number of wavelengths per path; docs/decisions explains how it was chosen.
 inline constexpr int spectrum_size = 8;
 
-/// The range of visible light all spectral data covers [nm].
+/// The range of wavelengths [nm] that all spectral data covers: visible light.
 inline constexpr float wavelength_low = 360, wavelength_high = 830;
 
 namespace detail {
@@ -21,8 +21,8 @@ using Lanes = float __attribute__((vector_size(spectrum_size * sizeof(float))));
 using IntLanes = std::int32_t __attribute__((vector_size(spectrum_size * sizeof(std::int32_t))));
 }  // namespace detail
 
-/// The thesis's Spectrum: one value for each wavelength of the path it belongs to. What the values mean (radiance,
-/// throughput, reflectance) is said where they are declared.
+/// One value for each wavelength of a path (the thesis's Spectrum). The meaning of the values (radiance, throughput,
+/// reflectance) is documented at each declaration.
 class Spectrum {
  public:
   constexpr Spectrum() : v_{} {}
@@ -74,7 +74,7 @@ class Spectrum {
     for (int i = 0; i < spectrum_size; ++i) sum += v_[i];
     return sum / spectrum_size;
   }
-  /// Neither infinite nor not-a-number: x - x is 0 for numbers only.
+  /// Whether all values are finite: x - x is 0 for finite numbers only.
   bool finite() const { return none((v_ - v_) != detail::Lanes{}); }
 
  private:
@@ -123,8 +123,8 @@ struct Xyz {
   bool operator==(const Xyz&) const = default;
 };
 
-/// The wavelengths [nm] of one path and the density [1/nm] each was drawn with. The first is the hero: it alone
-/// decides where a dispersive surface sends the path, and it alone goes on after that.
+/// The wavelengths [nm] of one path and their pdfs [1/nm]. The first is the hero wavelength (Wilkie et al. 2014): it alone
+/// determines the direction at a dispersive surface, and the path continues with it alone.
 class Wavelengths {
  public:
   Wavelengths() = default;
@@ -148,9 +148,10 @@ class Wavelengths {
   /// [1/nm]
   float pdf(int i) const { return pdf_[i]; }
 
-  /// The path goes on with the hero only. Returns what its throughput must be multiplied by: size for the hero, 0 for the
-  /// others. So the mean over wavelengths in `to_xyz` stays an unbiased estimate, and what the path gathered before
-  /// keeps all its wavelengths. 1 when that was done already.
+  /// Lets the path continue with the hero wavelength only (TerminateSecondary in pbrt). Returns the factor by which the
+  /// throughput must be multiplied: spectrum_size for the hero, 0 for the others; 1 if the secondary wavelengths were dropped
+  /// before. So the mean over wavelengths in `to_xyz` stays an unbiased estimate, and radiance gathered before keeps all its
+  /// wavelengths.
   Spectrum drop_secondary() {
     Spectrum factor(1.0f);
     if (single_) return factor;
@@ -160,7 +161,8 @@ class Wavelengths {
     return factor;
   }
   bool single() const { return single_; }
-  /// The i-th as the hero, and alone, for a branch of the path that follows it. The hero takes the other's place.
+  /// The wavelengths with the i-th as the only one, in the place of the hero, for a branch of a split path that follows it. The
+  /// old hero takes the i-th place.
   Wavelengths alone(int i) const {
     Wavelengths one = *this;
     one.place(0, lambda_[i], pdf_[i]);
@@ -169,12 +171,12 @@ class Wavelengths {
     return one;
   }
 
-  /// Position in tables of one entry a nanometre from 360 nm: entry i and the fraction towards i + 1.
+  /// Position in tables with one entry per nanometre from 360 nm: the index of an entry and the fraction towards the next.
   int table_index(int i) const { return index_[i]; }
   float table_fraction(int i) const { return fraction_[i]; }
   const detail::IntLanes& table_indices() const { return index_; }
   const detail::Lanes& table_fractions() const { return fraction_; }
-  /// All of them [1/nm].
+  /// The pdfs of all wavelengths [1/nm].
   const detail::Lanes& pdfs() const { return pdf_; }
 
   void place(int i, float lambda, float pdf) {
@@ -192,8 +194,8 @@ class Wavelengths {
   bool single_ = false;
 };
 
-/// The estimate of a spectrum's colour from its values at a path's wavelengths:
-/// X = 1/size * sum_i S_i xbar(lambda_i) / (p(lambda_i) * 106.8569), and so for Y and Z.
+/// The Monte Carlo estimate of a spectrum's colour from its values at a path's wavelengths:
+/// X = 1/size * sum_i S_i xbar(lambda_i) / (p(lambda_i) * 106.8569), and likewise for Y and Z.
 Xyz to_xyz(const Spectrum&, const Wavelengths&);
 
 }  // namespace etendue

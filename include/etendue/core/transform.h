@@ -1,5 +1,5 @@
 #pragma once
-// Affine transforms, and transforms keyed by time.
+// Affine transforms, and animated transforms given by keys in time.
 
 #include <array>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace etendue {
 
-/// An affine map with its inverse. Rows of a 3x4 matrix, row major; the last row is (0 0 0 1). It is kept in double; rays and
-/// points take floats of it.
+/// An affine map with its inverse: a 3x4 matrix, row major; the last row (0 0 0 1) is implicit. It is stored in double
+/// precision, and in floats for rays and points.
 class Transform {
  public:
   using Matrix = std::array<float, 12>;
@@ -31,11 +31,11 @@ class Transform {
   const Matrix& matrix() const { return m_; }
   bool valid() const { return valid_; }
   bool identity() const { return identity_; }
-  /// Whether it only moves, and neither turns nor stretches.
+  /// Whether it is a pure translation.
   bool shifts_only() const { return shifts_only_; }
-  /// Where the origin comes from.
+  /// The translation of the inverse: the preimage of the origin.
   Vector3 shift_back() const { return {inverse_[3], inverse_[7], inverse_[11]}; }
-  /// Whether it mirrors: the determinant is negative.
+  /// Whether it changes handedness: the determinant is negative.
   bool flips() const { return flips_; }
   Transform inverse() const;
   /// First b, then this.
@@ -57,7 +57,7 @@ class Transform {
   }
   Bounds3 operator()(const Bounds3& b) const;
 
-  // The same in double, for what is done once.
+  // The same in double precision, for precomputation.
   DoublePoint3 operator()(const DoublePoint3& p) const { return times(exact_, p); }
   DoublePoint3 back(const DoublePoint3& p) const { return times(exact_inverse_, p); }
 
@@ -71,13 +71,14 @@ class Transform {
     return {i[0] * v.x + i[1] * v.y + i[2] * v.z, i[4] * v.x + i[5] * v.y + i[6] * v.z, i[8] * v.x + i[9] * v.y + i[10] * v.z};
   }
 
-  /// A bound of the absolute rounding error of transforming p, itself known to within `error`; and of bringing p back.
+  /// Upper bounds of the absolute rounding error of transforming p, which itself has the error bound `error`, and of
+  /// transforming p by the inverse.
   Vector3 error_bound(const Point3& p, const Vector3& error = {}) const { return bound(m_, p, error); }
   Vector3 error_bound_back(const Point3& p) const { return bound(inverse_, p, {}); }
 
  private:
   static Vector3 bound(const Matrix& m, const Point3& p, const Vector3& error) {
-    // Three products, three sums and the rounding of the matrix itself: five roundings at most meet in one term.
+    // Three products, three sums and the rounding of the matrix itself: each term has at most five roundings.
     constexpr float g = rounding_bound(5);
     const auto row = [&](size_t r) {
       const float a = std::abs(m[4 * r]), b = std::abs(m[4 * r + 1]), c = std::abs(m[4 * r + 2]);
@@ -98,13 +99,14 @@ class Transform {
   bool valid_ = true, identity_ = true, shifts_only_ = true, flips_ = false;
 };
 
-/// A transform keyed by time [s]. Between keys, translation is interpolated linearly, rotation on the sphere and
-/// stretch linearly (polar decomposition, Shoemake & Duff 1992), so a rotating object keeps its size. Outside the
-/// keys the nearest key holds.
+/// A transform keyed by time [s]. Between keys, translation is interpolated linearly, rotation spherically (slerp) and stretch
+/// linearly (polar decomposition, Shoemake & Duff 1992), so a rotating object keeps its size. Outside the range of the keys the
+/// nearest key holds.
 ///
-/// The keys are as they were written. What points and rays go through, still() and at(), counts on either side from a point
-/// that is chosen when a scene is prepared (see docs/decisions/020-rendering-space.md): it takes p - inner to M p - outer,
-/// which is found in double and only then rounded. Both points are the origins unless someone says otherwise.
+/// The keys are as written in the description. The transforms for points and rays, still() and at(), have a shifted origin on
+/// either side, which is chosen when a scene is prepared (rendering space, see docs/decisions/020-rendering-space.md): they map
+/// p - inner to M p - outer. Their matrix is computed in double precision and then rounded. By default both points are the
+/// origin.
 class AnimatedTransform {
  public:
   struct Key {
@@ -117,28 +119,29 @@ class AnimatedTransform {
   AnimatedTransform(const Transform& still) : keys_{{0, still}}, still_(still) {}  // NOLINT: a still transform is one
   /// Keys in increasing time; at least one.
   explicit AnimatedTransform(std::vector<Key> keys);
-  /// First b, then this. Each goes on between its own keys as it does alone; the product's are at the times of both. It counts
-  /// from this one's outer and b's inner point.
+  /// First b, then this. Each factor is interpolated between its own keys; the product has keys at the times of both. Its
+  /// `outer` is that of this transform, its `inner` that of b.
   AnimatedTransform operator*(const AnimatedTransform& b) const;
 
-  /// Counts from other points: places outside from `outer`, those inside from `inner`.
+  /// Sets the shifted origins: `outer` for the space that the transform maps to, `inner` for the space that it maps from.
   void count_from(const DoublePoint3& outer, const DoublePoint3& inner);
   const DoublePoint3& outer() const { return outer_; }
   const DoublePoint3& inner() const { return inner_; }
 
-  bool animated() const { return keys_.end() > keys_.begin() + 1; }  // size() would divide
+  bool animated() const { return keys_.end() > keys_.begin() + 1; }  // size() would need a division
   /// The transform of the first key: the only one when not animated.
   const Transform& still() const { return still_; }
   Transform at(float time) const { return counted(written(time)); }
-  /// The same from true own coordinates.
+  /// The same with `inner` at the true origin.
   Transform from_origin(float time) const { return counted(written(time), {}); }
-  /// As written, from and to true coordinates.
+  /// As written in the description, with both origins unshifted.
   Transform written(float time) const;
   const std::vector<Key>& keys() const { return keys_; }
   bool valid() const;
   bool operator==(const AnimatedTransform& b) const { return keys_ == b.keys_ && factors_ == b.factors_; }
 
-  /// Bounds of a moving box over [begin, end], found by sampling the motion finely and widened by the largest step.
+  /// Bounding box of a moving box over the times [begin, end], computed by sampling the motion finely and enlarging the result
+  /// by the largest step.
   Bounds3 sweep(const Bounds3& box, float begin, float end) const;
 
  private:
@@ -152,8 +155,8 @@ class AnimatedTransform {
   Transform counted(const Transform& written, const DoublePoint3& inner) const;
 
   std::vector<Key> keys_;                   // as written
-  std::vector<Parts> parts_;                // one for each key when animated
-  std::vector<AnimatedTransform> factors_;  // of a product that is animated, the last to be applied first
+  std::vector<Parts> parts_;                // one for each key if animated
+  std::vector<AnimatedTransform> factors_;  // the two factors of an animated product; factors_[1] is applied first
   DoublePoint3 outer_, inner_;
   Transform still_;
 };

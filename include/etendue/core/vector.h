@@ -1,5 +1,6 @@
 #pragma once
-// Vectors, points and normals are distinct types: they transform differently and a point plus a point means nothing.
+// Vectors, points and normals. They are distinct types, as they transform differently, and the sum of two points is
+// meaningless.
 
 #include <cmath>
 #include <cstddef>
@@ -84,7 +85,7 @@ constexpr float max_component(const Vector3& v) { return v.x > v.y ? (v.x > v.z 
 inline bool is_finite(const Vector3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 inline bool is_finite(const Point3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-/// A displacement in double: of places as a description says them.
+/// A displacement in double precision, between points of a description.
 struct DoubleVector3 {
   double x = 0, y = 0, z = 0;
   constexpr DoubleVector3() = default;
@@ -94,8 +95,8 @@ struct DoubleVector3 {
   bool operator==(const DoubleVector3&) const = default;
 };
 
-/// A place as a description says it: a float far from the origin could not hold it. Rendering counts places from a point near
-/// to what is seen, in floats; the difference is taken in double.
+/// A point of a description, in double precision, as floats are too coarse far from the origin. Rendering uses float
+/// coordinates relative to a point near the objects in view (rendering space); the difference is computed in double precision.
 struct DoublePoint3 {
   double x = 0, y = 0, z = 0;
   constexpr DoublePoint3() = default;

@@ -1,6 +1,7 @@
 #pragma once
-// What a plugin was built against, as a text that both sides compare before anything else is done: whatever changes how
-// objects lie in memory or how they are handed over. GCC and Clang agree on both; which of their options decide is below.
+// The ABI that a plugin was built for, as a text that program and plugin compare before anything else: everything that changes
+// the memory layout of objects or how they are passed to functions. GCC and Clang agree on both; the compiler options that
+// change them are checked below.
 
 #include <cstddef>
 #include <string>
@@ -13,11 +14,11 @@
 
 namespace etendue::detail {
 
-/// Raised whenever a public header changes what plugins see.
+/// Increased whenever a public header changes in a way that is incompatible for plugins.
 #define ETENDUE_INTERFACE_VERSION 10
 
-/// The width [bytes] of the widest vector registers the compiler may use. A Spectrum is handed over in one of them when it
-/// fits, else in memory or in several: who was compiled otherwise reads it from the wrong place.
+/// The width [bytes] of the widest vector registers that the compiler may use. A Spectrum is passed in one of them if it fits,
+/// else in memory or in several registers: code compiled with another width reads it from the wrong place.
 #if defined(__AVX512F__)
 inline constexpr std::size_t vector_register = 64;
 #elif defined(__AVX__)
@@ -26,7 +27,7 @@ inline constexpr std::size_t vector_register = 32;
 inline constexpr std::size_t vector_register = 16;
 #endif
 
-/// Of sizes that options change: -fshort-enums, -fpack-struct.
+/// Types whose sizes are changed by the compiler options -fshort-enums and -fpack-struct.
 enum SmallEnum { small_enum };
 struct Padded {
   char first;
@@ -36,7 +37,7 @@ struct WithBase : Padded {
   char third;
 };
 
-/// A text that is put together by the compiler.
+/// A text that is composed at compile time.
 struct AbiText {
   char text[320] = {};
   std::size_t size = 0;
@@ -51,7 +52,7 @@ struct AbiText {
   }
 };
 
-/// Parts separated by ", ", in the same order on both sides; src/describe/plugin.cpp knows a remedy for each.
+/// Parts separated by ", ", in the same order in program and plugin; src/describe/plugin.cpp has a remedy for each.
 constexpr AbiText make_abi_text() {
   AbiText t;
   t.add("interfaces " ETENDUE_TEXT(ETENDUE_INTERFACE_VERSION));
@@ -80,7 +81,7 @@ constexpr AbiText make_abi_text() {
   }
   return t;
 }
-/// Of internal linkage, as what a plugin says must be its own, never what the program says.
+/// Has internal linkage, so that a plugin reports its own text, and never that of the program.
 static constexpr AbiText abi_text = make_abi_text();
 
 /// The extensions of the instruction set that the compiler may have used, each followed by a blank.
@@ -116,7 +117,7 @@ static constexpr const char* instructions =
 
 }  // namespace etendue::detail
 
-/// Emitted into every library that includes this header.
+/// Exported by every library that includes this header.
 extern "C" {
 [[gnu::used, gnu::visibility("default")]] inline const char* etendue_plugin_abi() { return etendue::detail::abi_text.text; }
 [[gnu::used, gnu::visibility("default")]] inline const char* etendue_plugin_instructions() {

@@ -1,5 +1,6 @@
 #pragma once
-// Component: the root of every part. It is counted, described and created by name.
+// Component: the base of all plugin classes (Object in Mitsuba). A component is reference-counted, has described members, and
+// is created by the name of its class.
 
 #include <atomic>
 #include <memory>
@@ -14,8 +15,9 @@ namespace etendue {
 
 class ClassInfo;
 
-/// Parts are prepared by one thread, and then used by many at once: after `prepare`, const functions must not change anything
-/// that others see, and must give the same for the same arguments, or pictures would depend on threads.
+/// Components are prepared by one thread, and then used by many threads at once. After `prepare`, const functions must not
+/// change any state that other threads see, and must return the same result for the same arguments, or images would depend on
+/// the scheduling of threads.
 class Component {
  public:
   virtual ~Component();
@@ -27,21 +29,22 @@ class Component {
     if (count_.fetch_sub(1, std::memory_order_acq_rel) == 1) delete this;
   }
 
-  /// What is known of the object's class: name, parent, members, factory.
+  /// The description of the object's class: name, parent, members, factory.
   const ClassInfo& class_info() const;
 
-  /// Called before the members that are components are prepared, when this component is what prepare_tree was asked for: a
-  /// Job tells them here what coordinates they are to count in.
+  /// Called by prepare_tree for its root component, before any component is prepared. A Job sets the origin of rendering space
+  /// here.
   virtual void before_prepare() {}
-  /// Called once, after all members are set and after the members that are components were prepared; again after an
-  /// edit. May throw an Error; `fail` throws one with the place where a member was written.
+  /// Called once, after all members were set and all members that are components were prepared; called again after an edit. May
+  /// throw Error; `fail` throws one with the location where a member was written.
   virtual void prepare() {}
-  /// Called instead of `prepare` after an edit that left alone all that members of Effect::rebuild say, here and in the parts
-  /// which such members hold: a colour, not a shape. By default `prepare`. What takes long and depends on those members only
-  /// can be kept.
+  /// Called instead of `prepare` after an edit that changed no member of Effect::rebuild, neither of this component nor of the
+  /// components that such members refer to: an edit of a colour, not of a shape. By default calls `prepare`. Override it to
+  /// keep data that is expensive to compute and depends on members of Effect::rebuild only.
   virtual void prepare_again() { prepare(); }
 
-  /// Where a component and its members were written, and the name it was given there. Absent for one made in code.
+  /// The locations where a component and its members were written, and the component's name there. Null for components made in
+  /// code.
   struct Origin {
     Location location;
     std::string name;
@@ -49,9 +52,9 @@ class Component {
   };
   std::unique_ptr<Origin> origin;
 
-  /// The place of a member when it was written, else of the component, else unknown.
+  /// The location of a member if it was written, else of the component, else unknown.
   Location location_of(std::string_view member = {}) const;
-  /// Throws an Error at the place of the member: "TriangleMesh.file: cannot open 'x.ply': No such file".
+  /// Throws an Error with the location of the member: "TriangleMesh.file: cannot open 'x.ply': No such file".
   [[noreturn]] void fail(std::string_view member, const std::string& message) const;
 
  protected:
@@ -61,16 +64,17 @@ class Component {
   mutable std::atomic<int> count_{0};
 };
 
-/// Prepares a component after all the components it refers to, each once.
+/// Prepares all components that a component refers to, each once, and then the component itself.
 void prepare_tree(Component&);
 
-/// Reports something the user should know but that stops nothing (shown once per distinct text).
+/// Prints a warning; each distinct text is printed once.
 void warn(const std::string& message, Location = {});
 
-/// In a catch block: throws on what came out while something was done with a component, such as "preparing". An Error gets the
-/// component's place when it has none, and is told with the component's plugin. Anything else becomes an Error at the
-/// component's place that names the classes of plugins which may have thrown it: the component's own, else those of all parts
-/// it refers to.
+/// Must be called in a catch block: rethrows an exception that was thrown during an operation on a component, such as
+/// "preparing", as Error. An Error without a location gets that of the component, and its message names the component's plugin.
+/// Any other exception becomes an Error with the component's location, whose message names the plugin classes that may have
+/// thrown it: the component's own class, else the classes of all components that it refers to. Without such classes it is
+/// rethrown unchanged.
 [[noreturn]] void blame(const Component&, std::string_view doing);
 
 }  // namespace etendue

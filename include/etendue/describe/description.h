@@ -1,5 +1,6 @@
 #pragma once
-// How a class says what its members are, once: parser, saver, command line, schema, manual and tests derive from it.
+// Description: a class describes its members once, in its function `describe`. Parser, writer, command line, schema, manual and
+// tests are derived from this description (compare ParameterDictionary in pbrt, Properties in Mitsuba).
 
 #include <initializer_list>
 #include <optional>
@@ -20,16 +21,16 @@ inline Range more_than(double low) { return {low, std::numeric_limits<double>::i
 /// Marks a member that must be written.
 struct Required {};
 inline constexpr Required required{};
-/// Names for the values of an enum, in order: choices("both", "front") for values 0 and 1. Of a string, or of each in a list
-/// of strings: all that may be written.
+/// The names of an enum's values, in order: choices("both", "front") for values 0 and 1. For a string, or the strings of a
+/// list, all allowed values.
 template <class... S>
 std::vector<std::string> choices(S... names) {
   return {std::string(names)...};
 }
 
-/// The ends of a slider: soft(0.01, 10). They lie within the range, and say what is usual, not what is allowed.
+/// The ends of a slider: soft(0.01, 10). They lie within the range, and give the usual values, not the allowed ones.
 inline SoftRange soft(double low, double high) { return {low, high}; }
-/// Marks a number whose sizes are compared by ratios: a distance, an exponent. Its slider is logarithmic.
+/// Gives a number a logarithmic slider, as for a distance or an exponent.
 struct Logarithmic {};
 inline constexpr Logarithmic logarithmic{};
 namespace detail {
@@ -44,15 +45,15 @@ Condition::Wanted wanted(V value) {
 }
 }  // namespace detail
 
-/// A member that matters only when another has one of these values: when("pigment", "color"), when("sun", true). Without
-/// values: when("file"), when the other holds anything but nothing (false, 0, "", [], none, a map that is 0 everywhere). All
-/// conditions of a member must hold. A scene that sets a member that does not matter is told so: what is said here must be
-/// true for every value of all other members.
+/// A condition: the member has an effect only if another member has one of these values: when("pigment", "color"), when("sun",
+/// true). Without values, when("file"): if the other member is not empty (not false, 0, "", [], none, or a map that is 0
+/// everywhere). All conditions of a member must hold. The user is warned if a scene sets a member that has no effect, so the
+/// conditions must be correct for every value of all other members.
 template <class... V>
 Condition when(std::string member, V... values) {
   return {std::move(member), {detail::wanted(values)...}, false};
 }
-/// The opposite: unless("file") when no file is given.
+/// The negated condition: unless("file"), if no file is given.
 template <class... V>
 Condition unless(std::string member, V... values) {
   return {std::move(member), {detail::wanted(values)...}, true};
@@ -62,7 +63,7 @@ Condition unless(std::string member, V... values) {
 
 namespace detail {
 
-// Defined in src/describe/conversion.cpp. All throw Error("…") at the value's place.
+// Defined in src/describe/conversion.cpp. All throw Error with the value's location.
 bool to_bool(const Value&);
 double to_number(const Value&, const Member&);
 std::int64_t to_integer(const Value&, const Member&, std::int64_t low, std::int64_t high);
@@ -73,7 +74,7 @@ void to_numbers(const Value&, const Member&, double* out, int count);
 Color to_color(const Value&, const Member&);
 AnimatedTransform to_transform(const Value&);
 Ref<Component> to_component(const Value&, const Member&);
-/// Rows of `width` numbers appended through `push`; accepts flat and nested lists.
+/// Calls `push` for each row of `width` numbers; accepts flat and nested lists.
 void to_rows(const Value&, const Member&, int width, void (*push)(void* to, const double* row), void* to,
              void (*reserve)(void* to, size_t rows));
 void to_integers(const Value&, const Member&, std::int64_t low, std::int64_t high, void (*push)(void* to, std::int64_t),
@@ -83,7 +84,7 @@ Value from_number(double, const Member&);
 Value from_numbers(const double*, int count, const Member&);
 
 template <class T>
-struct Convert;  // no member: a type the language does not have
+struct Convert;  // undefined for types that the language does not have
 
 template <>
 struct Convert<bool> {
@@ -251,7 +252,7 @@ struct IsVector : std::false_type {};
 template <class T>
 struct IsVector<std::vector<T>> : std::true_type {};
 
-/// The bare name of a class, from the compiler's name for it.
+/// The unqualified name of a class, from its mangled name.
 std::string bare_class_name(const std::type_info&);
 
 template <class T>
@@ -291,25 +292,25 @@ struct PointerTo<P> {
 
 // ---- the description itself ---------------------------------------------------------------------------------------
 
-/// Filled by `static void describe(Description<T>&)` of a component class.
+/// The description of a component class, filled by its function `static void describe(Description<T>&)`.
 template <class T>
 class Description {
  public:
   explicit Description(ClassInfo& info) : info_(info) {}
 
-  /// One sentence on what the class is, and where it comes from (a paper, a standard), if anywhere.
+  /// A sentence that says what the class is, and its source (a paper, a standard), if any.
   Description& summary(std::string text, std::string source = {}) {
     info_.summary = std::move(text);
     info_.source = std::move(source);
     return *this;
   }
 
-  /// Throws for a group without members; called when the class has been described.
+  /// Throws Error for a group without members; called at the end of the description.
   void finish() const {
     if (opened_ && opened_->members == info_.members.size()) throw Error("group '" + opened_->name + "' has no members");
   }
 
-  /// Members that follow, up to the next group, stand together in a panel, under this name.
+  /// Starts a group: the following members, up to the next group, are shown together in a panel under this name.
   Description& group(std::string name) {
     finish();
     if (name.empty()) throw Error("a group has no name");
@@ -319,9 +320,9 @@ class Description {
     return *this;
   }
 
-  /// A member: its name in files, its unit ("1" for a pure number, "" for what is no number), what it is, and any of
-  /// range(), at_least(), more_than(), soft(), logarithmic, choices(), when(), unless(), required, Effect, Meaning. The member
-  /// holds its value in this unit.
+  /// A member: its name in files, its unit ("1" for a dimensionless number, "" if it is not a number), its documentation, and
+  /// any of range(), at_least(), more_than(), soft(), logarithmic, choices(), when(), unless(), required, Effect, Meaning. The
+  /// C++ member stores its value in this unit.
   template <auto P, class... Options>
   Description& member(std::string name, std::string unit, std::string text, Options... options) {
     using Type = typename detail::PointerTo<P>::Type;
@@ -346,7 +347,8 @@ class Description {
     return *this;
   }
 
-  /// The class does not have this member of its interface, as it would have no effect; `why` is told whoever sets it.
+  /// Removes an inherited member that would have no effect in this class; `why` is the reason in the error message if it is
+  /// set.
   Description& without(const std::string& name, std::string why) {
     if (std::erase_if(info_.members, [&](const Member& m) { return m.name == name; }) == 0)
       throw Error("there is no member '" + name + "' that the class could be without");
@@ -354,7 +356,8 @@ class Description {
     return *this;
   }
 
-  /// A plain value where this class's interface is expected becomes an object of this class with that member set.
+  /// A plain value (a number, a colour) where this class's interface is expected is converted to an object of this class with
+  /// that member set.
   Description& literal(std::string member) {
     info_.literal = std::move(member);
     return *this;
@@ -372,7 +375,7 @@ class Description {
 
   struct Opened {
     std::string name;
-    size_t members = 0;  ///< described before it
+    size_t members = 0;  ///< number of members described before the group
   };
   ClassInfo& info_;
   std::optional<Opened> opened_;
@@ -380,8 +383,8 @@ class Description {
 
 // ---- registration -------------------------------------------------------------------------------------------------
 
-/// A node that waits for the registry. Interfaces name themselves `Interface` and their own parent `Parent`;
-/// concrete classes inherit the former, which makes it their parent.
+/// A node in the linked list of classes to be registered. Interfaces define the type `Interface` as themselves and `Parent` as
+/// their parent class; concrete classes inherit `Interface`, which is their parent in the registry.
 struct RegistrationNode {
   const std::type_info& type;
   const std::type_info& parent;
@@ -402,7 +405,7 @@ const std::type_info& parent_type() {
     return typeid(typename T::Interface);
 }
 
-/// `static const Register<PhongShader> registered;` makes a class known. It only links a node into a list.
+/// `static const Register<PhongShader> registered;` registers a class. The constructor only links a node into a list.
 template <class T>
 class Register {
  public:
@@ -410,7 +413,7 @@ class Register {
 
  private:
   static Ref<Component> (*factory())() {
-    // An interface that needs nothing overridden hides its constructor from all but its subclasses.
+    // An interface without pure virtual functions has a protected constructor, so that it counts as abstract.
     if constexpr (std::is_abstract_v<T> || !std::is_default_constructible_v<T>)
       return nullptr;
     else

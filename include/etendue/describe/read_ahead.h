@@ -1,15 +1,15 @@
 #pragma once
-// Components whose `prepare` reads files.
+// ReadsAhead: an interface for components whose `prepare` reads files, so that files are read in parallel.
 
 namespace etendue {
 
-/// A second base of such a component: before anything is prepared, prepare_tree has all of them read at the same time.
+/// A second base class of such a component. Before any component is prepared, prepare_tree calls read_ahead of all of them in
+/// parallel.
 class ReadsAhead {
  public:
   virtual ~ReadsAhead() = default;
-  /// Reads what `prepare` is going to ask for, and keeps it until then. It looks at nothing but the component's own members, is
-  /// called from any thread, and leaves what is wrong to `prepare`, which finds it again and knows the place: what it throws
-  /// is dropped.
+  /// Reads the files that `prepare` will need, and keeps them until then. It may use only the component's own members, and is
+  /// called from any thread. Exceptions are dropped: `prepare` detects the same error again, and reports it with its location.
   virtual void read_ahead() = 0;
 };
 

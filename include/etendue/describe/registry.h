@@ -1,5 +1,5 @@
 #pragma once
-// What is known of classes: their members, how to make them, how to read and set members by name.
+// Registry: the registered classes with their members. It creates components by class name, and reads and sets members by name.
 
 #include <limits>
 #include <optional>
@@ -15,52 +15,52 @@
 
 namespace etendue {
 
-/// What an edit of a member forces to be done again. What holds the edited component is concerned as much, as far as the member
-/// that holds it says: a colour of a map by which a mesh is displaced rebuilds the mesh.
+/// The work that an edit of a member makes necessary. An edit also affects the components that refer to the edited one, with
+/// the Effect of the member that refers to it: editing a colour of a map that displaces a mesh rebuilds the mesh.
 enum class Effect : std::uint8_t {
-  none,      ///< nothing: it is a limit, or how many samples are wanted
-  retone,    ///< what was collected is shown in another way
-  rerender,  ///< samples are collected anew; what is searched by rays stays
-  rebuild,   ///< shapes are made anew, and what finds them
+  none,      ///< none: the member is a limit, or a number of samples
+  retone,    ///< the collected samples are kept, and displayed differently
+  rerender,  ///< samples are collected anew; acceleration structures are kept
+  rebuild,   ///< shapes and acceleration structures are built anew
 };
 std::string_view name(Effect);
 
-/// The numbers a member may hold, in the member's unit, ends included unless said.
+/// The allowed range of a number, in the member's unit; it includes its ends, unless open_low is set.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool open_low = false;
-  /// A member may be a float: its ends count as what they are there.
+  /// The ends are also compared as floats, as the member may be a float.
   bool contains(double x) const {
     return (open_low ? x > low : x >= low || float(x) >= float(low)) && (x <= high || float(x) <= float(high));
   }
   std::string text() const;
 };
 
-/// Where a slider for a member ends, in the member's unit: what is usual. More may be written, as far as the Range goes.
+/// The ends of a slider for a member, in the member's unit: the usual range. Values outside of it are allowed within the Range.
 struct SoftRange {
   double low = 0, high = 0;
 };
 
-/// What a colour, or a map that stands for one, is read as.
+/// The quantity that a colour, or a map used as one, represents.
 enum class Meaning : std::uint8_t {
-  plain,        ///< whoever uses it says
-  number,       ///< of a map: only its scalar counts (a roughness, a share, a height)
+  plain,        ///< depends on the component that uses it
+  number,       ///< for a map: only its scalar is used (a roughness, a fraction, a height)
   reflectance,  ///< a fraction of light, from 0 to 1, per wavelength
   radiance,     ///< emitted light, or its spectrum's shape
-  coefficient,  ///< per wavelength, not negative, of any size: of absorption, of scattering; a distance for each wavelength
-  index,        ///< of refraction
+  coefficient,  ///< non-negative and unbounded, per wavelength: an absorption or scattering coefficient, a mean free path
+  index,        ///< a refractive index
 };
 std::string_view name(Meaning);
 
-/// What another member of the same component must hold for a member to matter.
+/// A condition on another member of the same component: a member has an effect only if all its conditions hold.
 struct Condition {
   using Wanted = std::variant<bool, double, std::string>;
   std::string member;
-  /// One of these, numbers in that member's unit. None: anything but false, 0, "", an empty list, none or a map that is 0
-  /// everywhere.
+  /// The other member must have one of these values; numbers are in its unit. If the list is empty, any value except false, 0,
+  /// "", an empty list, none, and a map that is 0 everywhere.
   std::vector<Wanted> values;
-  bool unless = false;  ///< the opposite
+  bool unless = false;  ///< negates the condition
   bool holds(const Component&) const;
   /// "'pigment' is color or melanin", "'file' is not given"
   std::string text(const ClassInfo&) const;
@@ -88,41 +88,42 @@ struct Member {
   std::string name, unit, text;
   Kind kind = Kind::number;
   bool list = false;
-  bool required = false;   ///< must be written: it has no useful default
-  bool in_double = false;  ///< its numbers are doubles; else they are floats
+  bool required = false;   ///< must be written, as it has no useful default
+  bool in_double = false;  ///< the numbers are doubles; else floats
   Effect effect = Effect::rerender;
   std::optional<Range> range;
   std::optional<SoftRange> soft;
-  bool logarithmic = false;          ///< a slider goes by ratios, not by differences
-  std::vector<std::string> choices;  ///< of a choice, a string or the strings of a list: all there are
+  bool logarithmic = false;          ///< the slider is logarithmic
+  std::vector<std::string> choices;  ///< all allowed values of a choice, a string, or the strings of a list
   Meaning meaning = Meaning::plain;
-  std::string group;                  ///< members of one group stand together in a panel; "" for the first of a class
-  std::vector<Condition> conditions;  ///< all must hold for the member to matter; see `matters`
-  std::string component_class;        ///< the interface a `component` member refers to
-  const ClassInfo* owner = nullptr;   ///< the class that declares it
-  Value default_value;                ///< of a default-constructed object; none for abstract classes
+  std::string group;  ///< members of one group are shown together in a panel; "" for the first members of a class
+  std::vector<Condition> conditions;  ///< all must hold for the member to have an effect; see `matters`
+  std::string component_class;        ///< the interface that a `component` member refers to
+  const ClassInfo* owner = nullptr;   ///< the class that declares the member
+  Value default_value;                ///< that of a default-constructed object; none for abstract classes
 
   Value (*get)(const Component&, const Member&) = nullptr;
-  /// Converts and stores; throws Error without checking who asks. Call `set` below instead.
+  /// Converts, checks and stores a value. Throws Error with a message that does not contain the class and the member. Call
+  /// `set` below instead, which prepends them.
   void (*store)(Component&, const Member&, const Value&) = nullptr;
 };
 
-/// A member of its interface that a class does not have.
+/// A member of the interface that a class does not have.
 struct AbsentMember {
-  std::string name, why;  ///< why: what is told whoever sets it, "its paths come from luminaires"
+  std::string name, why;  ///< why: the reason in the error message if it is set, "its paths come from luminaires"
 };
 
 class ClassInfo {
  public:
   std::string name;
-  const ClassInfo* parent = nullptr;  ///< null for interfaces that stand at the top
+  const ClassInfo* parent = nullptr;  ///< null for top-level interfaces
   std::string summary, source;
-  std::vector<Member> members;           ///< inherited ones first
-  std::vector<AbsentMember> absent;      ///< those of its parents that mean nothing to it
+  std::vector<Member> members;           ///< inherited members first
+  std::vector<AbsentMember> absent;      ///< inherited members that have no effect in this class
   Ref<Component> (*create)() = nullptr;  ///< null: abstract
   std::type_index type = typeid(void);
-  std::string provider;  ///< "" for built-in parts, else the plugin's file
-  std::string literal;   ///< a plain value where this class's interface is expected sets this member; "" when it has none
+  std::string provider;  ///< "" for built-in classes, else the plugin's file
+  std::string literal;   ///< the member that a plain value sets where this class's interface is expected; "" if there is none
 
   bool abstract() const { return create == nullptr; }
   bool is_a(const ClassInfo& ancestor) const;
@@ -133,22 +134,22 @@ class Registry {
  public:
   static Registry& instance();
 
-  /// Null when unknown.
+  /// Null if there is no such class.
   const ClassInfo* find(std::string_view name) const;
   const ClassInfo* find(std::type_index) const;
-  /// All classes by name.
+  /// All classes, sorted by name.
   std::vector<const ClassInfo*> all() const;
-  /// The concrete classes of an interface, by name.
+  /// The concrete classes of an interface, sorted by name.
   std::vector<const ClassInfo*> subclasses(const ClassInfo& of) const;
-  /// Throws Error with a suggestion when there is no such class or it is abstract.
+  /// Creates a component. Throws Error with a suggestion if there is no such class or it is abstract.
   Ref<Component> create(std::string_view name) const;
 
-  /// Opens a shared library and adopts the classes it registers; throws Error when it cannot be opened, was built
-  /// for another ABI, or one of its classes is badly described. Opening one twice does nothing.
+  /// Opens a shared library and registers its classes. Throws Error if the library cannot be opened, was built for another ABI,
+  /// or if the description of one of its classes is invalid. Opening a library again has no effect.
   void load_plugin(const std::string& path);
   std::vector<std::string> plugins() const;
 
-  /// Checks and takes in classes registered since the last call (all calls above do so first).
+  /// Checks and adds the classes that enlisted themselves since the last call (all functions above call it first).
   void adopt();
 
  private:
@@ -157,19 +158,19 @@ class Registry {
   State* s;
 };
 
-/// Reads a member; throws Error (with a suggestion) when there is none of this name.
+/// Reads a member; throws Error with a suggestion if there is no member of this name.
 Value get(const Component&, std::string_view member);
-/// Checks type, unit, range and choices and sets a member; the one way by which anything is ever set. Numbers without a
-/// unit are in the member's unit. Throws Error with value.location.
+/// Sets a member, after checking type, unit, range and choices. Members are set in no other way. Numbers without a unit
+/// are in the member's unit. Throws Error with value.location.
 void set(Component&, std::string_view member, const Value&);
 
-/// Whether a member's value makes any difference while the component's other members are what they are.
+/// Whether a member has any effect, given the current values of the component's other members.
 bool matters(const Component&, const Member&);
 
-/// A deep copy: every member copied, shared parts shared in the copy as well.
+/// A deep copy: every member is copied; components that are shared in the original are shared in the copy as well.
 Ref<Component> copy(const Component&);
 
-/// What must agree between the program and a plugin: interface version, compiler ABI, number of wavelengths.
+/// The text that must be equal in program and plugin (describe/abi.h): interface version, compiler ABI, number of wavelengths.
 const char* abi_string();
 
 }  // namespace etendue

@@ -1,5 +1,5 @@
 #pragma once
-// A value of the render description language, on its way into or out of a component's member.
+// Value: a value of the render description language, for setting and reading the members of components.
 
 #include <cstdint>
 #include <string>
@@ -28,28 +28,28 @@ enum class Dimension : std::uint8_t {
   time
 };
 
-/// A unit the language knows: `value in base units = factor * number`. Base units: m, rad, K, W, lm, cd, lx, s.
+/// A unit of the language: `value in base units = factor * number`. Base units: m, rad, K, W, lm, cd, lx, s.
 struct Unit {
   std::string_view name;
   Dimension dimension;
   double factor;
 };
 
-/// Null when no unit has this name.
+/// Null if there is no unit of this name.
 const Unit* find_unit(std::string_view name);
 const std::vector<Unit>& units();
 std::string_view name(Dimension);
 /// "a length", "an angle"
 std::string with_article(std::string_view);
 
-/// A number with the dimension its unit gave it, in base units; `none` for a plain number.
+/// A number in base units, with the dimension of its unit; `none` for a number without a unit.
 struct Number {
   double value = 0;
   Dimension dimension = Dimension::none;
   bool operator==(const Number&) const = default;
 };
 
-/// A list of numbers, or of rows of 2 to 4 numbers each, packed: lists of millions stay small. A vector such as
+/// A list of numbers, or of rows of 2 to 4 numbers each, stored compactly for lists of millions. A vector such as
 /// [1, 2, 3] is three rows of width 1; [[1,2,3],[4,5,6]] is two rows of width 3. In base units.
 struct Numbers {
   std::vector<double> values;
@@ -59,7 +59,7 @@ struct Numbers {
   bool operator==(const Numbers&) const = default;
 };
 
-/// A string that names a file, and the folder it is relative to (that of the file which named it).
+/// A file name, and the folder that it is relative to: that of the file in which it was written.
 struct FilePath {
   std::string text;    ///< as written
   std::string folder;  ///< empty: the working folder
@@ -76,7 +76,7 @@ struct Value {
                Ref<Component>, List>
       data;
   Location location;
-  std::string folder;  ///< of the file a string was written in
+  std::string folder;  ///< the folder of the file in which a string was written
 
   Value() = default;
   template <class T>
@@ -91,7 +91,8 @@ struct Value {
   std::string kind() const;
 };
 
-/// Whether two values are equal; components are equal when their classes and all their members are (sharing aside).
+/// Whether two values are equal. Components are equal if their classes and all their members are equal, whether or not they are
+/// shared.
 bool equal(const Value&, const Value&);
 inline bool operator==(const Value& a, const Value& b) { return equal(a, b); }
 

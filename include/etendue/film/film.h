@@ -1,9 +1,9 @@
 #pragma once
-// Film: sums of samples, as CIE XYZ in double precision, that do not depend on the order in which they are added.
+// Film: accumulates samples, as sums of CIE XYZ in double precision that do not depend on the order of summation.
 //
-// A render goes on in steps (passes over the picture). Within a step tiles are added as they come, which must be in a fixed
-// order; the sums of whole steps are added exactly (src/film/exact_sums.h). So whoever renders which steps, and in whatever
-// order states are added, the film is the same to the bit: docs/decisions/023-exact-sums.md.
+// A render proceeds in steps (passes over the image). Within a step, tiles must be merged in a fixed order; the sums of whole
+// steps are added exactly (src/film/exact_sums.h). So the film is the same to the bit, whatever process renders which steps,
+// and in whatever order states are added: docs/decisions/023-exact-sums.md.
 
 #include <memory>
 #include <span>
@@ -14,23 +14,23 @@
 
 namespace etendue {
 
-/// How the samples of an algorithm depend on one another, from which the error of their mean follows.
+/// Whether the samples of an algorithm are correlated, which determines how the standard error is estimated.
 enum class Estimator : std::uint8_t {
-  independent,  ///< Every sample is independent of the others; its splats, wherever they fall, are one outcome. The error comes
-                ///< from the spread of samples. (Low-discrepancy samples spread better: it is an upper bound then.)
-  correlated,   ///< Samples of a step depend on each other (mutated paths, photons shared by pixels). The error comes from the
-                ///< spread of whole steps, which must depend little on one another; unknown before 8 of them.
+  independent,  ///< The samples are independent; all splats of a sample together are one random variable. The error is computed
+                ///< from the variance of samples. (For low-discrepancy samples it is an upper bound.)
+  correlated,   ///< The samples of a step depend on each other (mutated paths, photons shared by pixels). The error is computed
+                ///< from the variance of whole steps, which must be almost independent; unknown before 8 steps.
 };
 
-/// What a film held at a moment. Independent of it, and of the description: for any thread.
+/// An immutable copy of a film's sums, independent of the film and of the description. May be used by any thread.
 class FilmSnapshot {
  public:
-  /// The picture as X Y Z, with the wanted layers as further channels.
+  /// The image as X Y Z, with the requested layers as further channels.
   Image develop() const;
-  /// Mean over pixels of the standard error of Y, relative to (Y + 1e-3 of the picture's mean): the measure for stopping at an
-  /// error. Infinite where too few samples are there to tell.
+  /// The mean over pixels of the standard error of Y, relative to Y + 1e-3 of the image's mean: the criterion for stopping at a
+  /// given error. Infinite if there are too few samples for an estimate.
   double relative_error() const;
-  /// Samples taken so far, bad ones included.
+  /// The number of samples so far, including bad ones.
   std::uint64_t samples() const;
   std::uint64_t bad_samples() const;
 
@@ -40,32 +40,31 @@ class FilmSnapshot {
   std::shared_ptr<const Values> values_;
 };
 
-/// Its functions may be called from any thread: one lock guards all of them.
+/// All functions may be called from any thread; they are protected by a lock.
 class Film {
  public:
-  /// Of a prepared description, which may be gone or edited before the film is.
+  /// From a prepared ImageBuffer, which need not outlive the film.
   explicit Film(const ImageBuffer&, Estimator = Estimator::independent);
   ~Film();
   Film(const Film&) = delete;
   Film& operator=(const Film&) = delete;
 
   Estimator estimator() const;
-  /// Takes over a description that was prepared again, or another kind of algorithm. Keeps what was collected where that is
-  /// still valid, when only layers that need nothing further are wanted or not; else the film is empty then. Whether it was
-  /// kept.
+  /// Adopts an ImageBuffer that was prepared again, or another kind of algorithm. The sums are kept if they are still valid,
+  /// that is if the change concerns only layers that need no further sums; otherwise the film is emptied. Returns whether the
+  /// sums were kept.
   bool follow(const ImageBuffer&, Estimator);
   /// Empties the film.
   void clear();
 
-  /// Adds a tile to the step at hand. Throws Error, with the pixel, when a sum is beyond 1e288: the step should be dropped
-  /// then.
+  /// Adds a tile to the current step. Throws Error, with the pixel, if a sum exceeds 1e288: the step should then be dropped.
   void merge(const ImageTile&);
-  /// Adds the step at hand to the sums. Throws Error when there were too many (2^24) of them.
+  /// Ends the current step: adds it to the sums. Throws Error after too many (2^24) steps.
   void end_step();
-  /// Forgets the step at hand: all is as it was at the end of the last one.
+  /// Discards the current step: the film is as at the end of the last step.
   void drop_step();
 
-  /// What was collected, with the step at hand: each pixel is divided by its own number of samples.
+  /// A copy of the sums, including the current step: each pixel is divided by its own number of samples.
   FilmSnapshot snapshot() const;
   Image develop() const { return snapshot().develop(); }
   double relative_error() const { return snapshot().relative_error(); }
@@ -74,17 +73,17 @@ class Film {
   /// The first bad samples by row, pixel and sample, at most 32.
   std::vector<BadSample> first_bad_samples() const;
 
-  /// From now on keeps the n samples that brought most light. Not part of the state.
+  /// From now on keeps the n samples of largest luminance. They are not part of the saved state.
   void keep_largest(size_t n);
   size_t largest_kept() const;
-  /// Those, largest first.
+  /// The samples that were kept, in decreasing order.
   std::vector<LargeSample> largest_samples() const;
 
-  /// All state at the end of the last step: the same samples give the same bytes, and the same bytes restore the same film.
-  /// Loading forgets the step at hand, and throws Error when the bytes do not fit.
+  /// The state at the end of the last step: the same samples give the same bytes, and the same bytes restore the same film.
+  /// Loading discards the current step, and throws Error if the bytes are not the state of such a film.
   std::vector<std::byte> save_state() const;
   void load_state(std::span<const std::byte>);
-  /// Adds what another film of the same picture has collected, of other samples, in any order.
+  /// Adds the saved state of another film of the same image with other samples. The order of several calls does not matter.
   void add_state(std::span<const std::byte>);
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
-// ImageBuffer: the description of a picture to be taken. What collects its samples is a Film (film.h).
+// ImageBuffer: the description of the image to be rendered: size, filter, crop window, layers (the parameters of pbrt's and
+// Mitsuba's Film). The samples are accumulated by Film (film.h).
 
 #include <memory>
 #include <string>
@@ -20,7 +21,7 @@ struct PixelArea {
   bool operator==(const PixelArea&) const = default;
 };
 
-/// What follows from the description, as films and tiles use it.
+/// Data derived from the description, for films and tiles.
 struct PictureFormat;
 
 class ImageBuffer : public Component {
@@ -35,19 +36,19 @@ class ImageBuffer : public Component {
   Ref<Filter> filter;
   std::vector<int> crop;            ///< x0, y0, x1, y1 [pixels]; empty: all
   std::vector<std::string> layers;  ///< of "albedo", "normal", "depth", "object", "variance", "samples"
-  int path_lengths = 0;             ///< how many layers to keep by path length; the last holds all longer paths too
+  int path_lengths = 0;             ///< number of layers by path length; the last one includes all longer paths
 
   void prepare() override;
 
-  /// The pixels to be rendered.
+  /// The pixels of the result: the crop window, or all.
   const PixelArea& area() const;
-  /// The pixels to take samples of: those, and around a crop as many as the filter reaches, so that its pixels are the same as
-  /// in the whole picture.
+  /// The pixels that are sampled: `area`, and around a crop window a border as wide as the filter, so that the pixels of the
+  /// crop are the same as in the whole image.
   const PixelArea& sampled_area() const;
   bool wants_features() const;
   bool wants(const std::string& layer) const;
 
-  /// Never changes: preparing again makes another. Who holds it need not care whether the description lives or is edited.
+  /// Immutable: `prepare` makes a new one. It stays valid if the description is edited or destroyed.
   const std::shared_ptr<const PictureFormat>& format() const { return format_; }
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
-// ImageTile: samples of a part of the picture, collected by one thread without locks.
+// ImageTile: accumulates the samples of a part of the image, in one thread and without locks (FilmTile in pbrt-v3, ImageBlock
+// in Mitsuba).
 
 #include <cstdint>
 #include <memory>
@@ -12,11 +13,11 @@
 
 namespace etendue {
 
-/// Auxiliary layers a renderer may fill at the first surface a camera path meets.
+/// Auxiliary values (AOVs) at the first surface that a camera path hits.
 struct Features {
   Vector3 albedo;   ///< linear sRGB
   Vector3 normal;   ///< unit, world
-  float depth = 0;  ///< distance from the camera [m]; 0: nothing was met
+  float depth = 0;  ///< distance from the camera [m]; 0: no surface was hit
   int object = 0;   ///< 1 + index of the object in the scene; 0: nothing
 };
 
@@ -29,48 +30,48 @@ struct BadSample {
   bool operator<(const BadSample&) const;
 };
 
-/// A sample that brought much light to the picture: a firefly, perhaps.
+/// A sample of large luminance: possibly a firefly.
 struct LargeSample {
-  double luminance = 0;  ///< Y of the radiance it brought
+  double luminance = 0;  ///< Y of the sample's contribution
   int x = 0, y = 0;      ///< the pixel it belongs to
   std::uint32_t sample = 0;
-  Point2 film;         ///< where the light fell
-  bool splat = false;  ///< brought by a path from a luminaire
+  Point2 film;         ///< the film point of the contribution
+  bool splat = false;  ///< the contribution is a splat of a light subpath
 };
 
-/// How many samples of a pixel had features.
+/// Counts of a pixel's samples with features.
 struct FeatureCount {
-  std::uint32_t samples = 0, hits = 0;  ///< all of them, and those with a depth
-  std::uint32_t first = ~0u;            ///< the least of them,
-  std::int32_t object = 0;              ///< and what that met
+  std::uint32_t samples = 0, hits = 0;  ///< all samples with features, and those with a depth
+  std::uint32_t first = ~0u;            ///< the smallest sample index,
+  std::int32_t object = 0;              ///< and the object of that sample (Features::object)
   void add(const FeatureCount&);
 };
 
-/// Begun, filled and merged into a Film (film.h), again and again.
+/// Used in a cycle: begin, add samples, merge into a Film (film.h).
 class ImageTile {
  public:
-  /// Prepares for samples that fall into an area (empty: for splats alone); keeps its memory. `block`: 0, but for the default
-  /// step of camera paths. (A step of a crop covers many steps of the whole picture; they are told apart as blocks and summed
-  /// one after the other, so that its pixels are those of the whole picture to the bit.)
+  /// Empties the tile for samples of the pixels in an area (empty: for splats only); reuses its memory. `block` is 0, except in
+  /// the default step of camera paths: a step of a crop covers many steps of the whole image, which are numbered as blocks and
+  /// summed one after the other, so that the pixels of the crop equal those of the whole image to the bit.
   void begin(const ImageBuffer&, const PixelArea&, std::uint32_t block = 0);
-  /// From now on keeps the n samples that brought most light.
+  /// From now on keeps the n samples of largest luminance.
   void keep_largest(size_t n) { largest_wanted_ = n; }
 
-  /// Adds a sample at a film point (pixels; centres at half-integers), in the pixel (px, py) it belongs to. Bad values
-  /// are noted and count as zero.
-  /// `weight` says for how many samples it counts, beside the filter: a pixel is sum f weight value / sum f weight.
-  /// `parts`, when given, holds the parts of the value for the picture's layers: by path length, then by
-  /// light group, as PictureFormat counts them.
+  /// Adds a sample at a film point (in pixels; pixel centres are at half-integers) that belongs to the pixel (px, py). Bad
+  /// values are noted and count as zero. `weight` is the number of samples that it counts for, apart from the filter f: a
+  /// pixel's value is sum f weight value / E[sum f weight] (decision 013). `parts`, if given, holds the parts of the value for
+  /// the image's layers: by path length, then by light group, in the order of PictureFormat.
   void contribute(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, float weight = 1,
                   std::span<const Spectrum> parts = {});
-  /// Adds light that did not come through a pixel of its own (light tracing): what one path brings to the mean radiance over
-  /// the whole picture. To a pixel it brings f value W H / N, with f the filter there, W H the pixels of the whole picture, of
-  /// a crop too, and N all the paths that were counted (count_path). May lie anywhere in the picture. (px, py) and sample say
-  /// which sample brought it (those of one sample come one after the other), length how many segments its path had.
+  /// Adds a splat: a contribution at an arbitrary film point (light tracing), given as the contribution of one path to the mean
+  /// radiance over the whole image. It adds f value W H / N to a pixel, where f is the filter at the pixel, W H the number of
+  /// pixels of the whole image (also for a crop), and N the number of all counted paths (count_path). (px, py) and `sample`
+  /// identify the sample (the splats of one sample must be added consecutively), `length` is the SplatLabel: the number of
+  /// segments of the path, and its light group.
   void splat(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, int length);
-  /// The auxiliary values of a sample, when the picture wants any.
+  /// Adds the auxiliary values of a sample, if the image has such layers.
   void features(int px, int py, std::uint32_t sample, const Features&);
-  /// Counts the samples without light as well: call once for each sample path begun.
+  /// Counts a sample path for splats. Must be called once for each path, including those without contribution.
   void count_path() { ++paths_; }
 
  private:
@@ -80,7 +81,7 @@ class ImageTile {
     Point2 film;
     Xyz value;
     int length;
-    bool same_path;  // as the splat before
+    bool same_path;  // of the same sample as the splat before
   };
   void note(const BadSample&);
   void note_large(const LargeSample&);
@@ -91,13 +92,13 @@ class ImageTile {
 
   std::shared_ptr<const PictureFormat> format_;
   std::uint32_t block_ = 0;
-  PixelArea sampled_;                   // the pixels whose samples these are,
-  PixelArea area_, extent_;             // those of them that are in the picture, and all in the picture they count for
-  std::vector<double> light_;           // X Y Z and Y^2 by the filter, per pixel of the extent
-  bool lit_ = false;                    // whether any of it is not zero
-  std::vector<double> parts_;           // X Y Z per part and pixel of the extent
-  std::vector<std::uint32_t> samples_;  // in each pixel of the area
-  std::vector<double> weights_;         // what they count for beyond their number, when they do
+  PixelArea sampled_;          // the sampled pixels,
+  PixelArea area_, extent_;    // those of them in the image, and all pixels of the image that the samples contribute to
+  std::vector<double> light_;  // X Y Z and Y^2, weighted by the filter, per pixel of the extent
+  bool lit_ = false;           // whether any value of light_ is not zero
+  std::vector<double> parts_;  // X Y Z per part and pixel of the extent
+  std::vector<std::uint32_t> samples_;  // number of samples per pixel of the area
+  std::vector<double> weights_;         // sum of (weight - 1) per pixel of the area; empty if all weights are 1
   std::vector<double> features_;        // feature_values per pixel of the area
   std::vector<FeatureCount> feature_counts_;
   std::vector<LargeSample> largest_;

@@ -1,14 +1,14 @@
 #pragma once
-// What a splat says of the path that brought it: its length, and, where a picture keeps light groups, which group its luminaire
-// is in. Both stand in the one number that splats carry.
+// SplatLabel: the path length of a splat and, if the image has light groups, the light group of its luminaire, packed into one
+// number (the argument `length` of ImageTile::splat).
 
 namespace etendue {
 
 struct SplatLabel {
-  static constexpr int group_unit = 1 << 20;  ///< paths are shorter than that
+  static constexpr int group_unit = 1 << 20;  ///< upper limit of path lengths
 
-  int length = 0;  ///< segments
-  int group = -1;  ///< of PictureFormat::light_groups; -1: nobody told
+  int length = 0;  ///< number of segments
+  int group = -1;  ///< index in PictureFormat::light_groups; -1: unknown
 
   int packed() const { return length + (group + 1) * group_unit; }
   static SplatLabel unpacked(int number) {

@@ -16,7 +16,7 @@ class GuidedDirections final : public CameraDirections {
   GuidedDirections(const Guide& guide, bool notes) : guide_(guide), noting_(notes) {}
 
   Choice sample(const Walk<false>&, float choice, Point2 u) override;
-  float pdf(const Vertex&, const Vector3& out, const Vector3& in, float scatter) const override;
+  float pdf(const PathVertex&, const Vector3& out, const Vector3& in, float scatter) const override;
 
   /// What the guide is to learn from a walk, the only one that was sampled: `arrived[t]` is the light of all paths that have t
   /// vertices of it, weighted as in the picture. So the guide leads to what this walk is to find, and not to what is better

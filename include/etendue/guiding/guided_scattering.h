@@ -4,14 +4,14 @@
 // at surfaces and in media alike; specular lobes are chosen by scattering alone, with probability 1 - a.
 
 #include "etendue/guiding/guide.h"
-#include "etendue/transport/vertex.h"
+#include "etendue/transport/path_vertex.h"
 
 namespace etendue {
 
 class GuidedScattering {
  public:
   /// Of a walk that came from `out`.
-  GuidedScattering(const Guide& guide, const Vertex& v, const Vector3& out) : vertex_(v) {
+  GuidedScattering(const Guide& guide, const PathVertex& v, const Vector3& out) : vertex_(v) {
     if (!v.scatters_smoothly()) return;
     region_ = guide.region_of(v.point.position, facing(v, out));
     const Guide::Region& region = guide.region(region_);
@@ -80,13 +80,13 @@ class GuidedScattering {
 
  private:
   /// The side of a surface where a path came from; zero in media.
-  static Normal3 facing(const Vertex& v, const Vector3& out) {
+  static Normal3 facing(const PathVertex& v, const Vector3& out) {
     if (!v.on_surface()) return {};
     return dot(v.point.normal, out) < 0 ? -v.point.normal : v.point.normal;
   }
   float mixed(float guide, float scatter) const { return share_ * guide + (1 - share_) * scatter; }
 
-  const Vertex& vertex_;
+  const PathVertex& vertex_;
   std::uint32_t region_ = 0;
   float share_ = 0;  // a
   SeenLobes lobes_;  // of share_ > 0

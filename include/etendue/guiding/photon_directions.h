@@ -14,7 +14,7 @@ namespace etendue {
 class PhotonDirections {
  public:
   /// Of photons within `radius` that came to the side of the surface on which the walk came to x.
-  PhotonDirections(const PhotonMap& map, const Vertex& x, float radius) {
+  PhotonDirections(const PhotonMap& map, const PathVertex& x, float radius) {
     std::vector<PointTree::Near>& near = PointTree::near_on_this_thread();
     map.tree().nearest(x.point.position, radius, most, near);
     const Vector3 normal = on_side(Vector3(x.point.normal), x.out);

@@ -1,5 +1,5 @@
 #pragma once
-// The render description language: files into components and back.
+// The render description language (scene file format): parsing files into components, and writing components to files.
 
 #include <string>
 #include <utility>
@@ -10,39 +10,40 @@
 
 namespace etendue {
 
-/// What is said to importers, which read the files of other programs (etendue/importer.h).
+/// Options of importers, which read the files of other programs (etendue/importer.h).
 struct ImportOptions {
-  bool strict = false;                       ///< what cannot be expressed exactly is an error, not a warning
-  std::vector<std::string> allowed_folders;  ///< whose files a source may name, besides those in its own folder
-  double time = 0;                           ///< of what is animated [s]
+  bool strict = false;                       ///< anything that cannot be expressed exactly is an error, not a warning
+  std::vector<std::string> allowed_folders;  ///< folders from which files may be read, besides the imported file's own folder
+  double time = 0;                           ///< the time at which animated values are read [s]
 };
 
 struct LoadOptions {
   std::vector<std::pair<std::string, std::string>> defines;  ///< `-D name=value`: replace `param`s
-  bool allow_files = true;  ///< false: include, plugin and spectrum("file") are errors, for texts from strangers
+  bool allow_files = true;  ///< false: include, plugin and spectrum("file") are errors, for descriptions from untrusted sources
   ImportOptions import = {};
-  double frame = 0;       ///< what `frame` means in the description: which picture of a film it is read for
-  double time = 0;        ///< what `time` means [s]
-  bool animated = false;  ///< it is read once for each frame: there is a warning when it asks for neither
+  double frame = 0;       ///< the value of `frame` in the description: the index of the image in an animation
+  double time = 0;        ///< the value of `time` in the description [s]
+  bool animated = false;  ///< the description is read once for each frame: warns if it uses neither `frame` nor `time`
 };
 
-/// Any one component, such as "Sphere { radius: 2 m }", which definitions may precede; for tests and tools.
+/// Parses one component, such as "Sphere { radius: 2 m }", which may be preceded by definitions; for tests and tools.
 Ref<Component> parse_component(const std::string& text, const std::string& name = "text", const std::string& folder = {});
-/// Any value written as an expression.
+/// Parses a value written as an expression.
 Value parse_value(const std::string& text, const std::string& name = "text", const std::string& folder = {});
 
-/// Sets a member found by a path of names and list places from a component: "renderer.max_depth", "scene.objects[2].radius".
-/// The value is an expression; a bare word is taken as a string or choice when it names nothing.
+/// Sets a member, given by a path of member names and list indices from a component: "renderer.max_depth",
+/// "scene.objects[2].radius". The value is an expression; a bare word that is not a defined name is taken as a string or
+/// choice.
 void set_path(Component& root, const std::string& path, const std::string& expression);
 
-/// A render description that reads back as an equal component. What is used twice is written once and named. Only what
-/// differs from its default is written, or everything when `all`. File paths are rewritten relative to `folder` (empty:
-/// as they were written, made absolute if they came from elsewhere).
+/// A render description that reads back as an equal component. Components that are used twice are written once, with a name.
+/// Only members that differ from their defaults are written, or with `all` every member. File paths are rewritten relative to
+/// `folder` (empty: as they were written, and made absolute if they were relative to another folder).
 std::string write_description(const Component&, bool all = false, const std::string& folder = {});
 /// One value as an expression.
 std::string write_value(const Value&);
 
-/// The error with its place, the line it is in and a caret: what a person should see.
+/// The error message for the user: with its location, the line of the file and a caret.
 ///   box.etd:7:27: PathTracer has no member 'max_dept' (did you mean 'max_depth'?)
 ///       7 |     renderer: PathTracer { max_dept: 4 }
 ///         |                            ^

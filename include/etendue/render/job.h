@@ -1,5 +1,5 @@
 #pragma once
-// Job: all parts of a render, as they are described. A Render (render.h) runs it.
+// Job: the description of a whole render: renderer, camera, scene, film, outputs. A Render (render.h) runs it.
 
 #include <map>
 #include <string>
@@ -35,18 +35,19 @@ class Job final : public Component {
   double time_limit = 0;   ///< [s]; 0: none
   double error_limit = 0;  ///< relative standard error; 0: none
 
-  /// Texts that pictures carry, besides what is said of every one ("file_hash", …). Not described.
+  /// Entries that are written into the pictures' metadata, besides those that every picture has ("file_hash", …). Not a
+  /// described member.
   std::map<std::string, std::string> metadata;
 
   void before_prepare() override;
   void prepare() override;
   void prepare_again() override;
 
-  /// The point of the world that rendering coordinates count from, once it is prepared.
+  /// The origin of the rendering coordinates, as a point of world space. Valid once the job is prepared.
   const DoublePoint3& world_centre() const { return centre_; }
-  /// Whether preparing it anew would have the scene count from another point: the camera or the time was moved too far.
+  /// Whether preparing the job anew would choose another origin, because the camera or the time was moved too far.
   bool centre_is_stale() const;
-  /// Whether that point was found from the camera alone; else it is the middle of a scene that is far from the camera.
+  /// Whether the origin was chosen from the camera alone; otherwise it is the centre of a scene that is far from the camera.
   bool counts_from_camera() const { return centre_ == viewpoint_; }
 
  private:
@@ -55,11 +56,11 @@ class Job final : public Component {
   DoublePoint3 viewpoint() const;
 
   DoublePoint3 viewpoint_, centre_;
-  float opened_ = 0;  // the time at which the shutter opens, for which the scene counts from there [s]
+  float opened_ = 0;  // the time at which the shutter opens, for which the origin of the scene was chosen [s]
 };
 
-/// Reads a render description, or a file of another program that an Importer knows by its ending, whose differences are warned
-/// of; throws Errors with everything wrong that can be found in one run. Not prepared yet.
+/// Reads a render description, or a file of another program for whose extension there is an Importer; warns of what the
+/// importer could not represent exactly. Throws Errors with all errors that one run can find. The job is not prepared yet.
 Ref<Job> load_job(const std::string& path, const LoadOptions& = {});
 /// The same from a text; `name` stands for the file in messages, paths are relative to `folder`.
 Ref<Job> load_job_text(const std::string& text, const std::string& name, const std::string& folder = {},

@@ -1,12 +1,12 @@
 #pragma once
-// LearnedGuide: a guide that a process learns from the paths of its steps.
+// LearnedGuide: a path guide that a process trains with the paths of its own steps.
 //
-//     guide.begin_step(area, step, longest);               which paths teach
-//     const auto samples = film_paths<GuideSample>(…);     each asks `teaches`, and records what it found
+//     guide.begin_step(area, step, longest);               chooses the paths that are training paths
+//     const auto samples = film_paths<GuideSample>(…);     each path calls `teaches`, and records its training samples
 //     guide.learn(schedule, samples);
 //
-// Samples of a step see the guide of the steps before. They come in a fixed order, are sorted by region without changing it,
-// and each region learns from its own: the guide is the same for any number of threads.
+// The paths of a step use the guide as the steps before left it. The samples come in a fixed order and are sorted stably by
+// region, and each region is trained with its own samples: so the guide is the same for any number of threads.
 
 #include <vector>
 
@@ -16,7 +16,7 @@
 
 namespace etendue {
 
-/// The most that a guide takes.
+/// Describes the limit of a guide's memory.
 template <auto memory, class R, class... Conditions>
 Description<R>& describe_guide_memory(Description<R>& d, Conditions... when) {
   return d.template member<memory>("memory", "1",
@@ -27,13 +27,13 @@ Description<R>& describe_guide_memory(Description<R>& d, Conditions... when) {
 
 class LearnedGuide {
  public:
-  /// `memory`: what the guide, its saved states and the samples it learns from may take [bytes].
+  /// `memory`: the upper bound for the guide, its saved states and its training samples together [bytes].
   LearnedGuide(GuideSettings, size_t memory);
 
   const Guide& guide() const { return guide_; }
-  /// `longest`: samples of a path, at most.
+  /// `longest`: the largest number of training samples of one path.
   void begin_step(const PixelArea&, const Step&, int longest);
-  /// Whether it learns from a sample.
+  /// Whether the path of this sample is a training path.
   bool teaches(const SampleContext&) const;
   void learn(Schedule&, const std::vector<GuideSample>&);
 
@@ -41,16 +41,16 @@ class LearnedGuide {
   std::vector<std::byte> save() const { return guide_.save(); }
   void load(std::span<const std::byte> bytes) { guide_.load(bytes); }
 
-  /// Steps are to be smaller than usual: the sooner it begins to learn the better.
+  /// The samples per step of a renderer with a guide: fewer than usual, so that the guide is trained early.
   static std::uint32_t samples_per_step(std::uint32_t usual) { return std::max(usual / 64, 1u); }
 
  private:
-  const double room_;  // for samples
+  const double room_;  // memory for training samples, as their number
   Guide guide_;
-  std::uint64_t taught_ = 0;  // of 2^32 paths so many teach
+  std::uint64_t taught_ = 0;  // the probability of a path to be a training path, times 2^32
 };
 
-/// Whether directions are learned, and the memory it may take, in MiB.
+/// Describes the member that switches the guide on, and its memory in MiB.
 template <auto guided, auto memory, class R>
 void describe_guide(Description<R>& d) {
   d.template member<guided>("guided", "",

@@ -1,6 +1,6 @@
 #pragma once
-// PhotonProcess: what algorithms share whose camera paths use photons. Each step has photons of its own, which all its paths
-// share, and so all its paths have the same wavelengths and are of the same moment.
+// PhotonProcess: the common base of algorithms whose camera paths use photons. Each step has photons of its own that all its
+// paths share. Therefore all paths of a step have the same wavelengths and the same time.
 
 #include "etendue/render/photon_beams.h"
 #include "etendue/render/renderer.h"
@@ -12,19 +12,19 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
  public:
   using RenderProcess::RenderProcess;
 
-  // Once there are photons; without, paths share nothing.
+  // Shared by all paths of a step once it has photons; without photons each path has its own.
   Wavelengths wavelengths(SampleKey key, float u) const override {
     return shares_ ? wavelengths_ : RenderProcess::wavelengths(key, u);
   }
   float time(float u) const override { return shares_ ? time_ : RenderProcess::time(u); }
 
  protected:
-  /// Chooses the wavelengths and the moment of a step.
+  /// Samples the wavelengths and the time that the paths of a step share.
   void share(const Step&);
 
   struct Request {
-    std::uint64_t walks = 0;  ///< from luminaires; 0: one for each pixel
-    std::uint64_t most = 0;   ///< photons; where there would be more, each is kept with a chance
+    std::uint64_t walks = 0;  ///< light subpaths; 0: one for each pixel
+    std::uint64_t most = 0;   ///< photons; if more are expected, each is stored with a probability below 1
     SubpathLimits limits = {};
     PhotonKinds kinds = PhotonKinds::all;
     const ProjectionMap* targets = nullptr;  ///< see PhotonWalks
@@ -32,24 +32,28 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
     bool in_homogeneous_media = true;
     double radius = 0;                    ///< of the first step [m]
     double shrinking = 1;                 ///< a: see photons.h
-    const Heuristic* weighted = nullptr;  ///< how photons are weighted against connections; null: they are not
+    const Heuristic* weighted = nullptr;  ///< weights photons against connections; null: no weights
   };
+
+ public:
+  /// The photons of a step, which bidirectional_radiance merges with.
   struct Photons {
     PhotonMap map;
-    double walks = 0;                             ///< n, as far as their photons were kept
+    double walks = 0;                             ///< n, times the probability of a photon to be stored
     float surface_radius = 0, medium_radius = 0;  ///< [m]
     Merging merging;                              ///< n pi r^2 and n 4/3 pi r^3
-    float radius(const Vertex& v) const { return v.in_medium() ? medium_radius : surface_radius; }
-    /// Calls `visit(photon, n pi r^2 or n 4/3 pi r^3)` for those within the radius of a vertex from which nothing parts them.
+    float radius(const PathVertex& v) const { return v.in_medium() ? medium_radius : surface_radius; }
+    /// Calls `visit(photon, n pi r^2 or n 4/3 pi r^3)` for the photons within the radius of a vertex that are not occluded from
+    /// it.
     template <class Visit>
-    void near(const Scene& scene, const Vertex& v, const Visit& visit) const {
-      const auto pdf = float(v.in_medium() ? merging.medium : merging.surface);
+    void near(const Scene& scene, const PathVertex& v, const Visit& visit) const {
+      const auto merged = float(v.in_medium() ? merging.medium : merging.surface);
       map.within(v.point.position, radius(v), [&](const Photon& p) {
-        if (p.in_medium == v.in_medium() && !photon_occluded(scene, v, p, radius(v))) visit(p, pdf);
+        if (p.in_medium == v.in_medium() && !photon_occluded(scene, v, p, radius(v))) visit(p, merged);
       });
     }
-    /// Calls `visit(photon, t, n pi r^2)` for those in media within the radius of a ray's first `reach` [m] from which nothing
-    /// parts them, with the distance t along the ray.
+    /// Calls `visit(photon, t, n pi r^2)` for the photons in media within the radius of the ray's first `reach` [m] that are
+    /// not occluded from it; t is the distance along the ray.
     template <class Visit>
     void along(const Scene& scene, const Ray& ray, float reach, const Visit& visit) const {
       map.tree().along(ray.origin, ray.direction, reach, surface_radius, [&](std::uint32_t i, float t) {
@@ -61,10 +65,10 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
   };
   struct Beams {
     BeamMap map;
-    double walks = 0;  ///< n, as far as their beams were kept
+    double walks = 0;  ///< n, times the probability of a beam to be stored
     float radius = 0;  ///< r [m]
-    /// Calls `visit(beam, s, t, n times the width)` for those in a medium that pass a ray's first `reach` [m] there and from
-    /// which nothing parts it: see BeamMap::along.
+    /// Calls `visit(beam, s, t, n times the width)` for the beams in a medium that pass the ray's first `reach` [m] and are not
+    /// occluded from it: see BeamMap::along.
     template <class Visit>
     void along(const Scene& scene, const Medium& medium, const Ray& ray, float reach, NumberStream& numbers,
                const Visit& visit) const {
@@ -74,11 +78,13 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
       });
     }
   };
-  /// Makes photons of a step, after `share`. Requests of one step that differ in kinds have different numbers.
+
+ protected:
+  /// Traces the photons of a step, after `share`. Requests of one step with different kinds use different random numbers.
   Photons make_photons(Schedule&, const Step&, const Request&) const;
-  /// For people: some of several maps together, in proportion to what each has.
+  /// A subset of the photons of several maps for display, in proportion to the sizes of the maps.
   ShownPhotons some_of(std::initializer_list<const Photons*>, size_t most) const;
-  /// The same of beams, which are of walks of their own, through media that are the same everywhere.
+  /// Traces the beams of a step, by light subpaths of their own, through homogeneous media.
   Beams make_beams(Schedule&, const Step&, const Request&) const;
 
  private:
@@ -89,7 +95,7 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
   float time_ = 0;
 };
 
-/// `std::int64_t`s: how many walks and photons there are.
+/// Describes the numbers (`std::int64_t`) of light subpaths and of photons.
 template <auto walks, auto most, class R>
 Description<R>& describe_photons(Description<R>& d) {
   return d
@@ -101,7 +107,7 @@ Description<R>& describe_photons(Description<R>& d) {
                              range(1, 4e9), soft(1e5, 1e8), logarithmic);
 }
 
-/// `float`s: the radius of the first step, and how it shrinks.
+/// Describes the radius of the first step and its shrinking exponent (`float`s).
 template <auto radius, auto shrinking, class R>
 Description<R>& describe_shrinking_radius(Description<R>& d) {
   return d

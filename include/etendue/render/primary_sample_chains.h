@@ -1,12 +1,13 @@
 #pragma once
-// Chains of mutated numbers: what a step of a Metropolis renderer does whose paths are functions of numbers u in [0, 1).
+// Markov chains of primary samples: a step of a Metropolis renderer whose paths are functions of random numbers u in [0, 1).
 //
-// A chain goes on by large steps, all numbers drawn anew, or small ones, each moved a little
+// A chain proposes large steps, where all numbers are drawn anew, or small steps, where each is perturbed a little
 // (transport/primary_sample_vectors.h). Both are symmetric, so a proposal v is accepted with the probability
-//     a = min(1, I(v) / I(u)),
-// and u and v are both added to the film, weighted with 1 - a and a, and with what large steps are worth by themselves
-// (StateWeights in transport/metropolis.h). Each step of the render has chains of its own, that begin with paths of a pool
-// (ChainStarts): so its mean is the integral of F, whatever the number of mutations, and it depends on nothing before it.
+//     a = min(1, I(v) / I(u)).
+// Both u and v are added to the film, weighted with 1 - a and a; large steps are also weighted as independent samples
+// (StateWeights in transport/metropolis.h). Each step of the render has chains of its own, which start with paths of a
+// bootstrap pool (ChainStarts). So the expected value of a step is the integral of F for any number of mutations, and a step
+// does not depend on earlier steps.
 
 #include "etendue/describe/description.h"
 #include "etendue/render/renderer.h"
@@ -20,7 +21,7 @@ struct ChainSettings {
   bool even_errors = true;
 };
 
-/// Those, as members of a renderer.
+/// Describes these settings as members of a renderer.
 template <auto mutations, auto chains, auto bootstrap, auto large_steps, auto even_errors, class R>
 void describe_chain_starts(Description<R>& d) {
   d.group("Chains")
@@ -46,24 +47,24 @@ void describe_chains(Description<R>& d) {
                                soft(1e-3, 0.1), logarithmic);
 }
 
-/// Chains of whatever states. Called from many threads at once.
+/// The interface of Markov chains, whatever their states are. Called from many threads at once.
 class Chains {
  public:
   virtual ~Chains() = default;
-  /// The independent path of a seed.
+  /// Evaluates the independent path that a seed determines.
   virtual void draw(std::uint64_t seed, Arena&, const std::atomic<bool>* abort, Contribution&) const = 0;
-  /// One chain, that begins with the path of seed `first` and adds to the film what so many states are worth. `own_seed`: of
-  /// all it chooses further.
+  /// Runs one chain. It starts with the path of seed `first` and adds so many weighted states to the film. `own_seed`
+  /// determines all further random choices.
   virtual void run(std::uint64_t first, std::uint64_t own_seed, std::uint64_t states, const StateWeights&, const FilmWeights&,
                    ImageTile&, Arena&, const std::atomic<bool>* abort) const = 0;
 };
 
-/// Brings to the film, as splats that count as `paths` paths, what chains find with so many mutations for each. The film counts
-/// the paths if wanted; if not, something else must.
+/// Renders `paths` paths, with so many mutations for each, as splats. If `count_paths`, the film counts these paths; otherwise
+/// another process must count them.
 void run_chains(Schedule&, const ImageBuffer&, const ChainSettings&, const Chains&, std::uint64_t seed, std::uint64_t paths,
                 bool count_paths);
 
-/// F(u). Called from many threads at once.
+/// The path contribution F(u) as a function of primary samples. Called from many threads at once.
 class PathFunction {
  public:
   virtual void evaluate(const NumberSource&, Arena&, const std::atomic<bool>* abort, Contribution&) const = 0;
@@ -72,31 +73,32 @@ class PathFunction {
   ~PathFunction() = default;
 };
 
-/// The same with chains of numbers.
+/// run_chains with chains of primary samples.
 void mutate_primary_samples(Schedule&, const ImageBuffer&, const ChainSettings&, const PathFunction&, std::uint64_t seed,
                             std::uint64_t paths, bool count_paths);
 
 /// A process whose chains mutate the paths of another process.
 ///
-/// What paths of one and two segments bring (luminaires seen, and light straight from them) is better found by samples that are
-/// well spread over the film. A third process may find that, sample by sample; the chains carry the rest then.
+/// Paths of one and two segments (visible emitters, and direct light) are estimated better by samples that are well distributed
+/// over the film. A third process may render these, sample by sample; the chains then carry the remaining light.
 class MutatedPaths final : public RenderProcess, PathFunction {
  public:
-  static constexpr int direct_length = 2;  ///< the most segments of what counts as direct
+  static constexpr int direct_length = 2;  ///< the longest path, in segments, that counts as direct
 
-  /// `direct`: light of such paths as it tells it by length; null: the chains carry all. `held` is kept as long as the process.
+  /// `direct`: renders the paths up to `direct_length`, if it reports their lengths; null: the chains carry all light. `held`
+  /// is kept alive as long as the process.
   MutatedPaths(const Renderer&, const RenderContext&, const ChainSettings&, std::unique_ptr<RenderProcess> paths,
                std::unique_ptr<RenderProcess> direct, Ref<Renderer> held = nullptr);
 
   void prepare_step(Schedule&, const Step&) override;
   void step(Schedule&, const Step&) override;
-  Spectrum radiance(const Ray&, SampleContext&) const override;  ///< the direct light
-  CameraSample sample(int x, int y, std::uint32_t number, Arena&, const PathRequest&) const override;
+  Spectrum radiance(const Ray&, SampleContext&) const override;  ///< the direct light, from `direct_`
+  CameraSample sample(int x, int y, std::uint32_t number, Arena&, const PathSink&) const override;
 
  private:
   const ChainSettings settings_;
   const PixelArea area_;
-  const size_t lengths_;  ///< that are told apart, the last for all longer ones
+  const size_t lengths_;  ///< path lengths that are distinguished, the last for all longer ones
   const Ref<Renderer> held_;
   const std::unique_ptr<RenderProcess> paths_, direct_;
 

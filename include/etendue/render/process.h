@@ -1,9 +1,10 @@
 #pragma once
-// RenderProcess: a renderer at work. It goes in steps, each a range of samples of every pixel (a pass over the picture); what
-// it holds may change between them (photons, chains, a guide), and it has no bookkeeping: counting, showing, saving, stopping
-// and replaying is not its business.
+// RenderProcess: a renderer at work. It runs in steps, each a range of samples of every pixel (a pass over the picture). Its
+// own state may change between steps (photons, chains, a guide). It does no bookkeeping: counting, display, saving, stopping
+// and replay are the task of Render.
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -20,30 +21,22 @@ struct IndexRange {
   bool operator==(const IndexRange&) const = default;
 };
 
-/// A part of a render that is done as a whole: a pass over the picture.
+/// A part of a render that is finished or dropped as a whole: a pass over the picture.
 struct Step {
-  std::uint32_t number = 0;  ///< from 0, by its samples: the same however a render is divided among machines
+  std::uint32_t number = 0;  ///< from 0, determined by its samples: the same however a render is distributed over machines
   IndexRange samples;        ///< of every pixel
 };
 
-/// What a path from the camera brings to its own place on the film.
+/// The contribution of a camera path to its own film point.
 struct CameraSample {
   Point2 film;
   Spectrum value;
   Wavelengths wavelengths;
 };
 
-/// What of a path is to be filled beside its value, and what may end it early: as in SampleContext.
-struct PathRequest {
-  PathObserver observe = {};
-  std::vector<Splat>* splats = nullptr;
-  const std::atomic<bool>* abort = nullptr;
-  void* records = nullptr;
-};
-
-/// Its members change within prepare_step and step alone, outside of the work that a schedule runs; `radiance`, `path` and
-/// `sample` are called from many threads at once. A step that was given up leaves nothing: the process is thrown away, and a
-/// fresh one gets the state that was saved before the step, and prepares it again.
+/// Members change only within prepare_step and step, and there only outside of the work that a schedule runs; `radiance`,
+/// `path` and `sample` are called from many threads at once. A step that is aborted leaves nothing: the process is destroyed, a
+/// fresh process loads the state that was saved before the step, and prepares the step again.
 class RenderProcess {
  public:
   /// The renderer and all that the context refers to must outlive it.
@@ -55,45 +48,45 @@ class RenderProcess {
   const Renderer& renderer;
   const RenderContext context;
 
-  /// Makes what the samples of a step need: called before the step, and before a sample of it is replayed. It must depend on
-  /// the description, the seed, the step, and where Renderer::steps_depend says so on the steps before it, alone.
+  /// Computes what the samples of a step need. Called before the step, and before one of its samples is replayed. The result
+  /// may depend only on the description, the seed and the step, and, where Renderer::steps_depend is true, on the earlier
+  /// steps.
   virtual void prepare_step(Schedule&, const Step&) {}
-  /// Renders so many samples of every pixel. By default camera paths: for each pixel and sample a `path`, one contribution.
+  /// Renders the samples of every pixel that the step covers. By default these are camera paths: one `path` and one
+  /// contribution for each pixel and sample.
   virtual void step(Schedule&, const Step&);
-  /// Radiance [W m^-2 sr^-1 nm^-1] that arrives along a camera ray, one sample of it; by default Renderer::radiance.
+  /// A one-sample estimate of the radiance [W m^-2 sr^-1 nm^-1] along a camera ray; by default Renderer::radiance.
   virtual Spectrum radiance(const Ray&, SampleContext&) const;
 
-  /// What it has learned in the steps so far. Asked between steps only, and given to fresh processes alone: with the same bytes
-  /// the next steps are the same. Bytes that are none of its own are refused by an Error. Most have nothing; what a process
-  /// makes in prepare_step alone need not be saved.
+  /// The state learned in the steps so far. Called between steps only, and loaded only into fresh processes: with the same
+  /// bytes the next steps are the same. load_state throws Error for bytes that are not a state of this process. Most processes
+  /// have no state; what prepare_step alone computes need not be saved.
   virtual std::vector<std::byte> save_state() const { return {}; }
   virtual void load_state(std::span<const std::byte>) {}
 
-  /// The wavelengths of a path, by default the sampler's. A process whose paths share light (photons, reservoirs) may give all
-  /// of a step the same.
+  /// The wavelengths of a path, by default from the sampler. A process whose paths share light (photons, reservoirs) may return
+  /// the same wavelengths for all paths of a step.
   virtual Wavelengths wavelengths(SampleKey key, float u) const { return context.wavelengths.sample(key, u); }
 
-  /// When a path is [s], by default whenever the shutter is open. The same holds here: light that paths share is of one moment.
+  /// The time of a path [s], by default anywhere in the shutter interval. A process whose paths share light may return one time
+  /// for all paths of a step, too.
   virtual float time(float u) const { return context.camera.shutter_time(u); }
 
-  /// A path as a function of numbers: where on the film, within an area of it, through which point of the lens, when, with
-  /// which wavelengths, and then all that `radiance` draws. Whoever gives other numbers gets another path of this algorithm: a
-  /// Metropolis sampler may hold any of them. The arena is empty afterwards.
-  CameraSample path(const PixelArea& area, const NumberSource&, SampleKey, Arena&, const PathRequest& = {}) const;
-  /// The path of one sample of a pixel, as it is in the picture: what a replay shows. An algorithm whose samples are no such
-  /// paths (chains, for one) shows what it can of them, or throws Error with the reason.
-  virtual CameraSample sample(int x, int y, std::uint32_t number, Arena&, const PathRequest& = {}) const;
+  /// A path as a function of primary samples: these give the film point within an area, the lens point, the time, the
+  /// wavelengths, and then all choices in `radiance`. Other numbers give another path of the same algorithm, so a Metropolis
+  /// sampler may mutate each of them. The arena is empty afterwards.
+  CameraSample path(const PixelArea& area, const NumberSource&, SampleKey, Arena&, const PathSink& = {}) const;
+  /// The path of one sample of a pixel, as it is in the picture: for replay. An algorithm whose samples are not such paths
+  /// (Markov chains, for one) returns the nearest it can, or throws Error with the reason.
+  virtual CameraSample sample(int x, int y, std::uint32_t number, Arena&, const PathSink& = {}) const;
 
  protected:
-  /// The default step, and what its paths noted (SampleContext::record), in a fixed order: for algorithms that learn from the
-  /// paths they show.
+  /// Runs the default step and returns what its paths recorded (RecordList), in a fixed order: for algorithms that
+  /// learn from the paths they display.
   template <class T>
   std::vector<T> film_paths(Schedule& schedule, const Step& step) {
     std::vector<std::vector<T>> some(path_items(step));
-    film_paths(
-        schedule, step,
-        [](void* all, std::uint64_t item) -> void* { return &(*static_cast<std::vector<std::vector<T>>*>(all))[size_t(item)]; },
-        &some);
+    film_paths(schedule, step, [&](std::uint64_t item) { return RecordList(some[size_t(item)]); });
     std::vector<T> all;
     for (std::vector<T>& one : some)
       all.insert(all.end(), std::make_move_iterator(one.begin()), std::make_move_iterator(one.end()));
@@ -101,9 +94,9 @@ class RenderProcess {
   }
 
  private:
-  using RecordsOf = void* (*)(void* all, std::uint64_t item);
   size_t path_items(const Step&) const;
-  void film_paths(Schedule&, const Step&, RecordsOf, void* all);
+  /// `records_of(item)`: the list to which paths of an item of work append; empty: they append nothing.
+  void film_paths(Schedule&, const Step&, const std::function<RecordList(std::uint64_t item)>& records_of);
 };
 
 }  // namespace etendue

@@ -1,6 +1,6 @@
 #pragma once
-// Render: a Job being rendered. Whatever watches or drives a render, a program, a panel, a script, another machine, talks to it
-// alone.
+// Render: a Job being rendered. Programs, panels, scripts and other machines that watch or control a render use this interface
+// only.
 
 #include <functional>
 #include <iosfwd>
@@ -18,8 +18,8 @@ namespace etendue {
 /// How far a render is.
 struct Progress {
   std::uint32_t samples = 0, samples_wanted = 0;  ///< per pixel, in whole steps
-  double fraction = 0;                            ///< of the work, by whichever rule will stop it first
-  double seconds = 0;                             ///< spent on the steps
+  double fraction = 0;                            ///< of the work, by the limit that will probably stop the render first
+  double seconds = 0;                             ///< spent on its steps
   double seconds_left = 0;                        ///< estimated; negative: unknown
   double samples_per_second = 0;                  ///< over the whole picture
   double error = 0;                               ///< relative, see FilmSnapshot::relative_error; only if the job limits it
@@ -29,20 +29,20 @@ struct Progress {
 /// Why a render ended.
 enum class Ended : std::uint8_t { samples, time, error, interrupted, aborted };
 
-/// How this process runs a job: nothing of it changes the picture.
+/// How this program runs a job: none of these settings changes the picture.
 struct RenderSettings {
   int threads = 0;  ///< 0: all cores
-  /// Only these steps; how many there are follows from the picture's size and the samples.
+  /// Only these steps; their number follows from the picture's size and the samples.
   std::optional<IndexRange> steps = {};
-  /// Called while it renders, from whatever thread is at work, one at a time. It may look, stop and abort, but neither edit,
-  /// replay, save nor load.
+  /// Called during the render, from any of its threads, one call at a time. It may read the render, stop and abort it, but not
+  /// edit, replay, save or load.
   std::function<void(const Progress&)> on_progress = {};
   double progress_interval = 0.25;   ///< [s]
-  std::string checkpoint_file = {};  ///< where `run` keeps the state while it renders; empty: nowhere
-  double checkpoint_interval = 60;   ///< [s] at least from one writing to the next; 0: after every step
+  std::string checkpoint_file = {};  ///< where `run` saves its state while it renders; empty: nowhere
+  double checkpoint_interval = 60;   ///< [s] between two savings at least; 0: after every step
 };
 
-/// What a render held at a moment: independent of it, for any thread.
+/// A copy of the state of a render at one moment. It is independent of the render and may be used by any thread.
 struct RenderSnapshot {
   FilmSnapshot film;
   Progress progress;
@@ -51,18 +51,18 @@ struct RenderSnapshot {
   Image picture() const;
 };
 
-/// One member of a part of the job, and what it is to be.
+/// A new value for one member of a component of the job.
 struct Edit {
   Ref<const Component> component;
   std::string member;
   Value value;
 };
 
-/// One thread may step or run; all else may be asked at any time, from any thread.
+/// One thread may step or run; all other functions may be called at any time, from any thread.
 class Render {
  public:
-  /// Prepares the job; throws Errors with places. From now on the job is changed by `edit` alone, and no other Render is made
-  /// of it while this one is at work.
+  /// Prepares the job; throws Errors with their locations. From now on only `edit` may change the job, and no other Render of
+  /// it may be made while this one is running.
   explicit Render(Ref<Job>, RenderSettings = {});
   ~Render();
   Render(const Render&) = delete;
@@ -71,82 +71,81 @@ class Render {
   const Job& job() const;
   const RenderSettings& settings() const;
 
-  // ---- going on -------------------------------------------------------------------------------------------------------------
+  // ---- rendering -----------------------------------------------------------------------------------------------------------
 
-  /// Goes on from where it is until a rule of the job says stop, or somebody does. The picture depends on the description and
-  /// the seed alone. What a part throws comes out as an Error; the step at hand then leaves nothing.
+  /// Continues until a limit of the job is reached, or stop or abort is called. The picture depends on the description and the
+  /// seed alone. Exceptions of components are rethrown as Error; the current step then leaves nothing.
   Ended run();
-  /// Renders the next step. Says why, if it did not: all samples are there, or somebody said stop or abort.
+  /// Renders the next step. Returns the reason if it rendered none: all samples are done, or stop or abort was called.
   std::optional<Ended> step();
-  /// Asks what runs, or else runs next, to stop: after the step (`stop`), or now, within whatever paths it is at, and without
-  /// the step (`abort`). Safe in signal handlers.
+  /// Stops the current run, or else the next one: `stop` after the current step; `abort` at once, in the middle of its paths,
+  /// and without the step. Safe in signal handlers.
   void stop();
   void abort();
-  /// Begins anew, with other random numbers if a seed is given.
+  /// Starts over, with other random numbers if a seed is given.
   void restart(std::optional<std::uint64_t> seed = {});
 
-  // ---- looking --------------------------------------------------------------------------------------------------------------
+  // ---- progress and results ------------------------------------------------------------------------------------------------
 
   Progress progress() const;
   RenderSnapshot snapshot() const;
-  /// The picture so far, with metadata: that of a snapshot.
+  /// The picture of a snapshot, with metadata.
   Image picture() const { return snapshot().picture(); }
-  /// A picture as the job's tone map shows it now.
+  /// A picture after the job's current tone map.
   Image display(const Image& picture) const;
-  /// Writes all outputs of the job; the file name of one without a name comes from `default_stem`. Returns the paths written.
+  /// Writes all outputs of the job; an output without a file name gets one from `default_stem`. Returns the paths written.
   std::vector<std::string> write_outputs(const std::string& default_stem) const;
-  /// What collects the samples.
+  /// The film that collects the samples.
   Film& film();
   const Film& film() const;
-  /// How many samples of each pixel a step takes, the last of a render perhaps fewer.
+  /// Samples of each pixel per step; the last step of a render may have fewer.
   std::uint32_t samples_per_step() const;
-  /// The samples of each pixel that the picture holds, in order.
+  /// The samples of each pixel that the picture contains, in order.
   std::vector<IndexRange> samples_done() const;
 
   // ---- editing --------------------------------------------------------------------------------------------------------------
 
-  /// Sets members, all or none, between two steps; a step at hand is given up for it unless only the look changes. What the
-  /// edits concern is prepared again (Effect), no more, and the render goes on or begins anew: in any case to the picture that
-  /// a new render of the edited job has. Throws Error, with everything as it was, when a value or what it leads to is not
-  /// valid, or the component is no part of the job.
+  /// Sets members between two steps, either all or none. The current step is aborted for it, unless only the display changes.
+  /// Only components that the edits affect are prepared again (Effect). The render continues or starts over, whichever gives
+  /// the picture that a new render of the edited job would give. Throws Error, with everything unchanged, if a value or its
+  /// consequence is invalid, or the component is not part of the job.
   void edit(std::span<const Edit>);
   void edit(const Component&, const std::string& member, const Value&);
 
-  // ---- its state
-  // --------------------------------------------------------------------------------------------------------------
+  // ---- state ---------------------------------------------------------------------------------------------------------------
 
-  /// The state at the end of the last step, to go on from in another process: the same samples give the same bytes.
+  /// The state at the end of the last step, from which another process can continue: the same samples give the same bytes.
   void save(std::ostream&) const;
-  /// The same as a file, which is whole or as it was.
+  /// Saves to a file, which is written whole or stays unchanged.
   void save(const std::string& file) const;
-  /// Takes over a state of this job. Throws Error, before anything changes, when it is damaged, of something else, or holds too
-  /// much.
+  /// Replaces the state by a saved one of this job. Throws Error, before anything changes, if the state is damaged, belongs to
+  /// another job, or holds too many samples.
   void load(std::istream&);
   void load(const std::string& file);
-  /// Adds the samples of another process, which must not be here yet; in any order, to the same bits.
+  /// Adds samples that another process rendered and this one lacks; in any order, with bit-identical sums.
   void add(std::istream&);
-  /// Why the state could not be written to the settings' file the last time; empty: it could. A render goes on without.
+  /// Why the last checkpoint could not be written; empty: it could. The render continues without it.
   std::string checkpoint_failure() const;
 
-  // ---- single samples
-  // ---------------------------------------------------------------------------------------------------------
+  // ---- single samples ------------------------------------------------------------------------------------------------------
 
-  /// A process of the renderer at the step a sample is in, ready to be asked for it; made between two steps of the render, and
-  /// to be used while neither an edit nor another such process is made. Where steps depend all before it are rendered first.
+  /// A process of the renderer, prepared for the step that contains a sample. It is made between two steps of the render, and
+  /// may be used until the next edit or the next such process. If steps depend on each other, all earlier steps are rendered
+  /// first.
   std::unique_ptr<RenderProcess> start_at(std::uint32_t sample) const;
-  /// Renders one sample alone; returns its film point. Throws Error when there is no such pixel, or when the algorithm's
-  /// samples are not those of pixels.
+  /// Renders one sample alone and returns its film point. Throws Error if there is no such pixel, or if the algorithm's samples
+  /// do not belong to pixels.
   Point2 replay(int x, int y, std::uint32_t sample, PathRecord&) const;
 
-  struct Members;  ///< Render's own
+  struct Members;
 
  private:
   const std::unique_ptr<Members> m;
 };
 
-/// The texts that pictures of a job carry.
+/// The metadata that pictures of a job carry.
 std::map<std::string, std::string> picture_metadata(const Job&, std::uint32_t samples);
-/// Writes a picture as one of the job's outputs says, with the tone map that is its own or the job's. Returns the path.
+/// Writes a picture as one of the job's outputs describes, with the output's tone map or the job's. Returns the path.
 std::string write_output(const Job&, const Output&, const Image& picture, const std::string& default_stem);
 
 }  // namespace etendue

@@ -1,5 +1,5 @@
 #pragma once
-// Renderer (an integrator): an algorithm, as it is described. It starts a process that does the work.
+// Renderer (an integrator): the description of an algorithm. It starts a RenderProcess that does the work.
 
 #include <memory>
 
@@ -13,18 +13,18 @@
 
 namespace etendue {
 
-/// Light that a renderer cannot find in a scene, and what can.
+/// A kind of light that a renderer cannot find in a scene, and the renderers that can.
 struct Advice {
   PathClass kind;
   std::string lost;                  ///< "light of 'lamp' that 'ball' throws onto 'floor' (caustics)"
-  std::vector<std::string> instead;  ///< classes of renderers that find it; empty: nothing known does
+  std::vector<std::string> instead;  ///< classes of renderers that find it; empty: no known renderer does
 };
 
-/// What the mean of many renders is.
+/// How the expected value of a render is related to the correct picture.
 enum class Expectation : std::uint8_t {
-  unbiased,    ///< the truth, whatever the number of samples
-  consistent,  ///< the truth in the limit of many samples
-  biased,      ///< something near it
+  unbiased,    ///< correct for any number of samples
+  consistent,  ///< correct in the limit of many samples
+  biased,      ///< an approximation
 };
 
 class Renderer : public Component {
@@ -36,43 +36,42 @@ class Renderer : public Component {
   int samples = 64;  ///< per pixel
   Ref<Sampler> sampler;
   Ref<LightSampler> light_sampler;
-  float map_filter = 0;  ///< maps are averaged over so many pixels; a bias
+  float map_filter = 0;  ///< maps are averaged over this many pixels; a bias
 
-  /// A process of this renderer. It must be prepared, and stay as it is as long as the process runs.
+  /// A process of this renderer, which must be prepared and stay unchanged as long as the process runs.
   std::unique_ptr<RenderProcess> start(const RenderContext&) const;
 
-  /// Radiance [W m^-2 sr^-1 nm^-1] that arrives along a camera ray, one sample of it. All there is to say for an algorithm that
-  /// follows each ray by itself.
+  /// A one-sample estimate of the radiance [W m^-2 sr^-1 nm^-1] along a camera ray. An algorithm that treats each ray
+  /// independently overrides only this.
   virtual Spectrum radiance(const RenderContext&, const Ray&, SampleContext&) const;
 
-  /// How many samples of each pixel a step takes; `usual` is what fits the picture's size. A function of that and the members
+  /// Samples of each pixel per step; `usual` is the number that fits the picture's size. Depends on `usual` and the members
   /// alone.
   virtual std::uint32_t samples_per_step(std::uint32_t usual) const { return usual; }
-  /// Whether a step needs those before it: then no part of a render can be made by itself (RenderSettings::steps and
-  /// Render::add refuse it), and a replay renders all steps before.
+  /// Whether a step needs the steps before it. Then a part of a render cannot be made separately (RenderSettings::steps and
+  /// Render::add throw Error), and a replay renders all earlier steps.
   virtual bool steps_depend() const { return false; }
   virtual Expectation expectation() const { return Expectation::unbiased; }
-  /// Whether its samples bring light to other places of the film than their own (SampleContext::splat).
+  /// Whether its samples contribute to other film points than their own (SampleContext::splat).
   virtual bool splats() const { return false; }
-  /// How its samples depend on one another, which says what the film may tell of their error.
+  /// How its samples depend on one another, which determines how the film can estimate their error.
   virtual Estimator estimator() const { return Estimator::independent; }
-  /// What makes expectations differ from the truth, in words for the user: what `expectation` says, and `map_filter`. Empty:
-  /// nothing does.
+  /// A text for the user with the sources of bias: what `expectation` returns, and `map_filter`. Empty: there is no bias.
   std::string bias() const;
-  /// The kinds of light it finds, as its members are.
+  /// The kinds of light it finds, with its present members.
   virtual PathClasses finds() const { return all_paths; }
-  /// What it cannot find of any scene, in words for the user; empty: nothing is left out.
+  /// The kinds of light that it finds in no scene, as a text for the user; empty: it finds all.
   std::string limits() const;
-  /// What it cannot find of the light that a given scene has; empty: nothing is missed. Renderers for which this is empty
-  /// must agree.
+  /// The kinds of light that it misses in a given scene; empty: none. Renderers for which this is empty must converge to the
+  /// same picture.
   std::vector<Advice> misses(const SceneTraits&) const;
 
  protected:
   Renderer();
-  /// Of a renderer inside, whose samples this one takes: fails where the description says of them in there what only counts
-  /// out here, and would have no effect.
+  /// Throws Error if the description of a renderer within this one sets members about samples, which have no effect there
+  /// because this renderer takes the samples.
   void refuse_samples_of(const Renderer& inner) const;
-  /// What `start` makes, when sampler and light sampler are ready. By default a process that asks `radiance`.
+  /// Implements `start`, after the sampler and the light sampler are built. By default a process that calls `radiance`.
   virtual std::unique_ptr<RenderProcess> begin(const RenderContext&) const;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Schedule: work over all cores. An algorithm says what is to be done for each of many items; what comes of them is put
-// together in the order of items, so no result depends on threads.
+// Schedule: runs work on all cores. An algorithm gives a function of an item; the results are combined in the order of items,
+// so no result depends on threads.
 
 #include <atomic>
 #include <type_traits>
@@ -16,9 +16,9 @@ class Schedule {
   virtual ~Schedule() = default;
 
   /// Runs `work(item, tile, arena)` for items 0 … count-1 on all threads and adds the tiles to the film, in the order of items.
-  /// Work begins its tile (ImageTile::begin; an empty area for splats alone) and counts its paths. An item should take some
-  /// milliseconds; its arena is one thread's, and a path empties it (RenderProcess::path). A step may do this several times.
-  /// What work throws ends the step, which then leaves nothing.
+  /// The work calls ImageTile::begin (with an empty area if there are only splats) and counts its paths. An item should take
+  /// some milliseconds. Its arena belongs to one thread, and each path empties it (RenderProcess::path). A step may call this
+  /// several times. An exception of the work ends the step, which then leaves nothing.
   template <class Work>
   void film(std::uint64_t count, Work&& work) {
     using W = std::remove_reference_t<Work>;
@@ -28,9 +28,9 @@ class Schedule {
         &work);
   }
 
-  /// Runs `work(item, results, arena)`, which appends to its own std::vector<T>, and returns all that came, in the order of
-  /// items: photons, training samples. After an abort items are missing: ask `aborted()` before counting on their number. The
-  /// arena is emptied after each item.
+  /// Runs `work(item, results, arena)`, which appends to its own std::vector<T>, and returns the results of all items in order:
+  /// photons, training samples. After an abort items are missing: check `aborted()` before relying on their number. The arena
+  /// is emptied after each item.
   template <class T, class Work>
   std::vector<T> collect(std::uint64_t count, Work&& work) {
     struct Collection final : Results {
@@ -51,8 +51,8 @@ class Schedule {
     return std::move(collection.all);
   }
 
-  /// Both at once: `work(item, tile, results, arena)` fills a tile and appends to its results, for algorithms that learn from
-  /// the paths they show.
+  /// film and collect at once: `work(item, tile, results, arena)` fills a tile and appends to its results, for algorithms that
+  /// learn from the paths they display.
   template <class T, class Work>
   std::vector<T> film_and_collect(std::uint64_t count, Work&& work) {
     std::vector<std::vector<T>> some(count);
@@ -63,7 +63,8 @@ class Schedule {
     return all;
   }
 
-  /// Whether what is being done will be thrown away. Items that have not begun are then left out; long ones look at it, too.
+  /// Whether the current results will be dropped. Items that have not begun are then skipped; long items should check this,
+  /// too.
   bool aborted() const { return abort && abort->load(std::memory_order_relaxed); }
   const std::atomic<bool>* abort = nullptr;  ///< null: never
 
@@ -71,12 +72,12 @@ class Schedule {
   using FilmWork = void (*)(void* self, std::uint64_t item, ImageTile&, Arena&);
   virtual void film_items(std::uint64_t count, FilmWork, void* self) = 0;
 
-  /// What comes of items, of whatever type.
+  /// The interface to results of any type.
   class Results {
    public:
-    virtual void* make() = 0;                                                ///< a place for those of one item; any thread
-    virtual void fill(std::uint64_t item, void* results, Arena& arena) = 0;  ///< any thread
-    virtual void take(void* results) = 0;                                    ///< one item after the other, in order
+    virtual void* make() = 0;  ///< makes an empty container for one item; any thread
+    virtual void fill(std::uint64_t item, void* results, Arena& arena) = 0;  ///< runs one item; any thread
+    virtual void take(void* results) = 0;  ///< appends the results of one item; called in order
 
    protected:
     ~Results() = default;

@@ -1,18 +1,19 @@
 #pragma once
-// Virtual lights: vertices of walks from luminaires, taken for points that send on what came to them (Keller 1997, "Instant
-// radiosity"). A place z that scatters light towards the camera has, by n walks,
-//     L(z) = (light straight from luminaires) + 1/n sum_y f_z G(y, z) V f_y alpha_y,     G = |cos_y| |cos_z| / d^2
-// (without the cosines in media), the sum being over all their vertices y that scatter smoothly. All paths of a step share the
-// lights.
+// Virtual lights: vertices of light subpaths, treated as point sources of the light that they scatter (Keller 1997, "Instant
+// radiosity"). From n light subpaths, the radiance that a point z scatters towards the camera is
+//     L(z) = (direct light) + 1/n sum_y f_z G(y, z) V f_y alpha_y,     G = |cos_y| |cos_z| / d^2
+// (without the cosines in media), where the sum is over all subpath vertices y with non-delta lobes. All paths of a step share
+// the virtual lights.
 //
-// G has no bound, and lights near z make bright spots. So they bring the part
-//     w(y, z) = min(1, b / G(y, z))
-// alone. The rest, 1 - w, is found by letting the camera's walk go on from z (Kollig & Keller 2004, "Illumination in the
-// presence of weak singularities"): to what it comes to, y, is added what light straight from luminaires, other virtual lights,
-// and walks that go on from there bring, times 1 - w(y, z). Nothing is lost then, whatever b is, and G (1 - w) / p is bounded,
-// too; without, corners are too dark. Behind a place z the walk has 1 - w = 0 mostly, and ends.
+// G is unbounded, and lights near z make bright spots. So a virtual light contributes only the fraction
+//     w(y, z) = min(1, b / G(y, z)).
+// The remaining 1 - w is found by continuing the camera subpath from z (Kollig & Keller 2004, "Illumination in the presence of
+// weak singularities"): at the next vertex y, direct light, the other virtual lights, and the further continuation of the
+// subpath contribute, times 1 - w(y, z). Nothing is lost then for any b, and G (1 - w) / p is bounded, too; without this
+// compensation corners are too dark. At most vertices after z, 1 - w = 0, and the subpath ends.
 //
-// No virtual light stands on a mirror, and none is seen in one from z: there walks go on with all they carry.
+// Virtual lights are neither stored at specular vertices nor gathered there: at specular vertices the camera subpath continues
+// with its whole throughput.
 
 #include "etendue/render/photon_process.h"
 #include "etendue/transport/camera_walk.h"
@@ -24,18 +25,18 @@ namespace etendue {
 
 struct VirtualLight {
   SubpathVertex at;
-  int vertices = 0;                        ///< of its walk up to it, the luminaire's and its own included
-  const SceneObject* luminaire = nullptr;  ///< that its walk began at
+  int vertices = 0;                        ///< of its subpath, the emitter's vertex and its own included
+  const SceneObject* luminaire = nullptr;  ///< the emitter where its subpath began
 };
 
-/// Those of a step, with what they point to.
+/// The virtual lights of a step, with the memory they refer to.
 struct VirtualLights {
   std::vector<VirtualLight> lights;
   std::vector<std::unique_ptr<Arena>> memory;
   double walks = 0;  ///< n
 };
 
-/// What gathering light from them is told by a description.
+/// Settings for gathering virtual lights.
 struct VirtualLightSettings {
   int max_depth = 64, roulette_depth = 5;
   Heuristic heuristic = Heuristic::power;
@@ -45,20 +46,20 @@ struct VirtualLightSettings {
 
 class VirtualLightProcess : public PhotonProcess {
  public:
-  /// `nearest`: from where on a light that is faced squarely counts fully, in widths of a pixel where it is first seen (the
-  /// median over the picture).
+  /// `nearest`: the distance from which on a virtual light with both cosines 1 contributes fully, in widths of a pixel where it
+  /// is first seen (the median over the picture).
   VirtualLightProcess(const Renderer& r, const RenderContext& c, VirtualLightSettings s, float nearest)
       : PhotonProcess(r, c), settings_(s) {
     settings_.bound = 1 / square(nearest * seen_pixel_width(c));
   }
 
  protected:
-  /// Makes those of a step, after `share`.
+  /// Traces the virtual lights of a step, after `share`.
   VirtualLights make_lights(Schedule&, const Step&, std::uint64_t walks) const;
 
   const VirtualLightSettings& settings() const { return settings_; }
 
-  /// w, of places with these normals, which are 0 in media.
+  /// The weight w between points with these normals; normals are 0 in media.
   float part(const Point3& y, const Normal3& normal_y, const Point3& z, const Normal3& normal_z) const {
     const Vector3 d = y - z;
     const float squared = length_squared(d), distance = std::sqrt(squared);
@@ -69,11 +70,11 @@ class VirtualLightProcess : public PhotonProcess {
     return over < 1 ? over : 1;
   }
 
-  /// What a light brings to the last vertex of a walk: w f_z G V f_y alpha_y.
+  /// The contribution of a virtual light at the last vertex of a camera subpath: w f_z G V f_y alpha_y.
   template <class Walk>
   Spectrum light_from(const VirtualLight& y, const Walk& walk, NumberStream& numbers) const {
     SubpathVertex z;
-    static_cast<Vertex&>(z) = walk.vertex;
+    static_cast<PathVertex&>(z) = walk.vertex;
     z.throughput = Spectrum(1.0f);
     z.single = walk.sample.wavelengths.single();
     const float w = part(y.at.point.position, y.at.normal(), z.point.position, z.normal());
@@ -82,7 +83,8 @@ class VirtualLightProcess : public PhotonProcess {
     return c ? w * c->light : Spectrum();
   }
 
-  /// Light along a camera ray, one sample of it. `gather(walk)` adds what virtual lights bring to the walk's last vertex.
+  /// A one-sample estimate of the radiance along a camera ray. `gather(walk)` adds the virtual lights at the subpath's last
+  /// vertex.
   template <class Gather>
   Spectrum follow(const Ray& ray, SampleContext& sample, const Gather& gather) const {
     const LightSampler& luminaires = *renderer.light_sampler;
@@ -92,12 +94,12 @@ class VirtualLightProcess : public PhotonProcess {
       return walk.emitter_hit_weight(luminaires, settings_.heuristic, luminaire);
     };
     while (walk.next_vertex(met) && !walk.at_end()) {
-      const Vertex& v = walk.vertex;
+      const PathVertex& v = walk.vertex;
       const NumberStream::Bounce u = walk.next_bounce();
       const Spectrum whole = walk.throughput;
-      const bool smooth = v.scatters_smoothly(), gathered = !walk.specular;  // at the vertex before
-      // What virtual lights here bring to that is there already. Without compensation that is all there is, but for luminaires
-      // that the walk meets, which may lie behind panes.
+      const bool smooth = v.scatters_smoothly(), gathered = !walk.specular;  // at the previous vertex
+      // Virtual lights at this vertex already contribute to the previous vertex, with weight w; the walk carries the rest,
+      // 1 - w. Without compensation it carries only emitter hits, which may lie behind null-scattering surfaces.
       if (smooth && gathered && !v.subsurface_exit)
         walk.throughput *= settings_.compensate ? 1 - part(v.point.position, v.normal(), walk.from, walk.from_normal) : 0;
       if (smooth && !walk.throughput.black()) {
@@ -114,14 +116,14 @@ class VirtualLightProcess : public PhotonProcess {
   }
 
  private:
-  static bool enters_subsurface_of(const Vertex& v, const ScatterSample& next) {
+  static bool enters_subsurface_of(const PathVertex& v, const ScatterSample& next) {
     return v.on_surface() && !v.subsurface_exit && enters_subsurface(v.point, next);
   }
 
   VirtualLightSettings settings_;
 };
 
-/// Members of renderers by virtual lights, beside the number of walks.
+/// Describes the members of renderers with virtual lights, except the number of light subpaths.
 template <auto max_depth, auto roulette_depth, auto heuristic, auto nearest, auto compensate, class R>
 void describe_virtual_lights(Description<R>& d) {
   d.group("Paths");
@@ -139,7 +141,7 @@ void describe_virtual_lights(Description<R>& d) {
                                    "bias, and caustics are lost");
 }
 
-/// What they find. Of light that bodies and media send out, virtual lights know nothing.
+/// The path classes they find. Virtual lights do not carry the light of subsurface scattering and of emissive media.
 inline constexpr PathClasses compensated_virtual_lights_find =
     all_paths & ~(subsurface_light | emitting_media | delta_caustics | delta_caustics_in_mirrors);
 inline constexpr PathClasses bounded_virtual_lights_find = compensated_virtual_lights_find & ~area_caustics;

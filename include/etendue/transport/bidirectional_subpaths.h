@@ -1,17 +1,22 @@
 #pragma once
-// Two walks, one from the camera and one from a luminaire, and every way to make a path of them.
+// A subpath from the camera, a subpath from a luminaire, and every strategy that makes a path of them.
 //
-// With alpha the walks' throughputs and w the multiple-importance weight of a strategy among all that could have made the same
-// path (bidirectional_weight.h), the path of s vertices from the luminaire and t from the camera brings
+// A strategy (s, t) takes s vertices y_0 … y_{s-1} from the luminaire and t vertices z_0 … z_{t-1} from the lens. With alpha
+// the throughputs of the subpaths and w the multiple importance sampling weight of the strategy among all that can make the
+// same path (bidirectional_weight.h), its contribution is
 //     C_{s,t} = w_{s,t} alpha_s c_{s,t} alpha_t     (Veach 1997, section 10.1; connection.h).
-//   s = 0: the camera's walk meets a luminaire.      s = 1: a luminaire is sampled as seen from z_{t-1}.
-//   t = 1: the light's walk goes to the lens, and the light falls on the film where it does.
-// Merging: a photon that came by s vertices lies within r of z_{t-1}, and is taken to have come there (photons.h).
+//   s = 0: emitter hit. z_{t-1} lies on a luminaire.
+//   s = 1: next event estimation. A point of a luminaire is sampled as seen from z_{t-1}.
+//   t = 1: light tracing. y_{s-1} is connected to the lens, and the contribution is splatted where it falls on the film.
+//   other: y_{s-1} and z_{t-1} are connected.
+// Merging: a photon whose subpath has s vertices before it lies within r of z_{t-1} and is taken to lie there (photons.h).
 //
-//     BidirectionalSubpaths walks(context, lights, sample, heuristic);
-//     walks.from_camera(ray, limits, found);
-//     walks.from_luminaire(ray.time, limits);
-//     for each t: if (const auto light = walks.sample_luminaire(t)) found(*light);  …
+//     BidirectionalSubpaths paths(context, lights, sample, weights);
+//     paths.from_camera(ray, limits);
+//     paths.from_luminaire(ray.time, limits);
+//     for each t: if (const auto light = paths.next_event(t)) add_contribution(sample, *light, …);  …
+//
+// render/bidirectional.h is the estimator that sums all strategies.
 
 #include <optional>
 
@@ -22,36 +27,27 @@ namespace etendue {
 
 struct Photon;
 
-/// Light that one strategy found.
+/// The contribution of one path, made by one strategy.
 struct PathContribution {
   int s = 0, t = 0;  ///< vertices from the luminaire and from the camera
   bool merged = false;
-  Spectrum light;  ///< [W m^-2 sr^-1 nm^-1] of the sample, without the weight; for t = 1 as a Splat counts it
-  const SceneObject* luminaire = nullptr;  ///< that it comes from; null: a medium sent it
-  float weight = 1;
-  Point2 film = {};  ///< of t = 1: where it falls
-  /// Segments of the path. A photon takes the place of its own vertex and the camera's.
+  Spectrum light;                          ///< C / w [W m^-2 sr^-1 nm^-1]; for t = 1 the value of a Splat
+  const SceneObject* luminaire = nullptr;  ///< null: emitted by a medium
+  float weight = 1;                        ///< w
+  Point2 film = {};                        ///< of t = 1: where it is splatted
+  /// Segments of the path. A merged photon and z_{t-1} are one vertex.
   int length() const { return s + t - 1; }
 };
 
-/// Who is told of what the camera's walk finds while it grows.
-struct LightListener {
-  virtual void found(const PathContribution&) = 0;
-
- protected:
-  ~LightListener() = default;
-};
-
-/// One at a time on each thread: its walks live in the thread's own memory.
+/// At most one per thread at a time: its vertices are stored in memory of the thread that is used again.
 class BidirectionalSubpaths {
  public:
   BidirectionalSubpaths(const RenderContext&, const LightSampler&, SampleContext&, const StrategyWeights&);
 
-  /// Lets the camera's walk grow; whoever chooses its directions (SubpathLimits) is in the weights from then on. `listener`
-  /// hears of light that media send (s = 0) and of luminaires passed straight through; those at the walk's vertices are for
-  /// `meet`.
-  void from_camera(const Ray&, const SubpathLimits&, LightListener&);
-  /// Lets the light's walk grow, by numbers of its own ("light"); after the camera's. It has no vertices when no light leaves.
+  /// Traces the camera subpath. The distribution that chooses its directions (SubpathLimits) is part of all weights after this.
+  void from_camera(const Ray&, const SubpathLimits&);
+  /// Traces the light subpath with its own stream of primary samples ("light"); call it after `from_camera`. It has no vertices
+  /// when no light is emitted in the sampled direction.
   void from_luminaire(float time, const SubpathLimits&);
 
   int camera_vertices() const { return int(camera_.size()); }
@@ -60,41 +56,46 @@ class BidirectionalSubpaths {
   const SubpathVertex& camera_vertex(int t) const { return camera_[size_t(t - 1)]; }
   const SubpathVertex& light_vertex(int s) const { return light_[size_t(s - 1)]; }
   const std::vector<SubpathVertex>& camera_subpath() const { return camera_; }
-  /// Whether mirrors and clear surfaces alone lie between the lens and z_{t-1}.
+  /// Whether all vertices between the lens and z_{t-1} scatter specularly.
   bool has_specular_prefix(int t) const;
   const Wavelengths& light_wavelengths() const { return light_wavelengths_; }
 
-  /// s = 0: z_{t-1} lies on a luminaire, or sees those at infinity.
-  void meet(int t, LightListener&) const;
+  /// s = 0, along the segments of the camera subpath: emission of media, and emitters whose surface only scatters null.
+  std::span<const PathContribution> segment_emission() const { return segment_emission_; }
+  /// s = 0: z_{t-1} lies on a luminaire, or the ray escapes to those at infinity. Valid until the next call.
+  std::span<const PathContribution> emitter_hits(int t) const;
   /// s = 1.
-  std::optional<PathContribution> sample_luminaire(int t) const;
+  std::optional<PathContribution> next_event(int t) const;
   /// s > 1, t > 1.
   std::optional<PathContribution> connect(int s, int t) const;
-  /// t = 1.
+  /// t = 1. s = 1: the point of the luminaire itself, as the camera sees it.
   std::optional<PathContribution> connect_to_lens(int s) const;
-  /// Of a photon that lies within r of z_{t-1}.
+  /// A photon within r of z_{t-1}.
   std::optional<PathContribution> merge(const Photon&, int t) const;
 
-  /// For people: both walks, when the sample is recorded.
+  /// Stores both subpaths in the sample's PathRecord, if it has one.
   void record() const;
 
  private:
-  void meet_at(const SubpathVertex&, const SurfacePoint& luminaire, int t, LightListener&) const;
-  /// The density of a walk's vertex before its last, `count` vertices long, had a walk come from `from` through the last.
-  float before_from(const std::vector<SubpathVertex>& walk, int count, const Vector3& from, Transport) const;
+  void add_emitter_hit(const SubpathVertex&, const SurfacePoint& luminaire, int t, std::vector<PathContribution>&) const;
+  void add_emitter_hits(int t, std::vector<PathContribution>&) const;
+  /// The pdf [vertex_pdf] of the vertex before the last of a subpath's first `count` vertices, sampled from the other side: by
+  /// a walk that comes from the direction `from` and is scattered at the last.
+  float before_from(const std::vector<SubpathVertex>& subpath, int count, const Vector3& from, Transport) const;
 
   const RenderContext& context_;
   const LightSampler& lights_;
   SampleContext& sample_;
   const StrategyWeights weights_;
   std::vector<SubpathVertex>&camera_, &light_;
+  std::vector<PathContribution>&segment_emission_, &hits_;
   Wavelengths light_wavelengths_;
   const EmissionPlane front_;
   CameraDirections* directions_ = nullptr;
-  float direct_ = 0;  ///< density of y_0 when it is sampled as seen from y_1
+  float y0_pdf_next_event_ = 0;  ///< pdf of y_0 when it is sampled as seen from y_1
 };
 
-/// Tells a sample of light that was found: its value, or a splat, and whoever observes it.
+/// Adds a weighted contribution to the sample's radiance, or splats it (t = 1), and passes it to the sample's PathSink.
 void add_contribution(SampleContext&, const Wavelengths& of_light, const PathContribution&, Spectrum& radiance);
 
 }  // namespace etendue

@@ -40,7 +40,7 @@ class CameraWalk : public Walk<clear> {
   CameraWalk(const Scene& scene_, SampleContext& sample_, const Ray& ray_, int longest_)
       : Base(scene_, sample_, ray_, longest_), memory_(sample_.arena.mark()), one_luminaire_(scene_.luminaires().size() == 1) {
     this->collects_light = true;
-    this->observed = sample.observe.features || sample.observe.record;
+    this->observed = sample.sink.features || sample.sink.record;
     if (!clear && scene.has_interiors()) media_at(scene, ray.origin, ray.time, this->media);
   }
 
@@ -57,7 +57,7 @@ class CameraWalk : public Walk<clear> {
       earlier = radiance;
       if (!exits_subsurface_) return false;
       exits_subsurface_ = goes_on_ = false;  // it came to the vertex through a body
-      sample.observe.surface(vertex.point, placed(throughput));
+      sample.sink.surface(vertex.point, placed(throughput));
       return true;
     }
     if ((length & 31) == 31 && sample.aborted()) return false;
@@ -66,19 +66,19 @@ class CameraWalk : public Walk<clear> {
     settle(!blocked);
     earlier = radiance;
     goes_on_ = false;
-    if (!this->come_to_vertex(found, Listener<Weight>{{}, *this, weight})) return false;
+    if (!this->come_to_vertex(found, Events<Weight>{{}, *this, weight})) return false;
     if (vertex.in_medium()) {
-      sample.observe.medium(vertex.point.position, placed(throughput));
+      sample.sink.medium(vertex.point.position, placed(throughput));
     } else if (vertex.on_surface()) {
-      sample.observe.surface(vertex.point, placed(throughput));
+      sample.sink.surface(vertex.point, placed(throughput));
       if (length == 1)
-        sample.observe.first_surface(scene, vertex.point, this->hit, vertex.scatter, vertex.out, sample.wavelengths,
-                                     this->null_crossed_distance);
+        sample.sink.first_surface(scene, vertex.point, this->hit, vertex.scatter, vertex.out, sample.wavelengths,
+                                  this->null_crossed_distance);
       if (vertex.point.object->luminaire()) add_luminaire(weight);
     } else {
       for (const SceneObject* far : scene.infinite_luminaires(ray)) {
         far->surface_point(ray, this->hit, vertex.point);
-        sample.observe.escape(*far, ray, placed(throughput));
+        sample.sink.escape(*far, ray, placed(throughput));
         add_luminaire(weight);
       }
       return false;
@@ -136,7 +136,7 @@ class CameraWalk : public Walk<clear> {
   }
   /// The same in a direction that was chosen already: by `sample_direction`, or by somebody else (scattered_towards).
   [[gnu::always_inline]] bool go_on(const ScatterSample& next) {
-    sample.observe.scattered(next);
+    sample.sink.scattered(next);
     if (!clear && next.lobe == null_scattering) {
       this->pass_on(next);
       return goes_on_ = true;
@@ -158,7 +158,7 @@ class CameraWalk : public Walk<clear> {
   void add_light(int segments_before, const Spectrum& light) {
     const Spectrum here = placed(throughput * light);
     radiance += here;
-    sample.observe.light(length + segments_before, here);
+    sample.sink.light(length + segments_before, here);
   }
   /// The place among the path's wavelengths of the only one that a branch follows; -1: it follows no single one.
   int lane() const { return lane_; }
@@ -237,7 +237,7 @@ class CameraWalk : public Walk<clear> {
   /// The context of a branch, which has its own numbers and wavelengths.
   SampleContext context_of(Wavelengths& wavelengths, const NumberStream& branch_numbers) const {
     const SampleContext& s = sample;
-    return {wavelengths, branch_numbers, s.arena, s.observe, s.splats, s.abort, s.records};
+    return {wavelengths, branch_numbers, s.arena, s.sink};
   }
 
   template <class Follow>
@@ -272,7 +272,7 @@ class CameraWalk : public Walk<clear> {
   template <class Follow>
   void follow_from_here(CameraWalk& branch, const ScatterSample& next, const Follow& follow) {
     if (branch.go_on(next)) radiance += follow(branch);
-    sample.observe.surface(vertex.point, placed(throughput));  // what follows is told from here on
+    sample.sink.surface(vertex.point, placed(throughput));  // what follows is told from here on
   }
 
   /// Of what a walk had where it was first sent both ways, its branches go on together, in the mean, as one where they have
@@ -297,12 +297,12 @@ class CameraWalk : public Walk<clear> {
   }
 
   template <class Weight>
-  struct Listener : NoListener {
+  struct Events : NoEvents {
     CameraWalk& walk;
     const Weight& weight;
     void emitted(const Spectrum& light) const { walk.add(walk.length, walk.placed(light), nullptr); }
     void crossed_luminaire() const {
-      walk.sample.observe.surface(walk.vertex.point, walk.placed(walk.throughput));
+      walk.sample.sink.surface(walk.vertex.point, walk.placed(walk.throughput));
       walk.add_luminaire(weight);
     }
     void through(const Medium& medium, float reach) const {
@@ -312,7 +312,7 @@ class CameraWalk : public Walk<clear> {
 
   [[gnu::always_inline]] void add(int segments, const Spectrum& light, const SceneObject* luminaire) {
     radiance += light;
-    report_light(sample.observe, segments, light, luminaire);
+    report_light(sample.sink, segments, light, luminaire);
   }
 
   template <class Weight>
@@ -322,7 +322,7 @@ class CameraWalk : public Walk<clear> {
     if (light.black()) return;
     const float w = weight(vertex.point);
     add(length, light * w, vertex.point.object);
-    sample.observe.emitter_hit(light * w, length, w);
+    sample.sink.emitter_hit(light * w, length, w);
   }
 
   /// Adds the light that waited for its shadow ray. Whether it comes cannot be guessed, so nothing hangs on it.
@@ -330,7 +330,7 @@ class CameraWalk : public Walk<clear> {
     if (!awaits_) return;
     awaits_ = false;
     add(direct_length_, lit ? direct_.light : Spectrum(), direct_.luminaire);
-    if (lit) sample.observe.next_event(direct_.light, direct_length_, direct_.weight);
+    if (lit) sample.sink.next_event(direct_.light, direct_length_, direct_.weight);
   }
 
   bool goes_on_ = true, exits_subsurface_ = false, awaits_ = false;

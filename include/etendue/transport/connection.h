@@ -49,7 +49,8 @@ struct LensConnection {
   float mean_transmittance = 1;
 };
 
-/// Of a vertex of a walk from a luminaire with the lens. `wavelengths` are those of that walk.
+/// Between a vertex of a light subpath, or its first point on a luminaire, and the lens. `wavelengths` are those of the
+/// subpath.
 std::optional<LensConnection> connect_to_lens(const RenderContext&, const SubpathVertex& y, const Wavelengths&, NumberStream&,
                                               Arena&);
 

@@ -3,7 +3,7 @@
 
 #include "etendue/light_sampler.h"
 #include "etendue/transport/multiple_importance.h"
-#include "etendue/transport/vertex.h"
+#include "etendue/transport/path_vertex.h"
 
 namespace etendue {
 
@@ -48,7 +48,7 @@ template <class Scattering, class Leave>
 
 /// What a vertex of a camera path scatters from a direction, and the density with which it sends the path there itself.
 struct ScatteringOf {
-  const Vertex& vertex;
+  const PathVertex& vertex;
   [[gnu::always_inline]] ScatterValue operator()(const Vector3& in) const {
     return scattering(vertex, vertex.out, in, Transport::radiance);
   }
@@ -57,7 +57,7 @@ struct ScatteringOf {
 /// From a path's vertex. Light of a luminaire that scattering can meet as well is weighted against that: see
 /// CameraWalk::add_direct.
 template <class Scattering>
-[[gnu::always_inline]] inline bool sample_next_event(const Scene& scene, const LightSampler& lights, const Vertex& vertex,
+[[gnu::always_inline]] inline bool sample_next_event(const Scene& scene, const LightSampler& lights, const PathVertex& vertex,
                                                      float time, const Wavelengths& wavelengths, float choice, Point2 u,
                                                      Heuristic heuristic, DirectLight& direct, const Scattering& scattering) {
   return sample_next_event_from(scene, lights, vertex.point.position, vertex.normal(), time, wavelengths, choice, u, heuristic,

@@ -21,7 +21,7 @@ class IrradiancePoints {
 
   /// Irradiance [W/(m^2 nm)] at the point nearest to a vertex whose surface is turned as the vertex's on the side of `out`;
   /// null: there is none within `farthest`.
-  const Spectrum* at(const Vertex&) const;
+  const Spectrum* at(const PathVertex&) const;
 
  private:
   struct Point {

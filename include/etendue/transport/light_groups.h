@@ -48,7 +48,7 @@ class LightParts {
   LightParts& operator=(const LightParts&) = delete;
 
   void clear();
-  /// For PathObserver::lengths. Empty when neither lengths nor groups are wanted.
+  /// For PathSink::lengths. Empty when neither lengths nor groups are wanted.
   std::span<Spectrum> lengths();
   /// For ImageTile::contribute.
   std::span<const Spectrum> all() const;
@@ -67,19 +67,19 @@ class LightParts {
 };
 
 /// Light, a part of the sample's own value, that came by a path of so many segments from a luminaire (null: from none, such as
-/// that of a medium). In place of PathObserver::light, where that is known.
-[[gnu::always_inline]] inline void report_light(PathObserver& observe, int length, const Spectrum& light,
+/// that of a medium). In place of PathSink::light, where that is known.
+[[gnu::always_inline]] inline void report_light(PathSink& sink, int length, const Spectrum& light,
                                                 const SceneObject* luminaire) {
-  if (observe.lengths.empty()) [[likely]]
+  if (sink.lengths.empty()) [[likely]]
     return;
-  observe.light(length, light);
+  sink.light(length, light);
   LightParts::add(luminaire, light);
 }
 
 /// The same of light that is brought to another place of the film.
 inline void splat_light(SampleContext& sample, Point2 film, const Spectrum& light, const Wavelengths& w, int length,
                         const SceneObject* luminaire) {
-  if (sample.splats) sample.splat(film, light, w, LightParts::label(length, luminaire).packed());
+  if (sample.sink.splats) sample.sink.splat(film, light, w, LightParts::label(length, luminaire).packed());
 }
 
 }  // namespace etendue

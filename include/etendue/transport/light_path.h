@@ -31,7 +31,7 @@
 
 namespace etendue {
 
-struct PathVertex : SubpathVertex {
+struct ChainVertex : SubpathVertex {
   double from_light = 0, from_camera = 0;  ///< L and E
   // Of a specular one:
   Lobe lobe = specular_reflection;  ///< by which light is sent on
@@ -41,10 +41,10 @@ struct PathVertex : SubpathVertex {
 };
 
 struct LightPath {
-  std::vector<PathVertex> x;  ///< `out` is unit, from each but the last to the next
-  Wavelengths wavelengths;    ///< those it began with
-  Wavelengths seen;           ///< those that are left: the hero alone where a vertex is dispersive
-  Spectrum f;                 ///< times `scale`, which keeps it in the range of floats
+  std::vector<ChainVertex> x;  ///< `out` is unit, from each but the last to the next
+  Wavelengths wavelengths;     ///< those it began with
+  Wavelengths seen;            ///< those that are left: the hero alone where a vertex is dispersive
+  Spectrum f;                  ///< times `scale`, which keeps it in the range of floats
   double scale = 1;
   Point2 film;
   Point2 lens;             ///< the numbers that gave the point of the lens
@@ -66,7 +66,7 @@ struct LightPath {
 /// Where paths are made, and changed into others.
 class PathSpace {
  public:
-  using Walk = std::vector<PathVertex>;
+  using Walk = std::vector<ChainVertex>;
   PathSpace(const RenderContext& c, const LightSampler& l) : context(c), lights(l), time(c.camera.shutter_open) {}
 
   const RenderContext& context;
@@ -79,10 +79,10 @@ class PathSpace {
   /// Makes anew, in another arena, what a path's vertices point to.
   void move(LightPath&, Arena& to) const;
   /// The lens of y.
-  PathVertex lens(const LightPath& y) const;
+  ChainVertex lens(const LightPath& y) const;
 
   /// What a ray meets that leaves a vertex in a direction. False: nothing that scatters.
-  bool follow(const PathVertex& from, const Vector3& direction, LightPath& y, PathVertex& to) const;
+  bool follow(const ChainVertex& from, const Vector3& direction, LightPath& y, ChainVertex& to) const;
   /// The direction of the camera ray through a film point.
   Vector3 camera_direction(Point2 film, const LightPath& y) const;
   /// Follows a ray that leaves the last vertex of `walk` in a direction by these specular lobes, adds what it meets, and
@@ -110,7 +110,7 @@ class PathSpace {
   /// smoothly.
   static double pdf(const LightPath&, int l, int r);
   /// Such vertices between the last of y and the first of `rest`, and the rest. False: there are none, or f is 0.
-  bool join(LightPath& y, const std::vector<PathVertex>& rest, int r, ChoiceNumbers&) const;
+  bool join(LightPath& y, const std::vector<ChainVertex>& rest, int r, ChoiceNumbers&) const;
   /// A walk from a luminaire and one from the lens, both as long as they go, and the paths that they make in all ways, of
   /// `shortest` to `longest` segments: `visit(path, likely)` hears of each that brings light. With D the density of a path that
   /// one way makes, all being alike likely, the expectation of the sum of h(path) / (likely D(path)) is the integral of h, for

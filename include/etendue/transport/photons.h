@@ -51,7 +51,7 @@ inline Spectrum carried(const Photon& p, const Carrying& to) { return carried(p.
 
 /// What of a photon's light goes on from a vertex near it: f alpha [W/(sr nm)] on a surface; in a medium phase alpha / s_s
 /// [W m/(sr nm)], since the throughput of the walk that came there holds s_s, too. To be divided by n pi r^2 or n 4/3 pi r^3.
-Spectrum scattered_from_photon(const Vertex& at, const Photon&, const Carrying&);
+Spectrum scattered_from_photon(const PathVertex& at, const Photon&, const Carrying&);
 
 /// A surface's normal on the side of a direction.
 inline Vector3 on_side(const Vector3& normal, const Vector3& direction) {
@@ -64,7 +64,7 @@ inline Vector3 on_side(const Vector3& normal, const Vector3& direction) {
 bool photon_occluded(const Scene&, const Point3& a, const Vector3& normal_a, float time, const Point3& b,
                      const Vector3& normal_b, float radius);
 /// The same of a photon within `radius` of a vertex.
-inline bool photon_occluded(const Scene& scene, const Vertex& v, const Photon& p, float radius) {
+inline bool photon_occluded(const Scene& scene, const PathVertex& v, const Photon& p, float radius) {
   if (p.in_medium) return photon_occluded(scene, v.point.position, {}, v.point.time, p.position, {}, radius);
   return photon_occluded(scene, v.point.position, on_side(Vector3(v.point.normal), p.out), v.point.time, p.position,
                          on_side(p.surface_normal(), p.out), radius);

@@ -100,7 +100,7 @@ struct RayTree {
 
   void add(int length, const Spectrum& light, const SceneObject* luminaire) {
     radiance += light;
-    report_light(sample.observe, length, light, luminaire);
+    report_light(sample.sink, length, light, luminaire);
   }
 };
 

@@ -17,13 +17,13 @@
 #include <vector>
 
 #include "etendue/camera.h"
+#include "etendue/transport/path_vertex.h"
 #include "etendue/transport/sample_context.h"
-#include "etendue/transport/vertex.h"
 
 namespace etendue {
 
 /// A vertex of such a walk. What it points to lies in the sample's arena.
-struct SubpathVertex : Vertex {
+struct SubpathVertex : PathVertex {
   bool specular = false;         ///< the walk left it by a specular lobe
   bool infinite = false;         ///< a luminaire at infinity, or an escaped ray
   bool single = false;           ///< the throughput holds the hero only
@@ -52,7 +52,7 @@ class CameraDirections {
   /// Where a walk goes on from its last vertex.
   virtual Choice sample(const Walk<false>&, float choice, Point2 u) = 0;
   /// With which density [1/sr] a walk that came from `out` goes on to `in`, where scattering alone has `scatter`.
-  virtual float pdf(const Vertex&, const Vector3& out, const Vector3& in, float scatter) const = 0;
+  virtual float pdf(const PathVertex&, const Vector3& out, const Vector3& in, float scatter) const = 0;
 };
 
 /// How long walks are.
@@ -64,23 +64,23 @@ struct SubpathLimits {
 };
 
 /// Density [1/sr] with which a walk from the camera that came from `out` goes on to `in`.
-inline float camera_pdf(const CameraDirections* directions, const Vertex& v, const Vector3& out, const Vector3& in,
+inline float camera_pdf(const CameraDirections* directions, const PathVertex& v, const Vector3& out, const Vector3& in,
                         float scatter) {
   return directions ? directions->pdf(v, out, in, scatter) : scatter;
 }
 
-/// What is told of a walk while it grows.
-struct WalkListener {
-  /// Light that media themselves send towards the camera: the path's length in segments, and what it brings.
+/// Events along the segments of a subpath while it is traced; by default ignored. Vertices need no event: they are stored.
+struct SegmentEvents {
+  /// A medium emits light towards the camera: the path's length in segments, and its contribution.
   virtual void emitted(int /*length*/, const Spectrum&) {}
-  /// A luminaire whose surface lets all light pass straight on: it is the walk's last vertex for a moment.
+  /// The segment passes an emitter whose surface only scatters null: it is the subpath's last vertex during the call.
   virtual void crossed_luminaire() {}
-  /// It goes into a medium, along a ray and as far as `reach` [m], unless it is scattered before; with its throughput at the
+  /// The segment enters a medium, along a ray and up to `reach` [m] unless it is scattered before, with this throughput at the
   /// ray's origin.
   virtual void through(const Medium&, const Ray&, float /*reach*/, const Spectrum& /*throughput*/) {}
 
  protected:
-  ~WalkListener() = default;
+  ~SegmentEvents() = default;
 };
 
 class ProjectionMap;
@@ -93,14 +93,14 @@ void store_vertex(const Walk<false>&, const SubpathVertex& before, float pdf, co
 
 /// The walk that begins with a camera ray, which is the sample's. An escaped one ends with a vertex of kind `escape`.
 void generate_camera_subpath(const RenderContext&, const Ray&, const SubpathLimits&, SampleContext&,
-                             std::vector<SubpathVertex>& walk, WalkListener&);
+                             std::vector<SubpathVertex>& walk, SegmentEvents&);
 
 /// A walk that begins at a luminaire, chosen by power. False: no light leaves there in the direction that was chosen; the walk
 /// is the place on the luminaire alone, which may be seen from elsewhere, or empty. The context's
 /// wavelengths and numbers are the walk's. `targets`, if any: it goes towards one of them.
 bool generate_light_subpath(const Scene&, const LightSampler&, float time, const SubpathLimits&, SampleContext&,
                             std::vector<SubpathVertex>& walk, EmittedLight&, const ProjectionMap* targets = nullptr,
-                            WalkListener* listener = nullptr);
+                            SegmentEvents* events = nullptr);
 
 /// The density of a vertex b that was chosen from a by a direction of solid-angle density `density`; `direction` is unit
 /// from a to b, `chance` that of getting along the edge.

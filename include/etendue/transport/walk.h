@@ -14,13 +14,13 @@
 // q).
 
 #include "etendue/transport/boundaries.h"
+#include "etendue/transport/path_vertex.h"
 #include "etendue/transport/sample_context.h"
-#include "etendue/transport/vertex.h"
 
 namespace etendue {
 
 /// Who listens to a walk: nothing happens unless it is overridden, by hiding the function.
-struct NoListener {
+struct NoEvents {
   /// Light that media send from the next segment to its origin, as the walk brings it.
   void emitted(const Spectrum&) const {}
   /// A luminaire that the walk passes straight through is the vertex, for a moment.
@@ -61,7 +61,7 @@ class Walk {
   const int longest;
   const Transport transport;
 
-  Vertex vertex;            ///< the last. Its `media` are the walk's own, unless it `keeps`: theirs until `leave`
+  PathVertex vertex;        ///< the last. Its `media` are the walk's own, unless it `keeps`: theirs until `leave`
   int length = 0;           ///< segments so far
   float direction_pdf = 0;  ///< [1/sr] of the last segment's direction, as scattering chose it
   bool specular = true;     ///< whether a specular lobe chose it, or nobody: it is the first
@@ -87,8 +87,8 @@ class Walk {
   }
 
   /// Goes along the ray to the next vertex; `found` is what the scene said of it, with `hit` filled. False: the walk has ended.
-  template <class Listener>
-  [[gnu::always_inline]] bool come_to_vertex(bool found, const Listener& listener) {
+  template <class Events>
+  [[gnu::always_inline]] bool come_to_vertex(bool found, const Events& events) {
     if (!passing_) {
       ++length;
       segment_transmittance = Spectrum(1.0f);
@@ -100,13 +100,13 @@ class Walk {
       if (tracks_)
         if (const Medium medium = medium_in(media)) {
           const float reach = found ? hit.distance : std::min(ray.maximum, within_object(medium, ray));
-          listener.through(medium, reach);
+          events.through(medium, reach);
           if (attenuates_only) {
             throughput *= transmittance(medium, ray, reach, sample.wavelengths, numbers);
             if (throughput.black()) return false;
           } else {
             const FreeFlight flight = sample_free_flight(medium, ray, reach, throughput, sample.wavelengths, numbers);
-            if (!flight.emitted.black()) listener.emitted(throughput * flight.emitted);
+            if (!flight.emitted.black()) events.emitted(throughput * flight.emitted);
             throughput *= flight.weight;
             if (throughput.black()) return false;
             if (stores_subpath)
@@ -116,12 +116,12 @@ class Walk {
         }
       vertex.out = -ray.direction;
       if (!found) {
-        vertex.kind = Vertex::Kind::escape;
+        vertex.kind = PathVertex::Kind::escape;
         return true;
       }
       // What the last segment meets matters only if it shines.
       if (clear && length >= longest && !observed && hit.depth == 0 && !hit.object->luminaire()) return false;
-      vertex.kind = Vertex::Kind::surface;
+      vertex.kind = PathVertex::Kind::surface;
       vertex.subsurface_exit = false;
       vertex.scatter = nullptr;
       scene.locate(ray, hit, vertex.point);
@@ -141,13 +141,13 @@ class Walk {
         vertex.lobes = all_lobes;
         return true;
       }
-      if (!passes(listener)) return true;
+      if (!passes(events)) return true;
     }
     return false;
   }
-  template <class Listener = NoListener>
-  bool next_vertex(const Listener& listener = {}) {
-    return come_to_vertex(scene.nearest(ray, hit), listener);
+  template <class Events = NoEvents>
+  bool next_vertex(const Events& events = {}) {
+    return come_to_vertex(scene.nearest(ray, hit), events);
   }
 
   /// Chooses where the walk goes on from its last vertex: by `choice` among lobes, by `u` among directions. Empty: absorbed.
@@ -251,7 +251,7 @@ class Walk {
 
  private:
   bool scattered_in(const Medium& medium, const Point3& at) {
-    vertex.kind = Vertex::Kind::medium;
+    vertex.kind = PathVertex::Kind::medium;
     vertex.subsurface_exit = false;
     vertex.out = -ray.direction;
     vertex.medium = medium;
@@ -270,8 +270,8 @@ class Walk {
     ray.width = vertex.point.footprint;
   }
 
-  template <class Listener>
-  bool passes(const Listener& listener) {
+  template <class Events>
+  bool passes(const Events& events) {
     const Scatter& scatter = *vertex.scatter;
     const auto straight = scatter.sample(vertex.out, 0, {}, transport, null_scattering);
     const bool alone = scatter.lobes() == null_scattering;
@@ -284,7 +284,7 @@ class Walk {
       throughput /= 1 - q;
       return false;
     }
-    if (alone && vertex.point.object->luminaire()) listener.crossed_luminaire();
+    if (alone && vertex.point.object->luminaire()) events.crossed_luminaire();
     throughput *= fraction / q;
     segment_transmittance *= fraction;
     cross();

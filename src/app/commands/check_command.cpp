@@ -13,8 +13,8 @@ namespace etendue {
 
 namespace {
 
-/// How much there is of something: what is stored, and what one sees, as scenes may stand in many places. (Doubles: there may
-/// be no end of the latter.)
+/// A count of things: `stored` counts each scene once, `placed` once for each of its instances. (Doubles, as `placed` may be
+/// very large.)
 struct Amount {
   double stored = 0, placed = 0;
 };
@@ -23,12 +23,12 @@ struct Contents {
   Amount objects, triangles, scenes;
 };
 
-/// Counts each scene once, and what is in it in each place where it stands.
+/// Counts the contents of each scene once as stored, and once per instance as placed.
 class Counter {
  public:
   Contents count(const Scene& scene) {
     const auto [place, fresh] = known_.try_emplace(&scene);
-    Contents& here = place->second;  // stays where it is when others are added
+    Contents& here = place->second;  // the reference stays valid when other scenes are added to the map
     if (!fresh) return {{0, here.objects.placed}, {0, here.triangles.placed}, {0, here.scenes.placed}};
     here.scenes = {1, 1};
     const auto add = [](Amount& to, const Amount& more) {
@@ -63,9 +63,9 @@ std::string amount_text(const Amount& amount) {
          " in all places where nested scenes stand";
 }
 
-/// What of the scene's light the job's renderer misses, and which renderers find all of it.
+/// Reports the light that the job's renderer misses, and the renderers that find all light of the scene.
 void report_light(const Job& job, const SceneTraits& traits) {
-  std::fflush(stdout);  // warnings stand where they belong when both go to a terminal
+  std::fflush(stdout);  // so that warnings on standard error appear in the right place on a terminal
   show_warnings(scene_warnings(job));
   if (job.scene->luminaires().empty() && traits.emissive_media.empty()) return;
   advise(job);
@@ -94,8 +94,8 @@ int check(const SceneOptions& options) {
   fmt::print("image       {}\n", size);
   fmt::print("samples     {} per pixel\n", job->renderer->samples);
   fmt::print("renderer    {}, {}\n", job->renderer->class_info().name, job->renderer->bias().empty() ? "unbiased" : "biased");
-  // What a renderer leaves out in general says little of this scene: that is in the warnings, if there is any of it. Renderers
-  // of plugins may know no better.
+  // A renderer's general limits say little about this scene: misses() reports those that matter here. But a renderer of a
+  // plugin may define limits() alone, so its limits are printed if its misses() reports nothing.
   const std::string limits = job->renderer->limits();
   if (!limits.empty() && !job->renderer->class_info().provider.empty() && job->renderer->misses(traits).empty())
     fmt::print("left out    {}\n", limits);

@@ -1,4 +1,4 @@
-// etendue classes [NAME]: what is known of the classes a render description can contain.
+// etendue classes [NAME]: prints the classes that a render description can contain.
 
 #include <fmt/format.h>
 

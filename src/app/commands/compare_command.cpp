@@ -1,4 +1,4 @@
-// etendue compare FILE…: which algorithm is better, and by how much.
+// etendue compare FILE…: measures which renderer has the smaller error at equal time or samples.
 
 #include <fmt/format.h>
 
@@ -57,13 +57,13 @@ class Laboratory {
   const std::vector<PixelArea> insets_;
   const size_t runs_;
   ComparisonIdentity identity_;
-  double run_bytes_ = 0;  // of the pictures of a run of each variant on each scene
+  double run_bytes_ = 0;  // memory for the images of one run of each variant on each scene
   std::unique_ptr<RunStore> store_;
   std::unique_ptr<CompareProgress> progress_;
   std::vector<ReferenceSource> references_;
-  std::unique_ptr<SceneSubjects> only_;  // of a single scene, which need not be loaded twice
+  std::unique_ptr<SceneSubjects> only_;  // of a single scene, so that it is not loaded twice
   Results results_;
-  std::vector<std::string> pictures_;  // of each scene, for the report
+  std::vector<std::string> pictures_;  // HTML of each scene's images, for the report
 };
 
 std::optional<size_t> Laboratory::reference_variant(const SceneSubjects& subjects) const {
@@ -72,7 +72,7 @@ std::optional<size_t> Laboratory::reference_variant(const SceneSubjects& subject
   return {};
 }
 
-/// What is wrong with any scene is told before anything is rendered.
+/// Loads all scenes and finds their references, so that errors are thrown before anything is rendered.
 void Laboratory::look_at_all() {
   std::vector<Error> errors;
   for (size_t scene = 0; scene < options_.files.size(); ++scene) {
@@ -141,7 +141,7 @@ void Laboratory::open_store() {
   store_ = std::make_unique<RunStore>();
 }
 
-/// False when it was interrupted.
+/// Renders one run unless it is stored. Returns false when interrupted.
 bool Laboratory::render_one(const RunKey& key, SceneSubjects& subjects, size_t subject, const Budget& budget) {
   const size_t kind = key.scene * (variants_.size() + 1) + key.variant;
   const bool for_reference = key.variant == variants_.size();
@@ -161,7 +161,7 @@ bool Laboratory::render_one(const RunKey& key, SceneSubjects& subjects, size_t s
     return !interruption.asked();
   });
   if (!result) return false;
-  if (for_reference) {  // only its end is looked at
+  if (for_reference) {  // only the final image is used
     result->run.marks.erase(result->run.marks.begin(), result->run.marks.end() - 1);
     result->pictures.erase(result->pictures.begin(), result->pictures.end() - 1);
   }
@@ -176,7 +176,7 @@ bool Laboratory::render(size_t scene, SceneSubjects& subjects) {
       if (!render_one({scene, variants_.size(), run}, subjects, *reference_variant(subjects),
                       {0, reference_seconds_ / double(reference_runs)}))
         return false;
-  // In turns, so that what else the machine does falls on all of them alike.
+  // Variants take turns, so that other load of the machine affects all of them alike.
   for (size_t run = 0; run < runs_; ++run)
     for (size_t v = 0; v < variants_.size(); ++v)
       if (!render_one({scene, v, run}, subjects, v, budget_)) return false;

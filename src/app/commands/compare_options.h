@@ -1,5 +1,5 @@
 #pragma once
-// What `etendue compare` takes.
+// The options of `etendue compare`.
 
 #include <array>
 
@@ -18,14 +18,14 @@ struct CompareOptions : SceneOptions {
   bool quiet = false;
 
   void add_to(CLI::App& command);
-  /// A file's job, with all overrides.
+  /// Loads a file's job with all overrides.
   Ref<Job> load(const std::string& file) const;
-  /// Throw Error when that makes no sense.
+  /// These throw Error for options that contradict each other.
   comparing::Budget budget() const;
   double reference_seconds() const;
   std::vector<comparing::Variant> variants() const;
   std::vector<PixelArea> insets() const;
-  /// Where runs are kept; empty: nowhere.
+  /// The folder where runs are stored; empty: none.
   std::string state_folder() const;
   std::string command_line() const;
 };

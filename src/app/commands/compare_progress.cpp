@@ -36,7 +36,7 @@ void CompareProgress::done(size_t kind_of_run, double seconds, bool) {
 }
 
 void CompareProgress::show(double fraction) {
-  // All runs take the mean time of those that are known, which come in turns of all variants.
+  // Every remaining run is estimated to take the mean time of the finished ones, as the variants take turns.
   double seconds = 0, count = 0;
   for (const auto& [kind, known] : known_) seconds += known.first, count += double(known.second);
   const double spent = now() - began_, left_runs = double(runs_ - done_);

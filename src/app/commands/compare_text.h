@@ -1,5 +1,5 @@
 #pragma once
-// What `etendue compare` prints.
+// The text that `etendue compare` prints.
 
 #include <string>
 

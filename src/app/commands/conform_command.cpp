@@ -1,4 +1,4 @@
-// etendue conform [CLASS...]: whether parts do what their interfaces promise.
+// etendue conform [CLASS...]: tests whether components fulfil the contracts of their interfaces.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -56,7 +56,7 @@ std::string ConformOptions::command_line() const {
   return text + fmt::format(" --drawn {} --seed {}", drawn, seed);
 }
 
-/// Each line set in, and no line empty.
+/// Indents each line and drops empty lines.
 std::string set_in(const std::string& text, const std::string& margin) {
   std::string out;
   for (size_t begin = 0; begin < text.size();) {
@@ -67,7 +67,7 @@ std::string set_in(const std::string& text, const std::string& margin) {
   return out;
 }
 
-/// Failures, and what could not be tried, in full; the rest in one line for each class.
+/// Prints failures and checks that could not be run in full, the rest in one line for each class.
 void print(const std::vector<conform::Outcome>& outcomes, bool parts) {
   struct Tally {
     int passed = 0, failed = 0, not_tried = 0;
@@ -95,7 +95,7 @@ void print(const std::vector<conform::Outcome>& outcomes, bool parts) {
   fmt::print("{} classes, {} checks passed, {} failed, {} not tried\n", classes.size(), all.passed, all.failed, all.not_tried);
 }
 
-/// All interfaces, and by what parts of them are tried.
+/// Lists all interfaces, and whether there are checks of their own for their classes.
 int list_interfaces() {
   const std::vector<std::string> checked = conform::checked_interfaces();
   for (const ClassInfo* info : Registry::instance().all()) {

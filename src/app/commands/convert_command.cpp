@@ -1,4 +1,4 @@
-// etendue convert IN -o OUT: a file of another program into a render description.
+// etendue convert IN -o OUT: imports a file of another format as a render description.
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ struct ConvertOptions : SceneOptions {
   std::string output;
 };
 
-/// What was not exact, as comments to stand at the top of the description.
+/// The import's notes of what is not exact, as comments for the top of the description.
 std::string comments(const std::string& file, const std::vector<Error>& notes) {
   std::string text = fmt::format("# Converted from {}.\n", std::filesystem::path(file).filename().string());
   if (!notes.empty()) text += "# What is not as there:\n";
@@ -28,7 +28,7 @@ std::string comments(const std::string& file, const std::vector<Error>& notes) {
     std::string words = note.what();
     for (char& c : words)
       if (c == '\n' || c == '\r') c = ' ';
-    // In a file that it includes the line is none of its own.
+    // A note about an included file names that file before the line number.
     const std::filesystem::path named = std::filesystem::path(note.location.file).filename();
     const std::string other = named == std::filesystem::path(file).filename() ? "" : named.string();
     text += "#   " + (other.empty() ? "" : other + ", ") +

@@ -1,11 +1,11 @@
 #pragma once
-// How pictures within reports are shown.
+// Tone mapping of images in reports.
 
 #include "etendue/render/job.h"
 
 namespace etendue {
 
-/// The tone map of a report's pictures: the job's, unless that leaves them as they are.
+/// The tone map for a report's images: the job's if it clips to the display's range, otherwise the default one.
 Ref<ToneMap> display_tone_map(const Job&);
 
 }  // namespace etendue

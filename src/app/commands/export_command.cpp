@@ -1,4 +1,4 @@
-// etendue export FILE -o OUT: a render description into a file of another program.
+// etendue export FILE -o OUT: exports a render description to a file of another format.
 
 #include <fmt/format.h>
 
@@ -36,7 +36,7 @@ int write(const ExportOptions& options) {
   const std::vector<Error> notes = exporting.notes();
   if (options.import.strict && !notes.empty()) throw Errors(notes);
   for (const Error& note : notes) warn(note.what(), note.location);
-  // What lies beside comes first: the file that names it is never there without it.
+  // The files that the exported file refers to are written first, so that it never exists without them.
   for (const std::string& file : exporting.files_beside()) files.add(file, at);
   files.raise();
   exporting.write_files();

@@ -1,4 +1,4 @@
-// etendue format FILE: a description in one layout.
+// etendue format FILE: gives a description a uniform layout.
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ struct FormatOptions {
   bool check = false;
 };
 
-/// Whether the file has its layout already, or was given it; false: with --check, it has another.
+/// Formats the file, or with --check compares it. Returns false if --check finds another layout.
 bool format(const std::string& file, const FormatOptions& options) {
   const Location at{intern(file), 0, 0};
   if (language::is_json(file)) throw Error("JSON has no layout here: 'format' is for .etd files", at);

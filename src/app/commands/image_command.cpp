@@ -1,4 +1,4 @@
-// etendue image diff, info, tonemap, merge: pictures in files.
+// etendue image diff, info, tonemap, merge: tools for image files.
 
 #include <fmt/format.h>
 
@@ -39,7 +39,7 @@ void print_comparison(const Comparison& c) {
   if (c.not_finite > 0) fmt::print("\n{} values are not finite in one of the pictures and were left out\n", c.not_finite);
 }
 
-/// Ratios of the tiles' means of X, Y or Z. Tiles compare what is called Y.
+/// Ratios of the tiles' means of X, Y or Z. tile_ratios compares the channel named Y, so the channels are renamed.
 std::vector<TileRatio> ratios_of(const std::string& channel, Image a, Image b, int size) {
   for (Image* image : {&a, &b})
     for (std::string& name : image->channels) {
@@ -51,7 +51,7 @@ std::vector<TileRatio> ratios_of(const std::string& channel, Image a, Image b, i
   return tile_ratios(a, b, size);
 }
 
-/// Prints the ratios of Y tile by tile and the worst of each channel; returns the largest deviation from 1 of all.
+/// Prints the ratios of Y of all tiles and the worst tile of each channel; returns the largest deviation from 1.
 double print_tiles(const Image& given_a, const Image& given_b, int size) {
   const Image a = convert_color_space(given_a, "xyz"), b = convert_color_space(given_b, "xyz");
   fmt::print("\nmeans of {} x {} pixel tiles, A / B, of Y:\n", size, size);
@@ -87,7 +87,8 @@ int diff(const DiffOptions& options) {
   if (options.tiles > 0) deviation = print_tiles(a, b, options.tiles);
   if (options.tolerance < 0) return exit_status::done;
 
-  const bool agree = deviation <= options.tolerance && comparison.not_finite == 0;  // not a number does not agree
+  const bool agree =
+      deviation <= options.tolerance && comparison.not_finite == 0;  // a deviation that is NaN fails this comparison
   fmt::print("\n{} {:.6g} {} the tolerance {:.6g}\n",
              options.tiles > 0 ? "largest deviation of a tile" : "root of the relative MSE", deviation,
              deviation <= options.tolerance ? "is within" : "exceeds", options.tolerance);

@@ -1,4 +1,4 @@
-// etendue image merge: one picture of parts rendered apart.
+// etendue image merge: merges checkpoints of different passes into one image.
 
 #include "image_merge.h"
 
@@ -23,7 +23,7 @@ struct MergeOptions {
   bool quiet = false;
 };
 
-/// Says what no part holds of the samples that were wanted.
+/// Reports the wanted samples that are in none of the parts.
 void report_gaps(const Checkpoint& merged) {
   std::uint32_t end = merged.samples_wanted;
   if (!merged.done.empty()) end = std::max(end, merged.done.back().end);

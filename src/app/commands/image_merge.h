@@ -1,5 +1,5 @@
 #pragma once
-// etendue image merge: one picture of parts rendered apart.
+// etendue image merge: merges checkpoints of different passes into one image.
 
 #include "app/commands.h"
 

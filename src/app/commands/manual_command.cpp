@@ -1,4 +1,4 @@
-// etendue manual: the pages of all classes, in Markdown.
+// etendue manual: writes the pages of all classes, in Markdown.
 
 #include <fmt/format.h>
 
@@ -35,7 +35,7 @@ void render_picture(const PictureScene& scene, const std::string& name, const st
   Render render(job);
   if (render.run() != Ended::samples) throw Error("interrupted");
   const Image picture = render.picture();
-  if (scene.measured) {  // the mean luminance becomes that of a grey card
+  if (scene.measured) {  // exposes so that the mean luminance becomes that of a grey card
     double sum = 0;
     for (int y = 0; y < picture.height; ++y)
       for (int x = 0; x < picture.width; ++x) sum += picture.at(x, y, 1);
@@ -50,7 +50,7 @@ void render_picture(const PictureScene& scene, const std::string& name, const st
   write_output(*job, *output, picture, name);
 }
 
-/// Returns how many could not be made.
+/// Returns the number of images that could not be rendered.
 int render_pictures(const ManualOptions& options) {
   const std::filesystem::path folder = options.folder;
   std::filesystem::create_directories(folder / picture_folder);
@@ -71,7 +71,7 @@ int render_pictures(const ManualOptions& options) {
   return failed;
 }
 
-/// All pictures side by side, by interface.
+/// The page with all images side by side, by interface.
 std::string pictures_page(const std::filesystem::path& folder) {
   std::string text =
       "# Pictures\n\nEach class that can be seen, with its defaults or as its page says. Objects carry a card of "
@@ -98,7 +98,7 @@ int write_manual(const ManualOptions& options) {
   std::filesystem::create_directories(options.folder, problem);
   if (problem) throw Error(fmt::format("cannot make the folder '{}': {}", options.folder, problem.message()));
   const int failed = options.pictures || options.missing ? render_pictures(options) : 0;
-  // A picture that is there stands on its class's page, whenever it was made.
+  // An existing image is shown on its class's page, whenever it was rendered.
   std::vector<ManualPage> pages = manual_pages([&](const ClassInfo& info) {
     std::string text;
     if (!std::filesystem::exists(std::filesystem::path(options.folder) / picture_file(info))) return text;

@@ -18,7 +18,7 @@ struct Example {
   const char *name, *part;
 };
 
-/// Classes whose defaults look like another's, or like nothing.
+/// Examples for classes whose defaults look like another class or show nothing.
 constexpr Example examples[] = {
     // shaders
     {"Lambertian", "Lambertian { color: srgb(0.75, 0.35, 0.2) }"},
@@ -149,8 +149,8 @@ constexpr const char* path_tracer = "PathTracer { max_depth: 24 }";
 constexpr const char* both_ways = "BidirectionalPathTracer { max_depth: 24 }";
 constexpr const char* ball = "Sphere { centre: [0, 0, 1.001] m, shader: part }";
 
-/// A room with a lamp, a ball of glass and a dull one: for renderers, cameras and tone maps. The lamp is wide: of a small one
-/// plain paths would find what the glass gathers as white dots all over the walls.
+/// A room with a lamp, a glass ball and a plastic ball: for renderers, cameras and tone maps. The lamp is large: a path tracer
+/// would render the caustic of a small one as fireflies all over the walls.
 constexpr const char* room = R"(
         Rectangle { corner: [-1, -1, 0] m, edge_u: [2, 0, 0] m, edge_v: [0, 2, 0] m, shader: Lambertian { color: 0.7 } }
         Rectangle { corner: [-1, -1, 2] m, edge_u: [0, 2, 0] m, edge_v: [2, 0, 0] m, shader: Lambertian { color: 0.7 } }
@@ -163,7 +163,7 @@ constexpr const char* room = R"(
         Sphere { centre: [-0.4, 0.3, 0.45] m, radius: 0.44 m, shader: Plastic { color: 0.3 } })";
 constexpr const char* room_camera = "PerspectiveCamera { from: [0, -4.6, 1], to: [0, 0, 1], up: [0, 0, 1], fov: 32 deg }";
 
-/// A corner of white walls in front of which lamps are tried.
+/// A corner of white walls that shows the light of emission shaders.
 constexpr const char* walls = R"(
         Rectangle { corner: [-4, -4, 0] m, edge_u: [8, 0, 0] m, edge_v: [0, 8, 0] m, shader: Lambertian { color: 0.6 } }
         Rectangle { corner: [-4, 1, 0] m, edge_u: [8, 0, 0] m, edge_v: [0, 0, 5] m, shader: Lambertian { color: 0.6 } }
@@ -171,7 +171,8 @@ constexpr const char* walls = R"(
 constexpr const char* wall_camera =
     "PerspectiveCamera { from: [0.8, -6.5, 2.2], to: [0, 0, 1.15], up: [0, 0, 1], fov: 34 deg }";
 
-/// Lamps on a point at the height of 2 m, which shines down to the wall; on a plate there; or all around.
+/// The objects for an emission shader: a point light at a height of about 2 m that shines at the wall, an area light there, or
+/// an environment.
 std::string lamp_objects(const ClassInfo& info, const EmissionShader& emission) {
   if (emission.only_at_infinity())
     return fmt::format(
@@ -193,9 +194,10 @@ std::string scene_text(const char* renderer, const char* camera, const char* ton
                      fmt::arg("tone_map", tone_map), fmt::arg("objects", objects));
 }
 
-/// Into the ball of radius 1 on the floor. Nothing for what has no size.
+/// The scene for an object, scaled to the size of a ball of radius 1 on the floor. Nullopt for objects without a finite
+/// bounding box.
 std::optional<std::string> object_scene(const SceneObject& object) {
-  // A card that tells u from v, and which way they grow: redder with u, greener with v, in 8 x 8 squares.
+  // A texture that shows u and v and their directions: redder with u, greener with v, in 8 x 8 squares.
   constexpr const char* shader =
       "Plastic { color: MultiplyMap { first: UvMap {}, second: CheckerMap { first: 0.45, second: 0.9, repeat: [8, 8, 1] } } }";
   if (object.unbounded())
@@ -216,7 +218,7 @@ std::optional<std::string> object_scene(const SceneObject& object) {
                   scale * (c.z - box.low.z) + 0.002f, scale, -c.x, -c.y, -c.z, shader, floor_and_lamps));
 }
 
-/// Null: none is known; "": the class is not to be shown.
+/// Null: no example is listed; "": the class is not shown.
 const char* known_example(const ClassInfo& info) {
   for (const Example& e : examples)
     if (info.name == e.name) return e.part;
@@ -270,11 +272,11 @@ std::optional<PictureScene> picture_of(const ClassInfo& info, const conform::Fix
                                          floor_and_lamps);
   else if (is("EmissionShader"))
     picture.description =
-        // A beam without width is found from its own end alone.
+        // A delta beam is sampled only from the light source.
         scene_text(info.name == "CollimatedEmission" ? "LightTracer {}" : path_tracer, wall_camera, as_it_is,
                    lamp_objects(info, static_cast<const EmissionShader&>(*part)));
   else if (is("Renderer"))
-    picture.description =  // classical ray tracing knows points alone
+    picture.description =  // classical ray tracing samples point lights only
         scene_text(
             "part", room_camera, as_it_is,
             std::string(room) + (info.name == "WhittedRenderer"

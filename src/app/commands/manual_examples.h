@@ -1,5 +1,5 @@
 #pragma once
-// What the manual's pictures show.
+// The scenes of the manual's images.
 
 #include <optional>
 #include <string>
@@ -9,17 +9,17 @@
 
 namespace etendue {
 
-/// A picture of a class: the part that it shows, as in a render description, and a render description of a scene that calls it
-/// `part`.
+/// The image of a class: the component that it shows, as in a render description, and a render description of a scene in which
+/// it is named `part`.
 struct PictureScene {
   std::string part, description;
-  bool measured = false;  ///< lamps differ by powers of ten: exposed by what comes out
+  bool measured = false;  ///< exposed by the mean luminance, as emissions differ by powers of ten
 };
 
-/// Nothing for classes that cannot be seen. Sample files are written into the folder of `fixtures`.
+/// Nullopt for classes that cannot be shown. Sample files are written into the folder of `fixtures`.
 std::optional<PictureScene> picture_of(const ClassInfo&, const conform::Fixtures& fixtures);
 
-/// A part that shows more of a class than its defaults do; empty: none is known.
+/// A component that shows more of a class than its defaults do; empty: none is listed.
 std::string example_of(const ClassInfo&);
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// etendue render FILE: from a description to its pictures.
+// etendue render FILE: renders descriptions to their images.
 
 #include <fmt/format.h>
 
@@ -82,7 +82,7 @@ std::string reason_text(Ended ended) {
   return "";
 }
 
-/// What was rendered of the whole, when not all of it was asked for.
+/// With --passes: the passes that were rendered, and their part of the whole render.
 std::string passes_text(const Render& render) {
   const std::optional<IndexRange>& passes = render.settings().steps;
   if (!passes) return "";
@@ -106,7 +106,7 @@ std::string passes_text(const Render& render) {
 /// The files that were written.
 struct Written {
   std::vector<std::string> pictures, denoised;
-  std::vector<Error> errors;  ///< what could not be
+  std::vector<Error> errors;  ///< of files that could not be written
 };
 
 void report_result(const Progress& progress, Ended ended, const Written& written, ProgressDisplay::Kind kind,
@@ -120,7 +120,7 @@ void report_result(const Progress& progress, Ended ended, const Written& written
                                    {"samples_per_second", progress.samples_per_second},
                                    {"bad_samples", render.film().bad_samples()},
                                    {"ended", name(ended)}};
-    if (!written.denoised.empty()) json["denoised"] = written.denoised;  // biased, all of them
+    if (!written.denoised.empty()) json["denoised"] = written.denoised;  // all denoised images are biased
     if (!checkpoint.empty()) json["checkpoint"] = checkpoint;
     if (render.settings().steps) json["samples_per_pass"] = render.samples_per_step();
     fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
@@ -134,7 +134,7 @@ void report_result(const Progress& progress, Ended ended, const Written& written
   std::fflush(stdout);
 }
 
-/// All that will be written, before hours are spent on it.
+/// Checks all files that will be written, before hours are spent on the render.
 void require_outputs(const Job& job, const std::vector<Ref<Output>>& outputs, const RenderOptions& options, Series& series) {
   note_inputs_of(job);
   OutputFiles files;
@@ -153,7 +153,7 @@ int render(const RenderOptions& options, Series& series) {
   const Ref<Job> job = options.load();
   if (!options.pixel.empty()) return replay(job, options);
 
-  // A part of the passes is not what the outputs of the file are for.
+  // With --passes the render is incomplete, so the description's outputs are not written.
   RenderSettings settings = options.settings();
   std::vector<Ref<Output>> outputs;
   if (!settings.steps || !options.outputs.empty()) outputs = chosen_outputs(job->outputs, options.outputs);
@@ -169,12 +169,12 @@ int render(const RenderOptions& options, Series& series) {
   if (options.denoise) outputs = with_denoising(outputs);
   require_outputs(*job, outputs, options, series);
   require_denoisers(outputs);
-  // Behind that: pictures that are looked at count as files that are read.
+  // This comes after the check of the outputs, because images read by are_whole count as input files.
   if (options.skip_existing && are_whole(outputs, *job, options)) return exit_status::done;
   const ProgressDisplay::Kind kind = ProgressDisplay::kind_for(options.progress, options.quiet);
   ProgressDisplay display(kind, options.open_ended());
   settings.on_progress = [&](const Progress& progress) { display.show(progress); };
-  // Those that will be written are prepared; a checkpoint remembers those of the file, whatever -o says.
+  // The outputs that will be written are prepared; a checkpoint stores those of the description, whatever -o says.
   std::vector<Ref<Output>> described = std::exchange(job->outputs, outputs);
   Render render(job, settings);
   job->outputs = std::move(described);
@@ -199,7 +199,7 @@ int render(const RenderOptions& options, Series& series) {
       written.pictures = write_each(outputs, *job, picture, options.stem(), written.errors);
       written.denoised = write_denoised(*job, outputs, picture, options.stem(), settings.threads, written.errors);
     }
-    if (shown) shown->finish(ended != Ended::aborted);  // behind what is written: a slow viewer may hold it up
+    if (shown) shown->finish(ended != Ended::aborted);  // after the files are written, as a slow viewer may block
   }
 
   if (const std::string failure = render.checkpoint_failure(); !failure.empty()) written.errors.emplace_back(failure);

@@ -1,4 +1,4 @@
-// Several renders in one run of the program.
+// Several renders in one process.
 
 #include "render_series.h"
 
@@ -18,7 +18,7 @@ namespace etendue {
 
 namespace {
 
-/// The last run of '#': where it begins and ends; an empty one when there is none.
+/// Start and end of the last run of '#'; both 0 if there is none.
 std::pair<size_t, size_t> place_of_number(const std::string& text) {
   const size_t last = text.rfind('#');
   if (last == std::string::npos) return {0, 0};
@@ -52,7 +52,7 @@ std::string name_of(const RenderOptions& render) {
   return render.file + (render.frame ? fmt::format(", frame {}", *render.frame) : std::string());
 }
 
-/// What makes no sense for several renders.
+/// Throws Error for options that are ambiguous for several renders.
 void refuse_for_several(const RenderOptions& options, bool several_frames) {
   const bool several_files = options.files.size() > 1;
   if (!options.pixel.empty()) wrong_option("--pixel", "a pixel is of one picture: give one file, and --frame for one frame");
@@ -70,7 +70,7 @@ void refuse_for_several(const RenderOptions& options, bool several_frames) {
       wrong_option("--output", fmt::format("all frames would go to '{}': write #### where their number goes", output));
 }
 
-/// One for each frame of a file.
+/// The options of one frame of one file.
 RenderOptions one_of(const RenderOptions& options, const std::string& file, std::optional<int> frame, bool several_frames) {
   RenderOptions one = options;
   one.file = file;
@@ -84,7 +84,7 @@ RenderOptions one_of(const RenderOptions& options, const std::string& file, std:
   return one;
 }
 
-/// Tells what is rendered now, as the progress is told.
+/// Announces the render that begins, as JSON with --progress json.
 void announce(const RenderOptions& one, size_t number, size_t count) {
   if (one.quiet) return;
   if (one.progress == "json") {
@@ -99,7 +99,7 @@ void announce(const RenderOptions& one, size_t number, size_t count) {
   std::fflush(stdout);
 }
 
-/// Why a picture is not what would be rendered; empty: it is.
+/// The reason why an existing image differs from what would be rendered; empty: it does not.
 std::string what_lacks(const Image& picture, const Job& job, const RenderOptions& options) {
   const auto said = [&](const char* key) {
     const auto found = picture.metadata.find(key);
@@ -130,7 +130,7 @@ void number_outputs(const std::vector<Ref<Output>>& outputs, const RenderOptions
   for (const Ref<Output>& output : outputs) {
     if (!output || output->file.empty()) continue;
     const std::string& name = output->file.text;
-    // Those of -o have their number already.
+    // The names given by -o already have their number.
     if (options.in_series && options.outputs.empty() && !has_place_for_number(name))
       output->fail("file", fmt::format("all frames would go to '{}': write #### where their number goes", name));
     set(*output, "file", Value(FilePath{numbered(name, *options.frame), output->file.folder}));

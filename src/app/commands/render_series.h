@@ -1,5 +1,5 @@
 #pragma once
-// Several renders in one run of the program: files, and frames of films.
+// Several renders in one process: several files, and frames of an animation.
 
 #include <functional>
 #include <map>
@@ -8,29 +8,28 @@
 
 namespace etendue {
 
-/// What the renders of one run have written, so that none takes the place of another.
+/// The files that the renders of one process write, so that none overwrites the images of another.
 class Series {
  public:
-  /// Throws Errors when a render before wrote, or will have written, one of these files.
+  /// Throws Errors if another render of the series has claimed one of these files.
   void claim(const std::vector<Ref<Output>>& outputs, const RenderOptions&);
 
  private:
-  std::map<std::string, std::string> claimed_;  // paths in canonical spelling, and which render they are of
+  std::map<std::string, std::string> claimed_;  // canonical paths, and the names of their renders
 };
 
-/// The text with its last run of '#' replaced by the number, with zeros before it to as many digits at least.
+/// The text with its last run of '#' replaced by the number, padded with zeros to at least as many digits.
 std::string numbered(const std::string& text, int frame);
 
-/// Puts the number of the frame into the names of outputs, when there is one. Throws Error where several frames would have one
-/// name.
+/// If there is a frame number, puts it into the names of outputs. Throws Error where several frames would have the same name.
 void number_outputs(const std::vector<Ref<Output>>& outputs, const RenderOptions&);
 
-/// Whether all pictures are there, can be read to their end, have the size and are of the same file and options, as far as
-/// their formats tell; says on standard output what is left out.
+/// Whether all images exist, can be read to their end, have the size, and are of the same file and options as far as their
+/// metadata tell. Reports images that are skipped on standard output, those that are rendered again on standard error.
 bool are_whole(const std::vector<Ref<Output>>& outputs, const Job&, const RenderOptions&);
 
-/// Renders each frame of each file. What is wrong with one is told and does not keep the others from being rendered; an
-/// interruption does.
+/// Renders each frame of each file. The errors of one render are reported and the others are still rendered; an interruption
+/// ends the series.
 int render_series(const RenderOptions&, const std::function<int(const RenderOptions&, Series&)>& render);
 
 }  // namespace etendue

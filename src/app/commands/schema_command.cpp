@@ -1,4 +1,4 @@
-// etendue schema: the JSON Schema of everything that can be written.
+// etendue schema: prints the JSON Schema of all render descriptions.
 
 #include <fmt/format.h>
 

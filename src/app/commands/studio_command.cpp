@@ -1,4 +1,4 @@
-// etendue studio [FILE]: describe, watch and control a render in a browser.
+// etendue studio [FILE]: edits, shows and controls a render in a browser.
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// The studio's server in this process: signals, the browser, the end, and a new beginning.
+// Runs the studio's server in this process: signals, the browser, shutdown and restart.
 
 #include "studio_serving.h"
 
@@ -24,13 +24,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a program that begins again finds the port and the token that its pages know.
+/// The environment variable that passes the port, the token (which open pages use) and the file to the restarted program.
 constexpr const char* again_variable = "ETENDUE_STUDIO_AGAIN";
 
-/// The signal by which the program tells itself to end: not that of others, who want no new beginning.
+/// The signal that the program sends to itself to shut down. After signals of other processes it does not restart.
 constexpr int to_itself = SIGUSR1;
 
-/// The page: beside the program as it is built, or as it is installed.
+/// The page's path: next to the program in the build folder, or as installed.
 std::string page_file() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
@@ -39,7 +39,7 @@ std::string page_file() {
   return (program / "studio/index.html").string();
 }
 
-/// Has the system open an address; nothing is said when it cannot.
+/// Opens an address in the system's browser; failure is not reported.
 void open_browser(const std::string& address) {
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
   const pid_t child = fork();
@@ -47,7 +47,7 @@ void open_browser(const std::string& address) {
     if (child > 0) waitpid(child, nullptr, 0);
     return;
   }
-  if (fork() != 0) _exit(0);  // the grandchild is nobody's to wait for
+  if (fork() != 0) _exit(0);  // the grandchild is adopted by init, so no zombie remains
   const int nowhere = ::open("/dev/null", O_RDWR);
   for (int stream = 0; stream < 3; ++stream) dup2(nowhere, stream);
   execlp("xdg-open", "xdg-open", address.c_str(), static_cast<char*>(nullptr));
@@ -61,15 +61,16 @@ std::vector<std::string> own_arguments() {
   return list;
 }
 
-/// This program once more, in this process, at the same address and with the same file: plugins are read as they are now.
+/// Replaces this process by a new start of the program, with the same address and file, so that plugins are loaded anew.
 [[noreturn]] void begin_again(const std::string& port_and_token, const std::string& file) {
   setenv(again_variable, (port_and_token + " " + file).c_str(), 1);
-  close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);  // what listens at the address now, among others
+  close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);  // among them the listening socket
   std::vector<std::string> arguments = own_arguments();
   std::vector<char*> list;
   for (std::string& a : arguments) list.push_back(a.data());
   list.push_back(nullptr);
-  // A signal that waits would wait for the next program: its own is taken; one to end ends this program here.
+  // A pending signal would be delivered to the new program. So the program's own signal is consumed; a pending SIGINT or
+  // SIGTERM ends the process when it is unblocked here.
   sigset_t own_end, none;
   sigemptyset(&none);
   sigemptyset(&own_end);
@@ -81,7 +82,8 @@ std::vector<std::string> own_arguments() {
   throw Error("the program could not begin again");
 }
 
-/// "PORT TOKEN FILE" of the program that began again as this one, which is nobody else's to know. The file; empty: none.
+/// Reads "PORT TOKEN FILE" of a restart and removes the variable, as the token is secret. Returns the file; empty: no restart,
+/// or no file.
 std::string take_over(studio::ServerSettings& settings) {
   const char* text = std::getenv(again_variable);
   if (!text) return {};
@@ -107,7 +109,8 @@ int serve(studio::StudioSettings settings, studio::ServerSettings server_setting
   };
   settings.advice = [](const Job& job) { return advice_lines(job); };
 
-  // Ctrl-C ends it in order; a thread of its own waits for it, so that no handler has to be careful.
+  // SIGINT and SIGTERM shut the server down. A thread waits for them, so the code is not limited to what is safe in a signal
+  // handler.
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
@@ -134,9 +137,9 @@ int serve(studio::StudioSettings settings, studio::ServerSettings server_setting
   std::fflush(stdout);
   if (browser && !again) open_browser(server.address());
   server.run();
-  kill(getpid(), to_itself);  // in case it ended by itself
+  kill(getpid(), to_itself);  // wakes the waiter if the server has ended without a signal
   waiter.join();
-  // Nothing was edited yet, and what reads a scene cannot be interrupted.
+  // While the scene is still being loaded nothing can have been edited, and loading cannot be interrupted.
   if (by_others && studio.beginning()) std::_Exit(exit_status::done);
   if (const std::string aside = studio.end(); !aside.empty()) fmt::print(stderr, "What was not saved is in {}\n", aside);
   if (studio.begin_again && !by_others) begin_again(server.port_and_token(), studio.document().file());

@@ -1,5 +1,5 @@
 #pragma once
-// A studio on the network, until somebody ends it: what `etendue studio` and `etendue view` have in common.
+// Runs a studio as a server until it is shut down: the common part of `etendue studio` and `etendue view`.
 
 #include <functional>
 
@@ -8,10 +8,10 @@
 
 namespace etendue {
 
-/// Prints the address, and opens a browser if wanted. `begin` gives the studio what it begins with. Its exit status.
+/// Prints the address, and opens a browser if wanted. `begin` sets up the studio's first content. Returns the exit status.
 int serve(studio::StudioSettings, studio::ServerSettings, bool open_browser, const std::function<void(studio::Studio&)>& begin);
 
-/// Of src/app/commands/view_command.cpp; added along with the studio's.
+/// Defined in view_command.cpp; add_studio_command calls it.
 void add_view_command(CLI::App& program, Run& run);
 
 }  // namespace etendue

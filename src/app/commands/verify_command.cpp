@@ -1,4 +1,4 @@
-// etendue verify FILE: whether algorithms agree.
+// etendue verify FILE: tests whether renderers agree on a scene.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -20,7 +20,7 @@ namespace etendue {
 namespace {
 
 struct VerifyOptions : SceneOptions {
-  std::string renderers, samples, time, seed, size, report;  ///< as written; empty: as the file says
+  std::string renderers, samples, time, seed, size, report;  ///< as written; empty: the description's value
   int passes = 16, lengths = 8, tile = 0, threads = 0;
   double significance = 0.01, inject = 1;
   bool force = false, json = false, quiet = false;

@@ -1,4 +1,4 @@
-// What `etendue verify` prints.
+// The text that `etendue verify` prints.
 
 #include "verify_text.h"
 
@@ -38,7 +38,7 @@ std::string renderers_text(const Choice& choice, const Collected& collected) {
   return text + remarks;
 }
 
-/// "DISAGREE in the whole and 57 of 64 tiles (7 undecided)"
+/// For example "DISAGREE in the whole and 57 of 64 tiles (7 undecided)".
 std::string layer_verdict(const Layout& layout, const LayerSummary& s) {
   std::string text(name(s.verdict));
   const bool whole = s.whole->verdict == s.verdict, disagrees = s.verdict == Verdict::disagrees;
@@ -50,7 +50,7 @@ std::string layer_verdict(const Layout& layout, const LayerSummary& s) {
   return text;
 }
 
-/// The means of the whole picture, layer by layer, with how many tiles stand out.
+/// The means over the whole image for each layer, with the numbers of tiles that disagree or are undecided.
 std::string layers_text(const Layout& layout, const PairAgreement& pair) {
   std::string text = fmt::format("  {:<20} {:>12} {:>12} {:>10} {:>7}  {:>8}   {}\n", "whole picture", "A", "B", "A / B", "z",
                                  "corr. p", "verdict");

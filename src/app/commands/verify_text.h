@@ -1,5 +1,5 @@
 #pragma once
-// What `etendue verify` prints.
+// The text that `etendue verify` prints.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace etendue {
 
-/// The renderers and what was left out, then each pair: its verdict, and where it disagrees.
+/// The renderers and those left out, then each pair of renderers: its verdict, and where it disagrees.
 std::string verify_text(const verify::Choice&, const verify::Collected&, const verify::Agreement&);
 
-/// All of it, each tile's z and corrected p included, for programs.
+/// All results as JSON, including z and corrected p of each tile.
 nlohmann::ordered_json verify_json(const verify::Choice&, const verify::Collected&, const verify::Agreement&);
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// etendue view IMAGE...: pictures in files, in the studio's viewer.
+// etendue view IMAGE...: shows image files in the studio's viewer.
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ struct ViewOptions {
   bool no_browser = false;
 };
 
-/// A picture of any format that is read here, or the one in a checkpoint. Throws Error saying why it is neither.
+/// Reads an image in any supported format, or the image in a checkpoint. Throws Error with the reasons if it is neither.
 Image any_picture(const std::string& file) {
   std::string reason;
   try {
@@ -38,7 +38,7 @@ Image any_picture(const std::string& file) {
   }
 }
 
-/// As X Y Z; a grey one has three equal channels first.
+/// The image converted to XYZ. A grey image becomes one with three equal channels first.
 std::shared_ptr<const Image> picture_in(const std::string& file) {
   Image picture = any_picture(file);
   if (picture.channels.size() < 3) {  // grey: luminance, perhaps with an alpha
@@ -52,7 +52,7 @@ std::shared_ptr<const Image> picture_in(const std::string& file) {
   return std::make_shared<const Image>(convert_color_space(picture, "xyz"));
 }
 
-/// Each by its file's name; those that share one by their paths.
+/// The name of each image: its file name, or its path if several share the file name.
 std::vector<std::string> names_of(const std::vector<std::string>& files) {
   std::map<std::string, int> count;
   for (const std::string& file : files) ++count[fs::path(file).filename().string()];

@@ -1,4 +1,4 @@
-// What is told of a scene's runs. The formulas are in docs/compare.md.
+// Analysis of a scene's runs. The formulas are in docs/compare.md.
 
 #include "analysis.h"
 
@@ -10,7 +10,7 @@
 namespace etendue::comparing {
 namespace {
 
-/// Means of all light over tiles and the whole picture, as verify's tests take them.
+/// Means over tiles and over the whole image, in the layout of verify's tests.
 std::vector<double> tile_means(const verify::Layout& layout, int width, std::span<const double> pixels) {
   std::vector<double> means(layout.count());
   for (size_t layer = 0; layer < layout.layers.size(); ++layer)
@@ -36,7 +36,7 @@ class SceneAnalysis {
   SceneResult result(SceneImages* images);
 
  private:
-  using Means = std::vector<std::vector<double>>;  // tiles' means of each run
+  using Means = std::vector<std::vector<double>>;  // means of the tiles, for each run
   size_t numbers() const { return 3 * size_t(runs_.width) * size_t(runs_.height); }
   RunKey key(size_t variant, size_t run) const { return {runs_.scene, variant, run}; }
   Pixels last_picture(size_t variant, size_t run) const {
@@ -44,7 +44,7 @@ class SceneAnalysis {
   }
   RunSums sums_of(size_t variant, size_t runs, Means& means) const;
   void choose_reference(SceneResult&);
-  /// What a run's errors are told from.
+  /// The reference for the error of a run.
   Reference reference_for(size_t variant, std::span<const float> last) const;
   void curves(VariantResult&, size_t variant);
   void split_error(VariantResult&, size_t variant, const Reference& other);
@@ -52,7 +52,7 @@ class SceneAnalysis {
   void equal_budgets(SceneResult&) const;
   void draw(SceneImages&) const;
 
-  /// Errors of one run at its marks.
+  /// The errors of one run at its marks.
   struct RunCurve {
     std::vector<double> samples, seconds, error, symmetric;
   };
@@ -64,7 +64,7 @@ class SceneAnalysis {
   std::vector<RunSums> sums_;
   std::vector<Means> means_;
   std::optional<AgreedMean> agreed_;
-  Reference reference_;  // all of it
+  Reference reference_;  // for all runs that are not part of it
   Means reference_means_;
   std::vector<double> weights_;
   std::vector<std::vector<RunCurve>> run_curves_;
@@ -188,7 +188,7 @@ void SceneAnalysis::split_error(VariantResult& v, size_t variant, const Referenc
 void SceneAnalysis::bias(VariantResult& v, size_t variant) const {
   verify::Measured own{v.name, means_[variant], true, {}}, other{"the reference", reference_means_, true, {}};
   if (agreed_) {
-    // The mean of the other members, run by run: as many independent pictures.
+    // The mean of the other members, run by run: as many independent images.
     const double rest = 1 - (agreed_->has(variant) ? agreed_->weight(variant) : 0);
     other.passes.assign(runs_.runs, std::vector<double>(layout_.count()));
     for (size_t s = 0; s < runs_.subjects.size(); ++s)
@@ -211,7 +211,7 @@ void SceneAnalysis::equal_budgets(SceneResult& result) const {
       samples = std::min(samples, c.samples.back());
       seconds = std::min(seconds, c.seconds.back());
     }
-  // Runs by time end with the first step after it, and are told at that time.
+  // A run limited by time ends with the first step that exceeds it; its error is interpolated at that time.
   if (runs_.budget.seconds > 0) seconds = std::min(seconds, runs_.budget.seconds);
   result.equal_samples = samples;
   result.equal_seconds = seconds;
@@ -272,7 +272,7 @@ SceneResult SceneAnalysis::result(SceneImages* images) {
   return result;
 }
 
-/// The errors of all runs of a scene's variants; those that have none at this budget are empty.
+/// The errors of all runs of a scene's variants; empty for a variant without an error at this budget.
 std::vector<std::vector<double>> errors_of(const SceneResult& scene, std::vector<double> VariantResult::* which) {
   std::vector<std::vector<double>> errors;
   bool positive = true;
@@ -280,7 +280,7 @@ std::vector<std::vector<double>> errors_of(const SceneResult& scene, std::vector
     errors.push_back(v.*which);
     for (const double e : errors.back()) positive = positive && e > 0;
   }
-  // Below the reference's own noise nothing is left of an error: then all keep it.
+  // An error below the reference's noise may be negative after its subtraction; then the noise is added back to all errors.
   if (!positive)
     for (auto& list : errors)
       for (double& e : list) e += scene.reference_noise;

@@ -10,7 +10,7 @@ namespace {
 
 size_t pixel_count(const SceneResult& scene) { return size_t(scene.width) * size_t(scene.height); }
 
-/// The value that a part of the numbers is not above.
+/// The quantile of the numbers at the fraction `part`.
 double quantile(std::vector<double> numbers, double part) {
   if (numbers.empty()) return 0;
   const auto at = numbers.begin() + std::ptrdiff_t(part * double(numbers.size() - 1));
@@ -18,7 +18,7 @@ double quantile(std::vector<double> numbers, double part) {
   return *at;
 }
 
-/// Means over 3 x 3 pixels: the variance of a few runs is noisy itself.
+/// Means over 3 x 3 pixels, as the variance of a few runs is noisy itself.
 std::vector<double> smoothed(const std::vector<double>& from, int width, int height) {
   std::vector<double> to(from.size());
   for (int y = 0; y < height; ++y)
@@ -34,7 +34,7 @@ std::vector<double> smoothed(const std::vector<double>& from, int width, int hei
   return to;
 }
 
-/// Mean squares of the part of the reference that relative errors are told by.
+/// The constant e of relative errors, as in relative_weights, for Y.
 double floor_of(const SceneImages& images) {
   double sum = 0;
   for (size_t i = 1; i < images.reference.size(); i += 3) sum += images.reference[i];
@@ -83,7 +83,7 @@ std::vector<Shown> show_alike(const ToneMap& tone_map, const std::vector<std::ve
 std::vector<PixelArea> most_different(const SceneImages& images, const SceneResult& scene, size_t count) {
   const size_t pixels = pixel_count(scene);
   const double floor = floor_of(images);
-  // The spread of the variants' relative errors; a single firefly is not a place.
+  // The score is the range of the variants' relative errors, limited so that a single firefly does not dominate.
   std::vector<double> score(pixels);
   for (size_t i = 0; i < pixels; ++i) {
     const double r = images.reference[3 * i + 1], weight = r != 0 || floor > 0 ? 1 / (r * r + floor) : 0;
@@ -100,7 +100,7 @@ std::vector<PixelArea> most_different(const SceneImages& images, const SceneResu
   for (double& s : score) s = std::min(s, high);
 
   const int side = std::clamp(std::min(scene.width, scene.height) / 5, 1, 64), width = scene.width;
-  std::vector<double> sums((size_t(width) + 1) * (size_t(scene.height) + 1));  // of all pixels above and left
+  std::vector<double> sums((size_t(width) + 1) * (size_t(scene.height) + 1));  // summed-area table
   const auto at = [&](int x, int y) -> double& { return sums[size_t(y) * (size_t(width) + 1) + size_t(x)]; };
   for (int y = 0; y < scene.height; ++y)
     for (int x = 0; x < width; ++x)

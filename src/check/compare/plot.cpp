@@ -35,7 +35,7 @@ namespace {
 constexpr size_t colors = 8;
 constexpr double width = 480, height = 330, left = 58, right = 14, top = 28, bottom = 42;
 
-/// A different shape for each, so that colour alone need not tell them apart.
+/// Each curve has a different shape of marks, so that curves can be distinguished without colour.
 std::string mark(double x, double y, size_t color) {
   constexpr double r = 3.2;
   switch (color % 4) {

@@ -1,5 +1,5 @@
 #pragma once
-// Curves as SVG, for pages of HTML.
+// Curves as SVG, for HTML pages.
 
 #include <string>
 #include <string_view>
@@ -7,12 +7,12 @@
 
 namespace etendue::comparing {
 
-/// One curve; points that are not positive cannot be shown on logarithmic scales and are left out.
+/// One curve; points that are not positive are omitted, as both scales are logarithmic.
 struct Series {
   std::string name;
   std::vector<double> x, y;
-  std::vector<double> low, high;  ///< the band around it; empty: none
-  size_t color = 0;               ///< which of the page's colours, and which mark
+  std::vector<double> low, high;  ///< the confidence band; empty: none
+  size_t color = 0;               ///< index of the colour and of the shape of marks
   bool dashed = false;
 };
 
@@ -24,13 +24,13 @@ struct Plot {
 };
 std::string svg(const Plot&);
 
-/// The colours that `svg` speaks of, for light and dark pages: after Okabe & Ito 2008, which people with colour deficiencies
-/// can tell apart.
+/// The CSS colours that `svg` uses, for light and dark pages: after Okabe & Ito 2008, which people with colour deficiencies can
+/// distinguish.
 extern const std::string_view plot_style;
-/// The sign of a curve, to stand beside its name elsewhere.
+/// The mark of a curve, for a legend.
 std::string legend_mark(size_t color);
 
-/// Values that a logarithmic scale from low to high is marked at: powers of ten, and 2 and 5 times those where they are few.
+/// The tick values of a logarithmic scale from low to high: powers of ten, and 2 and 5 times those if there are few.
 std::vector<double> ticks(double low, double high);
 
 }  // namespace etendue::comparing

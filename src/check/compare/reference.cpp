@@ -19,7 +19,7 @@ AgreedMean::AgreedMean(std::vector<const RunSums*> sums) : sums_(std::move(sums)
     std::vector<double> mean(sums_[s]->size());
     for (size_t i = 0; i < mean.size(); ++i) mean[i] = sums_[s]->mean(i);
     const double variance = sums_[s]->relative_variance(relative_weights(mean)) / sums_[s]->runs();
-    weights_[s] = 1 / std::max(variance, 1e-12);  // one without any variance is as good as float arithmetic
+    weights_[s] = 1 / std::max(variance, 1e-12);  // a source without variance is as accurate as float arithmetic
     total += weights_[s];
   }
   for (double& weight : weights_) weight /= total;

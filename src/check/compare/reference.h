@@ -1,5 +1,5 @@
 #pragma once
-// What the truth is thought to be: a picture from elsewhere, renders made for it, or the mean that the variants agree on.
+// The reference of a comparison: an image file, renders made for it, or the weighted mean of the variants.
 
 #include <optional>
 #include <string>
@@ -11,20 +11,21 @@
 
 namespace etendue::comparing {
 
-/// The mean of several sources, each the mean of independent runs, with weights that add up to 1. A source is as good as the
-/// inverse of its relative variance over the whole picture; weights of single pixels would prefer those that came out dark.
+/// The mean of several sources, each the mean of independent runs, with weights that add up to 1. A source's weight is
+/// proportional to the inverse of its relative variance over the whole image; weights per pixel would prefer sources that are
+/// too dark there.
 class AgreedMean {
  public:
-  /// `sums` must live as long; null: that one takes no part.
+  /// `sums` must outlive this object; null: the source is no member.
   explicit AgreedMean(std::vector<const RunSums*> sums);
 
   size_t members() const;
   bool has(size_t source) const { return sums_[source] != nullptr; }
   double weight(size_t source) const { return weights_[source]; }
   Reference whole() const { return mean({}, {}, {}); }
-  /// Without a source: what a bias of that one shows against. Only when there is another.
+  /// The mean without a source, to measure the bias of this source against. Requires another member.
   Reference without(size_t source) const { return mean(source, {}, {}); }
-  /// Without one run of a source: what the error of that run is told from, as they have nothing in common then.
+  /// The mean without one run of a source, to measure the error of that run against: the two are independent.
   Reference without_run(size_t source, std::span<const float> run) const { return mean({}, source, run); }
 
  private:
@@ -33,8 +34,8 @@ class AgreedMean {
   std::vector<double> weights_;
 };
 
-/// A picture from a file: whatever reads as an image of linear values, or a checkpoint. Throws Error, said to come from
-/// --reference, when it cannot be one of so many pixels.
+/// Reads a reference: an image file of linear values, or a checkpoint. Throws Error, with --reference as location, if it cannot
+/// be read or has another size.
 Reference read_reference(const std::string& path, int width, int height);
 
 }  // namespace etendue::comparing

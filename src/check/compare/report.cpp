@@ -163,7 +163,7 @@ class Page {
       for (const CurvePoint& p : r.curve) {
         variance.x.push_back(p.samples);
         variance.y.push_back(p.variance);
-        // Where it is lost in its own error there is nothing to show.
+        // Only where the squared bias is significant.
         if (!r.bias.known || !(p.square_bias.value > 2 * p.square_bias.error)) continue;
         bias.x.push_back(p.samples);
         bias.y.push_back(p.square_bias.value);

@@ -1,4 +1,4 @@
-// The part of the page that shows pictures and maps.
+// The part of the page with images and maps.
 
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ std::string with_insets(const Shown& shown, const std::vector<PixelArea>& insets
   return text + fmt::format("</div><figcaption>{}</figcaption></figure>\n", caption);
 }
 
-/// The colours of a scale from left to right, and what its ends are.
+/// A colour scale from left to right, with texts for its ends and middle.
 template <class Color>
 std::string scale_bar(const Color& color, const std::string& low, const std::string& middle, const std::string& high) {
   std::string stops;

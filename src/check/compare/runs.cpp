@@ -70,7 +70,7 @@ std::string budget_text(const Budget& budget) {
   return budget.samples > 0 ? fmt::format("{} samples", budget.samples) : fmt::format("{} s", budget.seconds);
 }
 
-/// Why runs of one comparison are of no use to another; empty: they are.
+/// The reason why runs of one comparison cannot be used by another; empty: they can.
 std::string difference(const ComparisonIdentity& kept, const ComparisonIdentity& now) {
   if (kept.seed != now.seed) return fmt::format("they began with seed {}, not {}", kept.seed, now.seed);
   if (kept.budget.samples != now.budget.samples || kept.budget.seconds != now.budget.seconds)
@@ -108,7 +108,7 @@ std::optional<RunResult> render_run(Render& render, std::uint64_t seed, const Bu
   render.restart(seed);
   const std::uint32_t size = render.samples_per_step(), most = budget.samples > 0 ? budget.samples : 1u << 30;
   RunResult result;
-  double whole_steps = 0;  // a step that a mark cut short is made anew, and counts once
+  double whole_steps = 0;  // time of complete steps; a step cut short by a mark is rendered anew and counts once
   Mark now;
   for (std::uint32_t wanted = 1; now.samples < most; wanted = std::min(2 * wanted, most)) {
     render.edit(*renderer, "samples", Value(Number{double(wanted)}));
@@ -165,7 +165,7 @@ bool RunStore::has(const RunKey& key) const {
   return runs_.contains(key);
 }
 
-/// A run's file: the magic line, a line of JSON, and the pictures' numbers.
+/// The format of a run's file: the magic line, a line of JSON, and the numbers of its images.
 void RunStore::find(const RunKey& key) const {
   const std::string path = file(key);
   try {

@@ -1,6 +1,6 @@
 #pragma once
-// Runs: whole renders with random numbers of their own, looked at on the way. They are kept in a folder, so that a comparison
-// that was interrupted goes on, and one that is done can be judged anew.
+// Runs: whole renders with independent random numbers, whose images are stored at several marks. They are kept in a folder, so
+// that an interrupted comparison can be resumed and a finished one analysed again.
 
 #include <functional>
 #include <map>
@@ -13,51 +13,52 @@
 
 namespace etendue::comparing {
 
-/// When a run ends: after so many samples of each pixel, or when so much processor time is spent. One of them is not 0.
+/// The end of a run: a number of samples per pixel, or processor time. One of them is not 0.
 struct Budget {
   std::uint32_t samples = 0;
   double seconds = 0;
 };
 
-/// A moment at which a run was looked at: after 1, 2, 4, … samples of each pixel, and at its end.
+/// A point of a run at which its image is stored: after 1, 2, 4, … samples per pixel, and at its end.
 struct Mark {
   std::uint32_t samples = 0;
-  double seconds = 0;  ///< of the processor, on all threads, spent on those samples
+  double seconds = 0;  ///< processor time on all threads for these samples
 };
 
 struct Run {
   std::vector<Mark> marks;
   std::uint64_t bad_samples = 0;
-  double wall_seconds = 0;  ///< all that the run took
+  double wall_seconds = 0;  ///< wall-clock time of the whole run
 };
 /// X Y Z of each pixel, row by row.
 using Pixels = std::vector<float>;
 
-/// Processor time of this process on all its threads [s].
+/// The processor time of this process on all threads [s].
 double processor_seconds();
 
 struct RunResult {
   Run run;
   std::vector<Pixels> pictures;  ///< at the marks
 };
-/// Renders what is ready, with a seed. `go_on` is asked between steps; empty when it says no, or the render was stopped.
+/// Renders the render's job with a seed. `go_on` is called between steps; the result is empty if it returns false or the render
+/// was stopped.
 std::optional<RunResult> render_run(Render&, std::uint64_t seed, const Budget&, const std::function<bool()>& go_on);
 
-/// Which run: the places of scene and variant, and its number.
+/// Identifies a run: the indices of scene and variant, and its number.
 struct RunKey {
   size_t scene = 0, variant = 0, run = 0;
   auto operator<=>(const RunKey&) const = default;
 };
-/// No two runs of a comparison have the same random numbers.
+/// The seed of a run: no two runs of a comparison have the same random numbers.
 std::uint64_t seed_of(std::uint64_t base, const RunKey&);
 
-/// What a folder of runs belongs to; another comparison must not go on with it.
+/// Identifies the comparison that a folder of runs belongs to, so that another one does not continue with it.
 struct ComparisonIdentity {
   struct Part {
     std::string scene, variant;
     Identity identity;
   };
-  std::vector<Part> parts;  ///< of each scene each variant
+  std::vector<Part> parts;  ///< one for each scene and variant
   std::uint64_t seed = 0;
   Budget budget;
 };
@@ -66,8 +67,8 @@ class RunStore {
  public:
   /// Keeps runs in memory.
   RunStore() = default;
-  /// Keeps them in a folder, which is made when it is not there. Throws Error when it holds the runs of another comparison, or
-  /// something that is none.
+  /// Keeps runs in a folder, which is created if it does not exist. Throws Error if it holds the runs of another comparison or
+  /// other files.
   RunStore(std::string folder, const ComparisonIdentity&);
 
   bool has(const RunKey&) const;
@@ -81,9 +82,9 @@ class RunStore {
   void find(const RunKey&) const;
   std::string folder_;
   mutable std::map<RunKey, Run> runs_;
-  std::map<RunKey, std::vector<Pixels>> pictures_;               // without a folder
-  mutable std::map<RunKey, std::uint64_t> data_begins_;          // in the file
-  mutable std::map<RunKey, std::vector<std::uint64_t>> hashes_;  // of the pictures
+  std::map<RunKey, std::vector<Pixels>> pictures_;               // only without a folder
+  mutable std::map<RunKey, std::uint64_t> data_begins_;          // offset in the file
+  mutable std::map<RunKey, std::vector<std::uint64_t>> hashes_;  // of the images
 };
 
 }  // namespace etendue::comparing

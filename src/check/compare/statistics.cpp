@@ -12,7 +12,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// Logarithms of errors; one of zero (nothing was random) is as small as a number can be.
+/// Logarithms of errors; an error of zero (of a deterministic result) is replaced by the smallest positive number.
 std::vector<double> logarithms(std::span<const double> numbers) {
   std::vector<double> logs;
   for (const double x : numbers) logs.push_back(std::log(std::max(x, std::numeric_limits<double>::min())));

@@ -1,6 +1,6 @@
 #pragma once
-// The mathematics of a comparison, on numbers alone: estimates with their errors, curves, and who is better.
-// docs/compare.md tells the whole of it.
+// The statistics of a comparison, on numbers alone: estimates with their errors, curves, and tests of which variant is better.
+// docs/compare.md describes the method.
 
 #include <cstddef>
 #include <optional>
@@ -17,30 +17,30 @@ using verify::exponent_of_mean;
 using verify::jackknife;
 using verify::mean_of;
 
-/// The interval that holds a positive quantity with a probability, by Student's t and symmetric on a logarithmic scale, where
-/// the standard error of the logarithm is error / value. Empty: nothing is known.
+/// The confidence interval of a positive quantity, by Student's t and symmetric on a logarithmic scale, where the standard
+/// error of the logarithm is error / value. Empty: the error is unknown.
 struct Band {
   double low = 0, high = 0;
 };
 std::optional<Band> band(const Estimate&, double probability);
 
-/// What a curve through points (x rising, y) has at a place: a line between neighbours on logarithmic scales, on plain ones
-/// where a y is not positive. Empty outside of the points.
+/// Interpolates a curve through points (x ascending, y): linearly in logarithms, or in the values where a y is not positive.
+/// Empty outside of the points.
 std::optional<double> read_curve(std::span<const double> x, std::span<const double> y, double at);
 
 // ---- who is better
 // -------------------------------------------------------------------------------------------------------------
 
-/// Two variants on one scene.
+/// The comparison of two variants on one scene.
 struct Contest {
   size_t scene = 0, a = 0, b = 0;
   double ratio = 1;      ///< geometric mean of a's errors over that of b's
   double p = 1;          ///< Welch's t-test of the logarithms, two-sided
-  double corrected = 1;  ///< for all contests of all scenes together (Holm)
+  double corrected = 1;  ///< p corrected for all contests of all scenes (Holm)
   bool significant = false;
 };
 
-/// All pairs of variants of all scenes: errors[scene][variant][run]. An empty list of runs takes no part.
+/// Tests all pairs of variants of all scenes: errors[scene][variant][run]. Variants with an empty list are left out.
 std::vector<Contest> contests(const std::vector<std::vector<std::vector<double>>>& errors, double significance);
 
 /// The variant with the smallest geometric mean error on a scene, and whether it is significantly better than every other.
@@ -50,7 +50,7 @@ struct Winner {
 };
 Winner winner(const std::vector<std::vector<double>>& errors_of_scene, const std::vector<Contest>&, size_t scene);
 
-/// The geometric mean of ratios over scenes with its relative standard error, from those of the logarithms of each.
+/// The geometric mean of ratios over scenes with its relative standard error, from the logarithms of the ratios.
 struct GeometricMean {
   double value = 1, relative_error = 0;
   size_t scenes = 0;

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON knows no infinity: what is unknown is null.
+/// JSON has no infinity: unknown values are null.
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 template <class T>
 Json number(const std::optional<T>& x) {
@@ -96,7 +96,7 @@ Json winner_json(const SceneResult& scene, const Winner& w) {
   return {{"variant", scene.variants[*w.variant].name}, {"significant", w.significant}};
 }
 
-/// For a cell of CSV (RFC 4180).
+/// A cell of CSV, quoted if necessary (RFC 4180).
 std::string cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -166,14 +166,14 @@ std::optional<Estimate> mean_error(const std::vector<double>& errors) {
 
 namespace {
 
-/// Where a bias was found: "the whole picture", "3 of 108 tiles".
+/// The places where a bias was found: "the whole picture", "3 of 108 tiles".
 std::string places_text(const Bias& bias) {
   std::set<size_t> places, differing;
   for (const verify::MeanTest& t : bias.test.tests) {
     places.insert(t.place);
     if (t.verdict == verify::Verdict::disagrees) differing.insert(t.place);
   }
-  const size_t whole = *places.rbegin();  // tiles come before it
+  const size_t whole = *places.rbegin();  // the whole image has the largest index
   if (differing.contains(whole)) return "the whole picture";
   return fmt::format("{} of {} tiles", differing.size(), whole);
 }

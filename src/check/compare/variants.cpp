@@ -22,7 +22,7 @@ Variant parse_variant(const std::string& text) {
   Variant variant{verify::trimmed(text.substr(0, colon)), {}};
   if (variant.name.empty()) throw Error(fmt::format("'{}' has no name before the colon; write {}", text, form), at);
   const std::string rest = verify::trimmed(text.substr(colon + 1));
-  if (rest.empty()) return variant;  // the file as it is
+  if (rest.empty()) return variant;  // the file unchanged
   for (const std::string& part : verify::split_expressions(rest)) {
     const size_t sign = part.find('=');
     if (sign == std::string::npos || sign == 0)
@@ -32,7 +32,7 @@ Variant parse_variant(const std::string& text) {
   return variant;
 }
 
-/// Where a plain text is good enough for a table's heading and a curve's name.
+/// Throws Error if a name is unsuitable for a table's heading or a curve's name.
 void require_good_name(const Variant& variant, const char* option) {
   constexpr size_t longest = 200;
   if (variant.name.size() > longest)
@@ -42,7 +42,7 @@ void require_good_name(const Variant& variant, const char* option) {
     if (static_cast<unsigned char>(c) < 32) throw Error("a name has control characters", {intern(option), 0, 0});
 }
 
-/// Whether a path names the renderer or a member of it: more than that may be shared with others.
+/// Whether a path names the renderer or a member of it: variants that set nothing else share one prepared scene.
 bool only_renderer(const std::string& path) {
   const std::string own = "renderer";
   return path == own || (path.starts_with(own + ".") && path.find_first_of(".[", own.size() + 1) == std::string::npos);
@@ -68,7 +68,8 @@ void apply(Job& job, const Variant& variant, const Job& described) {
   if (!errors.empty()) throw Errors(std::move(errors));
 }
 
-/// Films without what a comparison does not look at; the end is the comparison's business.
+/// Removes layers and path lengths, which a comparison does not use, from the image, and limits, as the comparison ends the
+/// runs.
 void prepare_picture(Job& job) {
   if (job.image) {
     job.image->layers.clear();

@@ -1,5 +1,5 @@
 #pragma once
-// What is compared: ways to render a scene, by name.
+// The variants of a comparison: named ways to render a scene.
 
 #include <functional>
 #include <memory>
@@ -12,37 +12,39 @@
 
 namespace etendue::comparing {
 
-/// A way to render, as the command line says it: the file with some members set.
+/// A way to render, as given on the command line: the file with some members set.
 struct Variant {
   std::string name;
   std::vector<std::pair<std::string, std::string>> sets;  ///< paths of members, and expressions
 };
 
-/// Those of "--renderers A,B{x: 1}" (each sets the renderer, and is called as it is written) and then of each
-/// "--variant 'NAME: PATH=VALUE, PATH=VALUE'". Throws Errors when one makes no sense, or two have one name.
+/// The variants of "--renderers A,B{x: 1}" (each sets the renderer, and is named by its expression), followed by those of each
+/// "--variant 'NAME: PATH=VALUE, PATH=VALUE'". Throws Errors for invalid ones or equal names.
 std::vector<Variant> parse_variants(const std::string& renderers, const std::vector<std::string>& variants);
 
 /// A variant on a scene, ready to be rendered.
 struct Subject {
   std::string name;
-  Render* render = nullptr;  ///< several variants may share one
-  Ref<Renderer> renderer;    ///< to be put into it first
+  Render* render = nullptr;  ///< may be shared by several variants
+  Ref<Renderer> renderer;    ///< to be set in `render` before use
   std::vector<std::string> misses;
   std::string bias;
-  bool reaches_truth() const { return misses.empty() && bias.empty(); }  ///< in its mean, by what it says of itself
+  bool reaches_truth() const {
+    return misses.empty() && bias.empty();
+  }  ///< whether its mean is the truth, according to its renderer
 };
 
-/// All variants on one file. Those that set no more than the renderer share one prepared scene; each other has its own.
+/// All variants on one file. Variants that set only the renderer share one prepared scene; each other variant has its own.
 class SceneSubjects {
  public:
-  /// `load` makes the file's job anew, not prepared. Throws Errors.
+  /// `load` creates the file's job anew, not prepared. Throws Errors.
   SceneSubjects(const std::function<Ref<Job>()>& load, const std::vector<Variant>&, int threads);
 
-  const Job& job() const { return shared_->job(); }  ///< as the file has it
+  const Job& job() const { return shared_->job(); }  ///< as in the file
   const std::vector<Subject>& subjects() const { return subjects_; }
-  /// Puts a variant's renderer into its render.
+  /// Sets a variant's renderer in its render, and returns the render.
   Render& ready(size_t variant);
-  /// What determines the samples of a variant.
+  /// The identity of everything that determines a variant's samples.
   Identity identity(size_t variant);
 
  private:

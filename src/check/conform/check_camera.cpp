@@ -1,5 +1,5 @@
-// What holds of every camera: rays lead back to where they came from, and light measured by rays is that measured by lens
-// samples.
+// Checks of every camera: the film point of a ray is the one it was generated for, and sampling rays and sampling the lens
+// measure the same light.
 
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ class CameraTrial {
   }
 
  private:
-  /// `inset`: away from the very edge, where rounding decides.
+  /// A random point of the film. `inset` keeps it off the edge, where rounding decides whether it is on the film.
   Point2 film(float inset = 0) {
     const Point2 u = trial.pair();
     return {lerp(u.x, inset, width - inset), lerp(u.y, inset, height - inset)};
@@ -55,7 +55,7 @@ class CameraTrial {
       trial.expect(other.origin == ray.origin && other.direction == ray.direction,
                    "without a lens rays do not depend on the lens point", where);
     }
-    if (!passes) return;  // what a lens holds back need not lead anywhere
+    if (!passes) return;  // a ray that the lens blocks need not have a film point
     const auto back = camera_.film_point(ray);
     trial.expect(back && std::abs(back->x - f.x) < 0.02f && std::abs(back->y - f.y) < 0.02f,
                  "a ray's film point is where it came from",
@@ -78,7 +78,7 @@ class CameraTrial {
   void check_lens(const Ray& ray) {
     const Point3 seen = ray(0.5f + 5 * trial.uniform());
     const auto s = camera_.sample_lens(seen, time_, trial.pair());
-    if (!s) return;  // from another point of the lens it may be off the film
+    if (!s) return;  // seen from another point of the lens it may be off the film
     const auto where = [&] { return fmt::format("seen from ({}, {}, {})", seen.x, seen.y, seen.z); };
     trial.expect(std::abs(s->distance - distance(seen, s->lens)) < 1e-3f * s->distance &&
                      length(normalize(s->lens - seen) - s->direction) < 1e-3f && s->pdf > 0 && s->pdf < infinity &&
@@ -91,7 +91,7 @@ class CameraTrial {
     trial.expect(std::abs(s->nearest - nearest) <= 1e-3f * nearest && s->nearest <= s->distance * 1.001f,
                  "lens samples reach as far as rays", where);
     const auto f = camera_.film_point(back);
-    // At the film's very edge rounding decides.
+    // At the film's edge rounding decides whether a point is on it.
     const bool inside = s->film.x > 0.1f && s->film.x < width - 0.1f && s->film.y > 0.1f && s->film.y < height - 0.1f;
     if (!inside) return;
     trial.expect(f && std::abs(f->x - s->film.x) < 0.05f && std::abs(f->y - s->film.y) < 0.05f,
@@ -104,7 +104,7 @@ class CameraTrial {
                  [&] { return fmt::format("{}: {} and {}", where(), s->importance, importance); });
   }
 
-  /// What is seen begins and ends where its reach does, for rays and for lens samples.
+  /// The camera's nearest and farthest distances (reach) hold for rays and for lens samples alike.
   void check_reach(const Ray& ray) {
     const auto [nearest, farthest] = camera_.reach(ray);
     const auto where = [&] { return fmt::format("from {} m to {} m, and a ray of {} m", nearest, farthest, ray.maximum); };
@@ -120,7 +120,7 @@ class CameraTrial {
                  "lens samples reach as far as rays", where);
   }
 
-  /// Rays that the camera did not send.
+  /// Rays with directions that the camera did not generate.
   void check_stray() {
     Ray ray = camera_.ray(film(), trial.pair(), time_);
     ray.direction = trial.direction();
@@ -137,8 +137,8 @@ class CameraTrial {
     trial.expect(!s || on_film(s->film), "lens samples are whole", [&] { return fmt::format("({}, {})", any.x, any.y); });
   }
 
-  /// A disc of radiance 1 facing the camera: what share of the rays meet it, and the same from points of the disc through the
-  /// lens, area cos W_e / density. Both are the mean of the picture.
+  /// Estimates the image's mean for a disc of radiance 1 that faces the camera: by the fraction of rays that hit it, and by
+  /// points of the disc that sample the lens, with the weight area cos W_e / pdf.
   void check_both_ways() {
     const Point2 f{width * (0.3f + 0.4f * trial.uniform()), height * (0.3f + 0.4f * trial.uniform())};
     const Point2 lens{0.5f, 0.5f};

@@ -1,5 +1,5 @@
-// What holds of every component: it can be saved, copied and made again, and refuses what is wrong with an error that says
-// where it is.
+// Checks of every component: it can be saved, copied and created again, and rejects invalid input with an Error that gives the
+// location.
 
 #include <fmt/format.h>
 
@@ -17,10 +17,10 @@ namespace {
 
 constexpr const char* text_name = "hostile";
 
-/// What was thrown, flattened: all errors of a run.
+/// The exception of a call: all errors of an Errors, flattened.
 struct Thrown {
   std::vector<Error> errors;
-  std::string other;  ///< of something that is neither Error nor Errors
+  std::string other;  ///< text of an exception that is neither Error nor Errors
 
   std::string text() const {
     std::string all = other;
@@ -43,7 +43,7 @@ Thrown thrown_by(F&& f) {
     t.errors.push_back(error);
   } catch (const Errors& errors) {
     t.errors = errors.errors;
-  } catch (...) {  // a part may throw anything
+  } catch (...) {  // a component may throw anything
     t.other = thrown_text();
   }
   return t;
@@ -72,7 +72,7 @@ void check_saving(Trial& trial) {
     trial.expect(same, "what is saved reads back as an equal part",
                  [&] { return !read ? t.text() : "written: " + once + "read and written again: " + twice; });
   }
-  // And prepared, as it will be used.
+  // The same after preparation, which precedes every use.
   std::string prepared;
   t = thrown_by([&] {
     const Ref<Component> read = parse_component(trial.text(), "saved");
@@ -100,7 +100,7 @@ void check_copying(Trial& trial) {
 
 struct Hostile {
   Value value;
-  std::string text;  ///< as an expression; "" when there is none
+  std::string text;  ///< as an expression; "" if there is none for this value
   std::string what;
 };
 
@@ -133,7 +133,7 @@ std::vector<Hostile> hostile_numbers(const Member& m) {
 
 std::vector<Hostile> hostile_values(const Member& m) {
   std::vector<Hostile> list;
-  // A truth value is nothing else, and nothing else is a truth value.
+  // A boolean accepts nothing else, and no other kind accepts a boolean.
   if (m.kind == Kind::boolean)
     list.push_back({Value(Number{3}), "3", "a number"});
   else
@@ -187,7 +187,8 @@ void check_refusals(Trial& trial) {
   trial.expect(error && error->location.line == 2, placed, [&] { return "an unknown member in line 2: " + read.text(); });
 }
 
-/// Files that are read: sample ones can be, and missing ones are refused. An output's are written.
+/// Checks input files: sample files can be read, and missing files are rejected. An Output's file is written, so it is not
+/// checked here.
 void check_files(Trial& trial) {
   const ClassInfo& info = trial.part().class_info();
   if (info.is_a(*Registry::instance().find("Output"))) return;
@@ -199,7 +200,7 @@ void check_files(Trial& trial) {
   if (any && !with_files.part) trial.not_tried("reads sample files", "they were refused: " + with_files.refused);
   for (const Member& m : info.members) {
     if (m.kind != Kind::file || m.list) continue;
-    // The part as it is, but for the file: in a text of two lines, or set when others must be written too.
+    // The component with only this file changed: in a text of two lines or, if other members are required too, set on a copy.
     const std::string name = info.name + "." + m.name, missing = trial.fixtures().folder() + "/no_such_file.xyz";
     bool alone = true;
     for (const Member& other : info.members) alone = alone && (!other.required || &other == &m);

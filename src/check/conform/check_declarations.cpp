@@ -1,5 +1,5 @@
-// What is declared of members is true: where one does not matter, another value changes nothing, to the last bit; and a colour
-// is asked for what it is said to be read as.
+// Checks what is declared of members. Where a member's conditions say that it has no effect, another value must not change a
+// single bit of the result; and a colour must only be evaluated for the ColorUse that its declared Meaning allows.
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@
 namespace etendue::conform {
 namespace {
 
-/// Something of each kind that a part may have an effect on, before a camera at the origin that looks along z.
+/// A scene with objects that a component of any interface may affect, in front of a camera at the origin that looks along z.
 constexpr const char* stage =
     "Job { camera: PerspectiveCamera { to: [0, 0, 1], fov: 60 }, image: ImageBuffer { width: 12, height: 12 }, "
     "renderer: PathTracer { samples: 4, max_depth: 6 }, scene: BruteForceScene { objects: [ "
@@ -34,7 +34,7 @@ std::string bytes_of(const std::vector<double>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)};
 }
 
-/// So many rays may be taken for a picture; a path tracer's takes a hundredth of it. Parts that take more are not compared.
+/// The most rays that an image may take; a path tracer needs a hundredth of this. Components that take more are not compared.
 constexpr std::uint64_t most_rays = 1'000'000;
 
 std::string rendered(const Ref<Job>& job) {
@@ -50,7 +50,7 @@ Ref<Component> placed(const char* text, const char* member, const Ref<Component>
   return holder;
 }
 
-/// Puts a part in its place on the stage; false: there is none for its interface.
+/// Puts a component in its place in the scene; false: there is no place for its interface.
 bool put(Job& job, const Ref<Component>& part) {
   std::vector<Ref<SceneObject>>& objects = job.scene->objects;
   SceneObject& ball = *objects.front();
@@ -105,7 +105,7 @@ std::string written(const Output& output, const Trial& trial) {
   return std::move(text).str();
 }
 
-/// All that a part does, as bytes; "" when its interface is none that is known here. Throws what the part throws.
+/// All results of a component, as bytes; "" if its interface is not known here. Throws what the component throws.
 std::string behaviour(const Ref<Component>& part, const Trial& trial) {
   if (const auto map = ref_cast<ToneMap>(part)) {
     prepare_tree(*map);
@@ -119,7 +119,7 @@ std::string behaviour(const Ref<Component>& part, const Trial& trial) {
   return put(*job, part) ? rendered(job) : "";
 }
 
-/// What another member may be left at or changed to so that a condition does not hold.
+/// Values of another member: its present one and others, among which some should make a condition false.
 std::vector<Value> candidates(Trial& trial, const ClassInfo& info, const Member& of) {
   std::vector<Value> all = {of.get(trial.part(), of)};
   if (of.list) all.emplace_back(Value::List());
@@ -157,7 +157,7 @@ class ConditionTrial {
   }
 
  private:
-  /// The part against ones that differ in the member alone. False: nothing could be compared.
+  /// Compares the component with copies that differ in the member alone. False: nothing could be compared.
   bool compare(const Ref<Component>& part, const Condition& condition) {
     std::string before;
     try {
@@ -177,7 +177,7 @@ class ConditionTrial {
       try {
         after = behaviour(other, trial);
       } catch (...) {
-        continue;  // what is wrong may be refused even where it does not matter
+        continue;  // an invalid value may be rejected even where the member has no effect
       }
       ++compared;
       trial.expect(after == before, "what does not matter changes nothing", [&] {
@@ -193,14 +193,14 @@ class ConditionTrial {
   const Member& member_;
 };
 
-/// One half at all wavelengths, and notes what it was asked as.
+/// A colour of 0.5 at all wavelengths that records the uses it is evaluated for.
 class NotingColor final : public SpectralFunction {
  public:
   Spectrum evaluate(const Wavelengths&, ColorUse use) const override {
     asked |= 1u << unsigned(use);
     return Spectrum(value);
   }
-  /// Before rendering: for checks and sums of all kinds.
+  /// Called before rendering, for checks and sums of all kinds, so it is not recorded.
   float at(float, ColorUse) const override { return value; }
   std::string expression() const override { return fmt::format("{}", value); }
   bool varies() const override { return false; }
@@ -209,7 +209,7 @@ class NotingColor final : public SpectralFunction {
   mutable std::atomic<unsigned> asked = 0;
 };
 
-/// As what a colour of a meaning may be asked: bits of ColorUse.
+/// The uses for which a colour of a Meaning may be evaluated: bits of ColorUse.
 unsigned uses(Meaning meaning) {
   switch (meaning) {
     case Meaning::plain: return ~0u;
@@ -236,7 +236,7 @@ void check_meaning(Trial& trial, const Member& m) {
     }
     behaviour(part, trial);
   } catch (...) {
-    return;  // not every part takes every colour
+    return;  // some components reject some colours
   }
   trial.expect((probe->asked & ~uses(m.meaning)) == 0, "colours are asked for what they are said to be read as", [&] {
     constexpr const char* names[] = {"reflectance", "radiance", "coefficient"};
@@ -248,7 +248,7 @@ void check_meaning(Trial& trial, const Member& m) {
 }
 
 void check_declarations(Trial& trial) {
-  load_job_text(stage, "stage");  // throws if it is wrong: what a part refuses is passed over below
+  load_job_text(stage, "stage");  // throws if the scene itself is wrong; errors of the component are ignored below
   for (const Member& m : trial.part().class_info().members) {
     if (!m.conditions.empty()) ConditionTrial(trial, m).check();
     if (m.meaning != Meaning::plain && !m.list) check_meaning(trial, m);

@@ -1,5 +1,5 @@
-// What holds of every denoiser: it changes light alone, makes none of its own, and takes pictures of any numbers; or an Error
-// says why it cannot work here.
+// Checks of every denoiser: it changes only radiance channels, creates no light, and accepts any numbers; or it throws an Error
+// with the reason why it cannot work here.
 
 #include "etendue/denoiser.h"
 
@@ -39,7 +39,7 @@ class DenoiserTrial {
  private:
   static constexpr int width = 40, height = 24;
 
-  /// Grey with a further channel.
+  /// A grey image with one further channel.
   static Image picture(double value) {
     Image image(width, height, {"X", "Y", "Z", "object.ID"});
     for (size_t i = 0; i < image.values.size(); ++i) image.values[i] = i % 4 == 3 ? double(i) : value;

@@ -1,4 +1,4 @@
-// What holds of every emission shader: its power is that of its radiance, and directions follow their density.
+// Checks of every emission shader: its power is the integral of its radiance, and sampled directions follow the pdf.
 
 #include <fmt/format.h>
 
@@ -15,16 +15,16 @@
 namespace etendue::conform {
 namespace {
 
-/// Solid angles narrower than this [sr] hold too few directions of floats for a test in cells.
+/// Solid angles below this [sr] contain too few directions representable in floats for a chi-square test in cells.
 constexpr double narrowest = 1e-7;
 
-/// An object of a class that has the emission, moved and turned. Prepared.
+/// A prepared object of a class that has the emission, translated and rotated.
 Ref<SceneObject> host_of(EmissionShader& emission, const std::string& name) {
   Ref<SceneObject> host = ref_cast<SceneObject>(Registry::instance().create(name));
   const Transform turn = Transform::rotate(0.8f, {1, 2, -0.5f});
   host->transform = host->infinite() ? turn : Transform::translate({0.3f, -0.2f, 0.5f}) * turn;
   host->emission = Ref<EmissionShader>(&emission);
-  emission.prepare();  // as before every render: what it remembers is of objects that are gone, and this may lie where one was
+  emission.prepare();  // as before every render: discards data of objects that are gone, whose address the new host may have
   host->prepare();
   if (host->infinite()) host->enclose({0.1f, 0.2f, 0.3f}, 1.5f);
   return host;
@@ -60,7 +60,7 @@ class EmissionTrial {
   }
 
  private:
-  /// Radiance, and where it must be zero.
+  /// Checks radiance, and that sides that do not emit have zero radiance and pdf.
   void check_points() {
     for (int i = trial.samples(2000); i > 0; --i) {
       const SurfacePoint p = host_->sample_area(trial.pair(), 0).point;
@@ -113,7 +113,7 @@ class EmissionTrial {
         [&](int count) { return std::pair(draw(count), lost); });
   }
 
-  /// Samples that were lost (sent to a side that does not emit) are what the density lacks to 1.
+  /// Samples may be lost (sent to a side that does not emit): their fraction is what the pdf's integral lacks to 1.
   template <class F, class D>
   void compare(const std::string& check, const std::vector<Vector3>& first, double covered, const F& pdf, const D& draw) {
     if (covered < narrowest) {
@@ -131,7 +131,7 @@ class EmissionTrial {
     const auto integrates = [&] {
       return std::abs(sum - kept) < 3e-3 + Trial::significant_errors * error + (lost > 0 ? 10 / n : 0);
     };
-    // A density with sharp borders may need more points than most do.
+    // A pdf with sharp edges may need more quadrature points than most.
     for (double tolerance = 1e-3; tolerance > 1e-5 && !(p_value > Trial::significance && integrates()); tolerance /= 10) {
       std::vector<double> expected;
       sum = 0;
@@ -150,7 +150,7 @@ class EmissionTrial {
   }
 
  public:
-  /// Of light that knows where it comes from: in the coordinates of the object, whose y axis is up.
+  /// For emissions that sample incident directions (environments): the check is done in object space, whose y axis is up.
   void check_incident() {
     const auto up = [](const Vector3& v) { return Vector3{v.z, v.x, v.y}; };
     const auto down = [](const Vector3& v) { return Vector3{v.y, v.z, v.x}; };
@@ -189,11 +189,12 @@ class EmissionTrial {
   }
 
  private:
-  /// One sample of the power: radiance times cosine over the densities of a point and of a direction that is drawn by the
-  /// emission or, as often, uniformly, so that light which has no density is found too.
+  /// One sample of the power: radiance times cosine over the pdfs of a point and of a direction. The direction is sampled by
+  /// the emission or, with probability 1/2, uniformly, so that radiance where the emission's pdf is zero is found too.
   Spectrum power_sample() {
     const bool by_emission = trial.uniform() < 0.5f;
-    if (host_->infinite()) {  // the disc of the scene has a quarter of the area, and is seen alike from everywhere
+    if (host_->infinite()) {  // The projected area of the scene's bounding sphere is a quarter of its surface area, from all
+                              // directions.
       const bool knows = emission_.knows_incident();
       const Transform& turn = host_->transform.still();
       Vector3 towards = trial.direction();
@@ -222,7 +223,8 @@ class EmissionTrial {
     return note(emission_.radiance(s.point, v, wavelengths_)) * (cosine / (s.pdf * pdf));
   }
 
-  /// Remembers how far colours are from one another: wavelengths may agree in pairs where others do not.
+  /// Records the range of each wavelength's value relative to the mean, to detect a spectrum that varies. All wavelengths are
+  /// recorded, as different spectra may agree at some of them.
   Spectrum note(const Spectrum& light) {
     const float all = light.average();
     for (size_t k = 0; k < spectrum_size && all > 0; ++k) {
@@ -237,7 +239,7 @@ class EmissionTrial {
     return false;
   }
 
-  /// Whether a map in the emission varies: its mean over an object is found from some points.
+  /// Whether the emission has a map that varies: its mean over an object is then estimated from some points.
   bool varies() const {
     for (const Member& m : emission_.class_info().members)
       if (m.kind == Kind::component && !m.list)
@@ -253,14 +255,14 @@ class EmissionTrial {
       for (size_t k = 0; k < spectrum_size; ++k) sums[k].add(double(s[int(k)]));
     }
     if (of_many_colours()) return check_luminous_power(what);
-    // Of maps that vary the power is an estimate, from a thousand points: 3 % off at most among 400 parts drawn.
+    // With varying maps the power is an estimate from a thousand points: at most 3 % off among 400 random components.
     const double relative = varies() ? 0.05 : 0.01;
     for (size_t k = 0; k < spectrum_size; ++k)
       compare_power(what, sums[k], double(power_[int(k)]), relative, fmt::format("W/nm at {} nm", wavelengths_[int(k)]));
   }
 
-  /// Of light whose colour varies the power may be that of a mean colour, which says no spectrum: what the eye sees is
-  /// compared.
+  /// If the emission's spectrum varies over the surface, its power may be computed from a mean colour, which defines no exact
+  /// spectrum. So luminous power is compared instead.
   void check_luminous_power(const std::string& what) {
     const auto seen = [&](const Spectrum& s) {
       double sum = 0;
@@ -281,7 +283,8 @@ class EmissionTrial {
       at(double(trial.uniform()));
       sum.add(seen(power_sample()));
     }
-    // A projected image's is taken to be alike all over the image: that is 6 % off at most among 100 parts drawn.
+    // ProjectorEmission assumes that its image's spectrum is the same all over the image: at most 6 % off among 100 random
+    // components.
     compare_power(what, sum, said, 0.08, "W/nm as the eye weighs it");
   }
 

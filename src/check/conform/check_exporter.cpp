@@ -1,5 +1,5 @@
-// What can be said of every exporter: which endings it writes, and that it writes the same for the same job and leaves that as
-// it is.
+// Checks of every exporter: its file name extensions, that it writes the same text for the same job, and that it leaves the job
+// unchanged.
 
 #include <algorithm>
 #include <cctype>
@@ -13,7 +13,7 @@
 namespace etendue::conform {
 namespace {
 
-/// A job of the plainest parts.
+/// A job of simple components.
 Ref<Job> plain_job() {
   return load_job_text(
       "Job {\n camera: PerspectiveCamera { from: [0, 1, 4] m, to: [0, 0, 0] m }\n image: ImageBuffer { width: 8, height: 6 }\n"

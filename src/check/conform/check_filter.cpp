@@ -33,7 +33,7 @@ void check_filter(Trial& trial) {
   trial.expect(filter.weight(0, 0) > 0, "the centre counts", [&] { return fmt::format("{}", filter.weight(0, 0)); });
 
   for (int i = trial.samples(4000); i > 0; --i) {
-    // Mostly just beyond, in one direction or both.
+    // Mostly points just outside the support, in one direction or both.
     const float away = radius * (1 + 1e-5f) + (trial.uniform() < 0.5f ? 1e-3f : 3) * trial.uniform();
     const float beyond = trial.uniform() < 0.5f ? away : -away, any = 2 * radius * (2 * trial.uniform() - 1);
     const float x = trial.uniform() < 0.5f ? beyond : any, y = x == beyond ? any : beyond;

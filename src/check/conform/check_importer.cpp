@@ -1,5 +1,5 @@
-// What can be said of every importer, whatever it reads: what it cannot read is an Error that names the file, and what it can
-// is the same each time.
+// Checks of every importer, whatever its format: a file that it cannot read throws an Error that names the file, and a file
+// that it can read gives the same result each time.
 
 #include "etendue/importer.h"
 
@@ -52,7 +52,7 @@ class ImporterTrial {
     }
   }
 
-  /// Files of no format, and of the beginnings of some.
+  /// Files of no format, and beginnings of files of some formats.
   std::vector<std::string> hostile() {
     std::vector<std::string> all = {"",
                                     "\n",

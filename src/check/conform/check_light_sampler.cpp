@@ -1,4 +1,4 @@
-// What holds of every light sampler: choices have the probabilities that are said, and nothing that gives light is left out.
+// Checks of every light sampler: luminaires are chosen with the stated probabilities, and none that emits has probability zero.
 
 #include <fmt/format.h>
 
@@ -53,7 +53,7 @@ class LightTrial {
     return fmt::format("luminaire {} (a {})", luminaire.luminaire_index, luminaire.class_info().name);
   }
 
-  /// Draws many times; `said` is the probability of each luminaire.
+  /// Samples many times and compares with `said`, the probability of each luminaire, by a chi-square test.
   template <class C>
   void count(const std::string& where, const std::vector<double>& said, const C& choose, const std::string& check) {
     const int n = trial.samples(20000);
@@ -112,7 +112,7 @@ class LightTrial {
     count(where, said, [&](float u) { return sampler_.choose(p, normal, u); }, "choices have their probabilities");
   }
 
-  /// Whether light of the luminaire reaches a point from any of some places.
+  /// Whether the luminaire illuminates a point from any of 16 points sampled on it.
   bool lights(const SceneObject& l, const Point3& from) {
     const Wavelengths w = spread_wavelengths(500);
     for (int i = 0; i < 16; ++i) {

@@ -1,5 +1,5 @@
-// What holds of every object map: numbers and colours are finite everywhere, reflectances are fractions, and what is filtered
-// over a footprint is the mean there.
+// Checks of every object map: numbers and colours are finite everywhere, reflectances are in [0, 1], and values filtered over a
+// footprint are the mean over it.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 namespace etendue::conform {
 namespace {
 
-/// A square of one metre in the xy plane, on which surface coordinates are metres.
+/// A unit square (1 m) in the xy plane whose uv coordinates are metres.
 Ref<SceneObject> ground() {
   Ref<SceneObject> square = ref_cast<SceneObject>(Registry::instance().create("Rectangle"));
   set(*square, "corner", Value(Numbers{{0, 0, 0}, 1, Dimension::none}));
@@ -59,7 +59,7 @@ class MapTrial {
       trial.expect(map_.color(p, w, use).finite(), "colours are finite", where);
     trial.expect(reflectance.minimum() >= 0 && reflectance.maximum() <= 1 + 1e-6f, "reflectances are in [0, 1]", where);
     if (extreme || !std::isfinite(scalar) || !over_constants()) return;
-    // The mean over channels or wavelengths lies among the values at wavelengths.
+    // The scalar is a mean over channels or wavelengths, so it lies within the range of the values at all wavelengths.
     float least = 1, most = 0;
     for (int i = 0; i < 5; ++i) {
       const Spectrum s = map_.reflectance(p, spread_wavelengths(400 + 20 * float(i)));
@@ -96,7 +96,7 @@ class MapTrial {
         for (const float footprint : {0.0f, 1e-20f, 0.1f, 1e10f, 1e30f}) {
           SurfacePoint p = ground_point(*square_, u, v, footprint);
           p.object_position.z = trial.uniform() < 0.5f ? 0 : u;
-          if (trial.uniform() < 0.5f) {  // seen along the surface
+          if (trial.uniform() < 0.5f) {  // seen at grazing incidence
             p.ray_direction = {1, 0, 0};
             p.footprint_cosine = 0;
           }
@@ -119,7 +119,8 @@ class MapTrial {
     }
   }
 
-  /// What a map makes of varying maps need not be linear: then the mean is not what it gives.
+  /// Whether no input of the map is a varying map. A map may be nonlinear in its inputs: then its filtered value need not be
+  /// the mean.
   bool over_constants() const {
     for (const Member& m : map_.class_info().members) {
       if (m.kind != Kind::component) continue;
@@ -131,11 +132,12 @@ class MapTrial {
     return true;
   }
 
-  /// Over squares on the ground seen from above: of a map that reacts to footprints the filtered value is nearer to the mean
-  /// than the value itself, and over many places neither too large nor too small.
+  /// Compares values filtered over squares on the ground, seen from above, with the mean over the square. If the map reacts to
+  /// footprints, the filtered value must be nearer to the mean than the unfiltered one, and over many places it must not be
+  /// biased.
   void check_filter() {
-    // These make sharp patterns of what they filter (noise), or end a picture at its border, where
-    // averages of it know nothing of what is beyond: they only come near the mean.
+    // These maps form sharp patterns of the noise that they filter, or end an image at its border, where its averages do not
+    // include what is beyond. Their filtered values only approximate the mean.
     for (const char* nonlinear : {"HypertextureMap", "MarbleMap", "TurbulenceMap", "CellularMap"})
       if (map_.class_info().name == nonlinear) return;
     for (const char* member : {"wrap", "wrap_v"}) {
@@ -150,7 +152,7 @@ class MapTrial {
       bool reacts = false;
       const int places = trial.samples(400);
       for (int i = 0; i < places; ++i) {
-        // Far enough apart that not all see the same few features.
+        // The places are far enough apart that they do not all contain the same few features.
         const float reach = std::max(1.0f, 8 * width);
         const float u = 0.5f + reach * (trial.uniform() - 0.5f), v = 0.5f + reach * (trial.uniform() - 0.5f);
         const double filtered = double(map_.scalar(ground_point(*square_, u, v, width)));

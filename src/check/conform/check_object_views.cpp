@@ -1,4 +1,5 @@
-// What holds of every scene object: how it is seen, where its tangents lead, and that it may be moved.
+// Checks of every scene object: the solid angle in which it is seen, its tangents, and moved copies. See also
+// check_scene_object.cpp.
 
 #include <fmt/format.h>
 
@@ -9,20 +10,21 @@
 
 namespace etendue::conform {
 
-/// In eight cells around the direction to the middle, by angle and azimuth: the solid angle in which the object is seen, by
-/// rays, and by points sampled to be seen from there, as the mean of 1 / density of those that are.
+/// Measures the solid angle in which the object is seen from a point, in eight cells of angle and azimuth around the direction
+/// to its centre: by rays, and by points of sample_visible as the mean of 1 / pdf of those that are visible.
 void check_seen_from(const ObjectTrial& o, const Point3& from) {
   constexpr size_t cells = 8;
   const Vector3 to = o.centre - from;
   const float d = length(to), sine = 1.02f * o.radius / d;
   const bool around = sine >= 1;
-  const float height = around ? 2 : sine * sine / (1 + std::sqrt(1 - sine * sine));  // 1 - cos of the ball's angle
+  const float height =
+      around ? 2 : sine * sine / (1 + std::sqrt(1 - sine * sine));  // 1 - cos of the half-angle of the bounding sphere
   const Frame frame(Normal3(to / d));
   const auto cell = [&](const Vector3& v) {
     const float h = length_squared(v - Vector3(frame.n)) / 2;
     return size_t(2 * int(dot(v, frame.s) > 0) + int(dot(v, frame.t) > 0) + (h > height / 4 ? 4 : 0));
   };
-  // Of a luminaire what is seen is what shines: points on a dark side need not be chosen.
+  // Of a luminaire only what emits counts: sample_visible need not choose points on a dark side.
   const auto shines = [&](const SurfacePoint& p, const Vector3& v) {
     return !o.object.emission || o.object.emission->emits(p, -v);
   };
@@ -59,14 +61,14 @@ void check_seen_from(const ObjectTrial& o, const Point3& from) {
       Hit hit;
       const float off = 1e-4f * s.distance + 4 * p.error;
       if (!shines(p, s.direction)) {
-        // chosen in vain
+        // a sample on a side that does not emit
       } else if (o.object.intersect(o.ray(from, s.direction), hit) && hit.distance < s.distance + off) {
-        // Another part of the object may lie just before it.
+        // Another part of the object may lie in front of the point.
         if (hit.distance > s.distance - (hit.primitive == p.primitive ? off : 1e-6f * s.distance + p.error)) {
           seen = cell(s.direction);
           value = 1 / double(s.pdf);
         }
-      } else if (std::abs(dot(p.normal, s.direction)) > 1e-2f) {  // of a sheet seen edge on, rounding decides
+      } else if (std::abs(dot(p.normal, s.direction)) > 1e-2f) {  // for a thin object seen edge on, rounding decides
         ++behind;
       }
     }
@@ -90,8 +92,8 @@ void check_seen_from(const ObjectTrial& o, const Point3& from) {
 
 namespace {
 
-/// Two points of the surface, a step apart, and how far the tangents at the first lead from the second, of that step. False:
-/// there is none, or a seam lies between.
+/// Finds two points of the surface about a step apart. `off` is the relative error of the displacement that the tangents at the
+/// first point predict from the difference of uv. False: a point was not found, or a seam of the coordinates lies between them.
 bool step_off(const ObjectTrial& o, const SurfacePoint& start, float phi, float step, SurfacePoint& a, float& off) {
   const auto down = [&](const Point3& over, SurfacePoint& p) {
     Hit hit;
@@ -114,10 +116,10 @@ bool step_off(const ObjectTrial& o, const SurfacePoint& start, float phi, float 
 
 }  // namespace
 
-/// dpdu and dpdv span the surface, and tell where a point with slightly other coordinates lies. At the distance d from a pole
-/// of the coordinates, or where the surface bends within d, a step h leads off by some h / d of itself: a smaller one by less,
-/// if the tangents are right. On the flat sides of a long ellipsoid a few hundredths of all points are so near to a pole that a
-/// step of a thousandth of its length leads off by more than `largest`.
+/// Checks that dpdu and dpdv are tangent and that they predict where a point with slightly different coordinates lies. At the
+/// distance d from a pole of the coordinates, or where the surface bends within d, the relative error of this prediction for a
+/// step h is about h / d: smaller steps have smaller errors if the tangents are right. On the flat sides of a long ellipsoid a
+/// few per cent of all points are so near to a pole that the error for a step of a thousandth of its length exceeds `largest`.
 void check_tangents(const ObjectTrial& o) {
   constexpr float largest = 0.06f;
   int wrong = 0, tested = 0;
@@ -135,7 +137,7 @@ void check_tangents(const ObjectTrial& o) {
                                         return fmt::format("at {}, normal {}: dpdu {}, dpdv {}", text_of(a.position),
                                                            text_of(Vector3(a.normal)), text_of(a.dpdu), text_of(a.dpdv));
                                       });
-    // Below some steps rounding takes over.
+    // Below a certain step size rounding errors dominate.
     for (float step = first / 4; !(off < largest) && step > std::max(first / 64, 100 * a.error); step /= 4)
       if (!step_off(o, start, phi, step, a, off)) break;
     wrong += !spans || !(off < largest);
@@ -144,7 +146,7 @@ void check_tangents(const ObjectTrial& o) {
                  [&] { return fmt::format("{} of {} steps lead elsewhere", wrong, tested); });
 }
 
-/// A copy that is moved, turned and enlarged is the same, moved, turned and enlarged.
+/// A copy that is translated, rotated and scaled must give the same hits, transformed.
 void check_moved(const ObjectTrial& o) {
   if (o.object.transform.animated()) return;
   const float scale = 1.7f;

@@ -1,4 +1,4 @@
-// What holds of every output: the file holds the picture, or is as it was before and an Error says why.
+// Checks of every output: the file holds the image, or it is unchanged and an Error gives the reason.
 
 #include "etendue/output.h"
 
@@ -44,7 +44,8 @@ class OutputTrial {
  private:
   std::string path(const std::string& stem) const { return folder_ + "/" + stem + output_.extension(); }
 
-  /// In gamut, differing from pixel to pixel, more than eight bits fine; radiance over four orders of magnitude.
+  /// Colours within the gamut that differ from pixel to pixel and need more than eight bits; radiance spans four orders of
+  /// magnitude.
   Image picture(int width, int height) {
     const bool display = output_.for_display();
     Image image(width, height, display ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"X", "Y", "Z"});
@@ -52,7 +53,7 @@ class OutputTrial {
       const double scale = display ? 1 : std::exp(double(lerp(trial.uniform(), -5, 5)));
       double rgb[3];
       for (double& v : rgb) v = scale * double(lerp(trial.uniform(), 0.2f, 1));
-      // The columns of sRGB's matrix, in numbers that need not be exact: any colour with positive R, G and B will do.
+      // Approximately the sRGB to XYZ matrix: any colours with positive R, G and B will do.
       constexpr double to_xyz[3][3] = {{0.41, 0.36, 0.18}, {0.21, 0.72, 0.07}, {0.02, 0.12, 0.95}};
       for (size_t c = 0; c < 3; ++c)
         image.values[i + c] = display ? rgb[c] : to_xyz[c][0] * rgb[0] + to_xyz[c][1] * rgb[1] + to_xyz[c][2] * rgb[2];
@@ -63,7 +64,7 @@ class OutputTrial {
     return image;
   }
 
-  /// Writes; what was thrown, "" for nothing. Anything but an Error is a fault by itself.
+  /// Writes the image; returns the message of the Error, "" for none. Other exceptions fail a check.
   std::string refusal(const Image& image, const std::string& to) {
     try {
       output_.write_image(image, to);
@@ -77,7 +78,7 @@ class OutputTrial {
     return {};
   }
 
-  /// What is in the folder, to be compared: nothing else may appear.
+  /// The names of the folder's files, to check that no others appear.
   std::set<std::string> listing() const {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) names.insert(entry.path().filename().string());
@@ -105,7 +106,7 @@ class OutputTrial {
     }
   }
 
-  /// With what the library reads, if it knows the format.
+  /// Compares the file with the image, if the library can read the format.
   void compare(const Image& image, const std::string& file) {
     std::optional<Image> read;
     try {
@@ -128,7 +129,8 @@ class OutputTrial {
     for (size_t p = 0; p < size_t(image.width) * size_t(image.height); ++p) {
       double largest = 0;
       for (size_t c = 0; c < 3; ++c) largest = std::max(largest, wanted.values[3 * p + c]);
-      // A step of eight bits and its noise, decoded; of radiance, of a shared exponent with eight bits.
+      // For display: a step of 8-bit quantization with its noise, decoded. For radiance: a step of a shared exponent with 8-bit
+      // mantissas.
       const double tolerance = output_.for_display() ? 0.012 : 0.02 * largest;
       for (size_t c = 0; c < 3; ++c)
         trial.expect(std::abs(is.values[p * stride + c] - wanted.values[3 * p + c]) <= tolerance,
@@ -139,7 +141,8 @@ class OutputTrial {
     }
   }
 
-  /// Who has the old file open goes on seeing it whole.
+  /// A process that has the old file open must still read it unchanged: the new file is written to a temporary file and
+  /// renamed.
   void check_replacing() {
     const std::string to = path("replaced"), old(100000, 'o');
     std::ofstream(to, std::ios::binary) << old;
@@ -181,7 +184,7 @@ class OutputTrial {
     trial.expect(why.find(taken) != std::string::npos && std::filesystem::is_directory(taken), "a folder is not written over",
                  [&] { return "'" + why + "'"; });
 
-    // Values that are no light are for the format to keep or to bound; the file is a picture all the same.
+    // Values that are no valid radiance may be kept or clamped by the format; the file must still be an image.
     Image odd = picture(4, 3);
     const double values[] = {std::nan(""), -1, 1e300, std::numeric_limits<double>::infinity(), 0, -0.0};
     for (size_t i = 0; i < std::size(values); ++i) odd.values[i] = values[i];

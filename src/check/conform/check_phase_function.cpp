@@ -1,4 +1,4 @@
-// What holds of every phase function.
+// Checks of every phase function.
 
 #include "etendue/phase_function.h"
 
@@ -13,8 +13,8 @@
 namespace etendue::conform {
 namespace {
 
-// Cells over h = 1 - cos(theta) that hold about the same number of drawn values, so that a narrow peak is looked at as closely
-// as the rest. Their shares are integrals of 2 pi value(h) by the midpoint rule.
+// A chi-square test in cells over h = 1 - cos(theta) that hold about the same number of samples, so that narrow peaks are
+// resolved as well as the rest. The expected shares are integrals of 2 pi value(h) by the midpoint rule.
 void check_phase_function(Trial& trial) {
   const PhaseFunction& phase = trial.part<PhaseFunction>();
   const auto draw = [&](int count) {

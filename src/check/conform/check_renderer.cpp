@@ -1,4 +1,4 @@
-// What holds of every renderer that says it misses nothing of a scene: pictures with a known value have it.
+// Checks of every renderer that reports no missed light for a scene: images of scenes with a known mean must have it.
 
 #include <fmt/format.h>
 
@@ -11,32 +11,34 @@
 namespace etendue::conform {
 namespace {
 
-/// A scene in which the mean of the picture is known.
+/// A scene whose mean image value is known.
 struct KnownScene {
   const char *name, *camera, *objects;
   double expected;
 };
 
 constexpr KnownScene known_scenes[] = {
-    // Radiance 1 everywhere and half of it reflected each time: 1 / (1 - 1/2).
+    // Emitted radiance 1 everywhere, and a reflectance of 1/2: 1 / (1 - 1/2).
     {"a furnace", "PerspectiveCamera { from: [0.3, 0.1, 0.2], to: [0, 0, 1], fov: 90 }",
      "Sphere { shader: Lambertian { color: 0.5 }, emission: DiffuseEmission { radiance: 1, sides: back } }", 2},
-    // A plane that sees nothing but radiance 1, and reflects half of it.
+    // A plane that reflects half of a uniform radiance of 1.
     {"a plane under an environment", "PerspectiveCamera { from: [0, 0, 2], to: [0, 0, 0], fov: 40 }",
      "Rectangle { corner: [-4, -4, 0], edge_u: [8, 0, 0], edge_v: [0, 8, 0], shader: Lambertian { color: 0.5 } }, "
      "Environment { emission: EnvironmentEmission { radiance: 1 } }",
      0.5},
-    // An irradiance of pi on it, and no light to send on but upwards.
+    // An irradiance of pi gives a reflected radiance of 1/2, which leaves upwards and hits nothing else.
     {"a plane under a distant light", "PerspectiveCamera { from: [0, 0, 2], to: [0, 0, 0], fov: 40 }",
      "Rectangle { corner: [-4, -4, 0], edge_u: [8, 0, 0], edge_v: [0, 8, 0], shader: Lambertian { color: 0.5 } }, "
      "Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: 3.14159265 } }",
      0.5},
-    // The point's intensity of pi gives an irradiance of pi, of which a radiance of 1/2 is reflected, and half of that again.
+    // The point's intensity of pi gives an irradiance of pi, so the reflected radiance is 1/2 and each further bounce adds half
+    // of the one before: 1/2 + 1/4 + ... = 1.
     {"a hollow sphere around a point", "PerspectiveCamera { from: [0.3, 0.1, 0.2], to: [0, 0, 1], fov: 90 }",
      "Sphere { shader: Lambertian { color: 0.5 } }, Point { emission: DiffuseEmission { radiance: 3.14159265 } }", 1},
 };
 
-/// The mean over pixels of Y, of renders with different seeds: their spread counts whatever correlates within one.
+/// The mean of Y over pixels, for renders with different seeds. The spread between renders includes all correlation within a
+/// render.
 statistics::Mean picture_means(Render& render, int renders, std::uint64_t& bad) {
   statistics::Mean means;
   for (int i = 0; i < renders; ++i) {
@@ -52,11 +54,10 @@ statistics::Mean picture_means(Render& render, int renders, std::uint64_t& bad) 
   return means;
 }
 
-/// So many rays may be taken for all the pictures of one scene, at CI's setting: some seconds. Those of a path tracer take a
-/// fiftieth of it.
+/// The most rays for all images of one scene, at the effort of CI: some seconds. A path tracer needs a fiftieth of this.
 constexpr int most_rays = 40'000'000;
 
-/// Returns what the renderer says that it misses; empty: it was tried. Throws what it refuses by.
+/// Returns the light that the renderer reports as missed; empty: the scene was tested. Throws the renderer's Errors.
 std::string check_scene(Trial& trial, const KnownScene& known) {
   const std::string what = fmt::format("the value of {} is the known one", known.name);
   const Ref<Job> job = load_job_text(fmt::format("Job {{ camera: {}, image: ImageBuffer {{ width: 8, height: 8, filter: "
@@ -65,14 +66,15 @@ std::string check_scene(Trial& trial, const KnownScene& known) {
                                      "known");
   const Ref<Renderer> renderer = ref_cast<Renderer>(parse_component(trial.text(), "drawn"));
   job->renderer = renderer;
-  // Paths may be cut off where nothing is left of them, and not before.
+  // Long paths, so that those cut off carry nothing.
   if (renderer->class_info().find("max_depth")) set(*renderer, "max_depth", Value(Number{64}));
   renderer->samples = trial.samples(16);
   const RayBound bound(*job, std::uint64_t(trial.samples(most_rays)));
   Render render(job, {.threads = 1});
   const std::vector<Advice> missed = renderer->misses(scene_traits(*job->scene, *job->camera));
   if (!missed.empty()) return missed.front().lost;
-  // Student's distribution with 15 degrees of freedom is beyond 9.2 standard errors as seldom as the normal one beyond 5.33.
+  // Student's distribution with 15 degrees of freedom exceeds 9.2 standard errors as rarely as the normal distribution exceeds
+  // 5.33.
   constexpr double errors = 9.2;
   std::uint64_t bad = 0;
   statistics::Mean means;
@@ -107,7 +109,7 @@ void check_renderer(Trial& trial) {
         ++tried;
       else
         missed = "misses " + lost;
-    } catch (const Error& error) {  // it cannot start with members that go ill together, and says so
+    } catch (const Error& error) {  // it throws for members that cannot be combined
       if (!std::string(error.what()).starts_with(part.class_info().name)) throw;
       missed = error.what();
     }

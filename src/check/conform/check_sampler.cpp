@@ -1,4 +1,4 @@
-// What holds of every sampler: numbers in [0, 1), reproducible, uniform, and different where they should be.
+// Checks of every sampler: numbers in [0, 1), reproducible, uniform, and independent across dimensions, pixels and seeds.
 
 #include "etendue/sampler.h"
 
@@ -31,7 +31,7 @@ void check_range(Trial& trial, const Sampler& sampler) {
   }
 }
 
-/// One number of each of many pixels and dimensions: as independent as can be.
+/// Tests one number in each of many pixels and dimensions, which are as independent as possible.
 void check_uniform(Trial& trial, const Sampler& sampler) {
   constexpr size_t bins = 16;
   const size_t count = size_t(trial.samples(100000));
@@ -42,7 +42,7 @@ void check_uniform(Trial& trial, const Sampler& sampler) {
     const auto dimension = std::uint32_t(i % 29);
     const float x = sampler.number(key, dimension);
     const Point2 p = sampler.pair(key, dimension + 100);
-    if (!(x >= 0 && x < 1 && p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1)) return;  // found elsewhere
+    if (!(x >= 0 && x < 1 && p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1)) return;  // reported by check_range
     ++single[size_t(x * bins)];
     ++pairs[size_t(p.x * bins) * bins + size_t(p.y * bins)];
     mean += double(x) / double(count);
@@ -61,13 +61,13 @@ void check_uniform(Trial& trial, const Sampler& sampler) {
                "the means of x and x^2 are 1/2 and 1/3", [&] { return fmt::format("{:.6f} and {:.6f}", mean, square_mean); });
 }
 
-/// What must not know of each other: dimensions, neighbouring pixels, seeds.
+/// Tests the independence of dimensions, neighbouring pixels, and seeds.
 void check_independent(Trial& trial, const Sampler& sampler) {
   constexpr size_t bins = 8;
   const auto pixels = size_t(trial.samples(16000));
   std::vector<double> dimensions(bins * bins), neighbours(bins * bins), seeds(bins * bins);
   for (size_t pixel = 0; pixel < pixels; ++pixel) {
-    // One sample of each pixel, or stratification itself would make counts too even.
+    // Only one sample per pixel: with several, stratification would make the counts too even for the test.
     const auto i = std::uint32_t(mix_bits(pixel) % 16);
     const SampleKey key(1, int(pixel), 5, i), below(1, int(pixel), 6, i), other(2, int(pixel), 5, i);
     const auto bin = [](float x) { return std::min(size_t(std::max(x, 0.0f) * bins), bins - 1); };
@@ -101,7 +101,8 @@ double discrepancy(const std::vector<Point2>& points) {
   return 1.0 / 9 - 2 * once / n + twice / (n * n);
 }
 
-/// A pixel's samples are spread no worse than random ones, whose expected squared discrepancy is (1/4 - 1/9) / n.
+/// Tests that a pixel's samples have no larger discrepancy than random ones, whose expected squared discrepancy is (1/4 - 1/9)
+/// / n.
 void check_spread(Trial& trial, const Sampler& sampler) {
   constexpr std::uint32_t n = 64;
   for (const std::uint32_t dimension : {0u, 2u, 6u, 20u}) {

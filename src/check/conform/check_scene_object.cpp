@@ -1,4 +1,4 @@
-// What holds of every scene object: one surface, whether rays meet it, points are chosen on it or areas are told. See also
+// Checks of every scene object: ray intersection, sampling by area, and the stated area describe the same surface. See also
 // check_object_views.cpp.
 
 #include <fmt/format.h>
@@ -56,7 +56,7 @@ void check_hit(const ObjectTrial& o, const Ray& ray, const Hit& hit, const Surfa
 }
 
 /// Isotropic lines through a ball of radius R cross a surface of area A within it A / (2 pi R^2) times on average (Crofton).
-/// On the way: what a hit must be, and that shorter, longer and scaled rays agree.
+/// Also checks each hit, and that shorter, longer and scaled rays agree with it.
 void check_lines(const ObjectTrial& o) {
   const float r = 1.05f * o.radius;
   statistics::Mean crossings;
@@ -90,7 +90,8 @@ void check_lines(const ObjectTrial& o) {
       [&] { return fmt::format("{} m^2, but {} ± {} by lines", said, found, scale * crossings.error()); });
 }
 
-/// A short ray towards a point meets the surface there, perhaps after other parts of it, and finds the same normal.
+/// Whether a short ray towards a point of the surface hits it, perhaps after other parts of the surface, and finds the same
+/// normal.
 bool found_nearby(const ObjectTrial& o, const SurfacePoint& p) {
   Vector3 away = o.trial.direction();
   if (std::abs(dot(p.normal, away)) < 0.2f) away = normalize(away + 0.5f * Vector3(p.normal));
@@ -131,7 +132,7 @@ void check_points(const ObjectTrial& o) {
     missed += !found_nearby(o, p);
   }
   const double said = double(o.object.area(o.time));
-  // Beside an edge a ray may find the neighbour.
+  // Next to an edge a ray may hit the neighbouring face.
   o.trial.expect(ObjectTrial::few(missed, n, 5e-3), "rays find the points that were sampled by area",
                  [&] { return fmt::format("{} of {} were not found", missed, n); });
   o.trial.expect(std::abs(area.mean() - said) < Trial::significant_errors * area.error() + 1e-3 * said,
@@ -139,7 +140,7 @@ void check_points(const ObjectTrial& o) {
                  [&] { return fmt::format("mean of 1 / density {} ± {} m^2, area {} m^2", area.mean(), area.error(), said); });
 }
 
-/// Whether some of the surface is very near, or all seen edge on.
+/// Whether some of the surface is very near, or all of it is seen edge on.
 bool too_near(const ObjectTrial& o, const Point3& from) {
   for (int i = 0; i < 1000; ++i)
     if (o.object.occludes(o.ray(from, o.trial.direction(), 0.02f * o.radius))) return true;
@@ -153,7 +154,7 @@ bool too_near(const ObjectTrial& o, const Point3& from) {
 
 void check_scene_object(Trial& trial) {
   const SceneObject& object = trial.part<SceneObject>();
-  if (object.unbounded()) {  // it has no area, no size and no points to choose
+  if (object.unbounded()) {  // it has no area and no bounding box, and points cannot be sampled on it
     trial.expect(!(object.sample_area(trial.pair(), 0).pdf > 0), "on what has no end no points are chosen");
     return;
   }
@@ -166,14 +167,15 @@ void check_scene_object(Trial& trial) {
                [&] { return text_of(o.bounds.low) + " .. " + text_of(o.bounds.high); });
   check_lines(o);
   if (scene_within(object)) return;  // a scene is no luminaire: no points are chosen on it
-  if (!(object.area(o.time) > 0)) {  // a solid of which nothing is left: lines agreed
+  if (!(object.area(o.time) > 0)) {  // an empty solid: the line test above found area 0 too
     trial.expect(!(o.sample_area().pdf > 0), "on what has no area no points are chosen");
     return;
   }
   check_points(o);
   check_tangents(o);
   for (const float away : {0.3f, 1.2f, 4.0f, 40.0f}) {
-    // Neither right on the surface nor in a flat one's plane: what is seen there is sampled with almost any noise.
+    // Not directly at the surface nor in the plane of a flat object, where sample_visible may have an arbitrarily large
+    // variance.
     Point3 from = o.centre + away * o.radius * trial.direction();
     for (int i = 0; i < 20 && too_near(o, from); ++i) from = o.centre + away * o.radius * trial.direction();
     check_seen_from(o, from);

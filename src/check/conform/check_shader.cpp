@@ -1,5 +1,5 @@
-// What holds of every shader: see also check_shader_values.cpp (evaluation), check_shader_reversal.cpp (reciprocity, adjoint),
-// check_shader_sampling.cpp (samples, densities, energy).
+// Checks of every shader. See also check_shader_values.cpp (evaluation), check_shader_reversal.cpp (reciprocity, adjoint),
+// check_shader_sampling.cpp (samples, pdfs, energy).
 
 #include <fmt/format.h>
 
@@ -45,7 +45,8 @@ Ref<SceneObject> carrier_of(Shader& shader) {
 
 namespace {
 
-/// Looks whether radiance and importance are reflected alike: they are but for shading normals.
+/// Whether the shader has shading normals of its own: only then do radiance and importance have different weights of
+/// reflection.
 bool turns_normals(const Scatter& scatter, const SurfacePoint& p) {
   if (dot(Vector3(scatter.frame().n), p.normal) < 0.999999f) return true;
   std::mt19937 random(1);
@@ -132,7 +133,7 @@ RelativeIndex::RelativeIndex(Trial& trial, const BoundShader& bound, Lobes which
 
 namespace {
 
-/// What does not depend on directions: lobes, and that binding is a function of its arguments.
+/// Checks what is independent of directions: the lobes, and that binding is a pure function of its arguments.
 void check_binding(Trial& trial, const Shader& shader, const BoundShader& bound) {
   const Lobes possible = shader.possible_lobes();
   if (!bound.scatter()) return;
@@ -162,7 +163,8 @@ void check_binding(Trial& trial, const Shader& shader, const BoundShader& bound)
   }
 }
 
-/// A wavelength-dependent index bends each wavelength another way: a path can follow one only, and must be told.
+/// An index that depends on wavelength refracts each wavelength in another direction: a path can follow only one, so such
+/// samples must be marked as dispersive.
 void check_dispersion(Trial& trial, const Shader& shader, const BoundShader& bound) {
   const Spectrum index = shader.interior_index(bound.wavelengths());
   trial.expect(index.finite() && index.minimum() > 0, "the index inside is finite and positive",
@@ -180,7 +182,7 @@ void check_dispersion(Trial& trial, const Shader& shader, const BoundShader& bou
     const Vector3 out = trial.direction();
     const Point2 u = trial.pair();
     const auto s = bound.scatter()->sample(out, trial.uniform(), u, Transport::radiance, specular_transmission);
-    // By the index inside, if that is the one: a mixture may refract by another.
+    // Whether the sample refracts by the interior index: in a mixture it may refract by another one.
     const bool by_inside = s && (std::abs(s->eta - index[0]) < 1e-4f || std::abs(s->eta * index[0] - 1) < 1e-4f);
     const Spectrum* known = by.from(dot(bound.point().normal, out) > 0);
     const bool varies = (by_inside && s->eta != 1 && index.minimum() != index.maximum()) ||
@@ -197,7 +199,7 @@ void check_dispersion(Trial& trial, const Shader& shader, const BoundShader& bou
   }
 }
 
-/// What is farther off guides no choice.
+/// An albedo with a larger relative error is useless for choosing lobes.
 constexpr float largest_albedo_error = 0.5f;
 
 void check_shader(Trial& trial) {

@@ -1,4 +1,4 @@
-// Light and importance: reciprocity, and that the two kinds of transport are each other's adjoint.
+// Reciprocity of shaders, and that transport of importance is the adjoint of transport of radiance.
 //
 // With measures by the geometric normal ng, importance carried from a to b must be what radiance carried from b to a is (Veach
 // 1997, sections 5.2 and 5.3, equations 5.17 to 5.19): with v(a, b) = f(a, b) |b . ns|, the values of Scatter,
@@ -18,11 +18,11 @@ std::string text(const Spectrum& s) { return fmt::format("[{:.7g} {:.7g} ...]", 
 struct Pair {
   Vector3 a, b;
   bool sampled = false;
-  float eta = 1;            ///< the hero's index where b leads over that where a came from, known if sampled
-  bool hero_alone = false;  ///< other wavelengths are refracted elsewhere
+  float eta = 1;            ///< index of b's medium over that of a's at the hero wavelength, known if sampled
+  bool hero_alone = false;  ///< other wavelengths are refracted in other directions
 };
 
-/// Directions a sample connects, or any two.
+/// Two directions that a sample connects, or two random ones.
 Pair draw_pair(Trial& trial, const Scatter& scatter, Lobes which) {
   Pair pair{trial.direction(), trial.direction()};
   if (trial.uniform() < 0.7f)
@@ -41,7 +41,7 @@ void check_adjoint(Trial& trial, const BoundShader& bound, const std::string& ch
   for (const Lobes which : subsets_of(scatter.lobes() & smooth_lobes))
     for (int i = trial.samples(300); i > 0; --i) {
       const Pair pair = draw_pair(trial, scatter, which);
-      // Both sides times both cosines with ng, so that nothing is divided.
+      // Both sides are multiplied by both cosines with ng, to avoid divisions.
       const auto importance = [&](const Vector3& a, const Vector3& b) {
         return scatter.evaluate(a, b, Transport::importance, which) * std::abs(dot(ng, a));
       };
@@ -61,21 +61,21 @@ void check_adjoint(Trial& trial, const BoundShader& bound, const std::string& ch
     }
 }
 
-/// Reciprocity across refraction holds at each wavelength by its own indices, of which a sample tells the hero's alone: each
-/// wavelength was the hero in turn (see RelativeIndex). Where a lobe refracts by several indices at once, as that of a mixture
-/// may, only what samples connect is compared, at the hero.
+/// Reciprocity across refraction holds at each wavelength with its own relative index. A sample gives only the hero's, so each
+/// wavelength is made the hero in turn (see RelativeIndex). Where a lobe refracts by several indices at once, as in a mixture,
+/// only pairs that a sample connects are compared, at the hero wavelength.
 void check_reciprocity(Trial& trial, const BoundShader& bound) {
   const Scatter& scatter = *bound.scatter();
   for (const Lobes which : subsets_of(scatter.lobes() & smooth_lobes)) {
     const bool reflection = (which & transmission_lobes) == 0;
-    if (!reflection && !std::has_single_bit(unsigned(which))) continue;  // of several lobes the index is not known
+    if (!reflection && !std::has_single_bit(unsigned(which))) continue;  // the index of several lobes together is not known
     const RelativeIndex index = reflection ? RelativeIndex() : RelativeIndex(trial, bound, which);
     for (int i = trial.samples(300); i > 0; --i) {
       const Pair pair = draw_pair(trial, scatter, which);
       const Spectrum* known = reflection ? nullptr : index.from(dot(bound.point().normal, pair.a) > 0);
       if (!reflection && !known && !pair.sampled) continue;
       const Spectrum eta = known ? *known : Spectrum(pair.eta);
-      // f with both cosines, so that nothing is divided.
+      // f times both cosines, to avoid divisions.
       const auto value = [&](const Vector3& a, const Vector3& b) {
         return scatter.evaluate(a, b, Transport::radiance, which) * scatter.cosine(a);
       };
@@ -93,10 +93,11 @@ void check_reciprocity(Trial& trial, const BoundShader& bound) {
   }
 }
 
-/// What a specular lobe sends from one direction to another: a lobe may have several directions, and several ways to one.
+/// What a specular lobe scatters from one direction to another. A lobe may scatter into several directions, and into one
+/// direction in several ways.
 struct Connection {
-  double power = 0;  ///< the fraction of the hero's
-  float eta = 0;     ///< index where the direction leads over index where it comes from; 0: it does not lead there
+  double power = 0;  ///< the fraction of power at the hero wavelength
+  float eta = 0;     ///< index of the medium of `in` over that of `out`; 0: `in` is never sampled
 };
 
 Connection connection(const Scatter& scatter, const Vector3& out, const Vector3& in, Lobes lobe) {
@@ -112,7 +113,8 @@ Connection connection(const Scatter& scatter, const Vector3& out, const Vector3&
   return c;
 }
 
-/// Specular paths can be walked both ways, with equal fractions of power; radiance has the squared index besides.
+/// Specular scattering is reversible, with equal fractions of power both ways; radiance also scales with the squared relative
+/// index.
 void check_specular(Trial& trial, const BoundShader& bound) {
   const Scatter& scatter = *bound.scatter();
   for (Lobes rest = scatter.lobes() & specular_lobes; rest != 0; rest &= Lobes(rest - 1)) {
@@ -126,7 +128,7 @@ void check_specular(Trial& trial, const BoundShader& bound) {
       const auto where = [&] {
         return fmt::format("{}: out {}, in {}", lobe_names(lobe), bound.name(out), bound.name(s->direction));
       };
-      // At grazing angles rounding decides.
+      // At grazing angles rounding errors dominate.
       if (scatter.cosine(out) < 0.02f || scatter.cosine(s->direction) < 0.02f) continue;
       if (const auto t = scatter.sample(out, choice, u, Transport::importance, lobe); t && !bound.turned())
         trial.expect(t->direction == s->direction &&
@@ -137,7 +139,7 @@ void check_specular(Trial& trial, const BoundShader& bound) {
                      });
       const Connection there = connection(scatter, out, s->direction, lobe),
                        back = connection(scatter, s->direction, out, lobe);
-      if (there.power < 0.01 && back.power < 0.01) continue;  // so rarely chosen that it may not be met the other way
+      if (there.power < 0.01 && back.power < 0.01) continue;  // so rarely sampled that the reverse may not have been found
       trial.expect(std::abs(back.eta * s->eta - 1) < 1e-3f, "specular paths lead back", where);
       trial.expect(std::abs(there.power - back.power) < 0.01 * std::max(there.power, back.power) + 5e-3,
                    "specular paths carry the same both ways",

@@ -1,4 +1,4 @@
-// Samples of a shader against its density, and energy: chi-square tests and quadrature over cells of the sphere.
+// Checks a shader's samples against its pdf and its energy: chi-square tests and quadrature over cells of the sphere.
 
 #include <fmt/format.h>
 
@@ -12,10 +12,10 @@ namespace {
 using statistics::Mean;
 
 struct Drawn {
-  std::vector<Vector3> directions;  ///< local, of smooth lobes
-  std::vector<double> weights;      ///< of those, at the hero wavelength
-  Mean all;                         ///< of all weights, specular and absorbed ones included
-  Mean others[spectrum_size];       ///< the same at every wavelength, if no sample is dispersive
+  std::vector<Vector3> directions;  ///< of smooth lobes, in the local frame
+  std::vector<double> weights;      ///< weights of these at the hero wavelength
+  Mean all;                         ///< weights of all samples at the hero wavelength, including specular and absorbed ones
+  Mean others[spectrum_size];       ///< the same for each wavelength; valid if no sample is dispersive
   bool dispersive = false;
   int count = 0;
 };
@@ -40,16 +40,16 @@ std::string where(const BoundShader& bound, const Vector3& out, Lobes which) {
   return fmt::format("{}, out {}", lobe_names(which), bound.name(out));
 }
 
-/// So many samples choose the cells, at any effort: cells that are too coarse are no test.
+/// The number of samples by which the cells are chosen, at any effort: too coarse cells would make the test meaningless.
 constexpr int pilots = 6000;
 constexpr size_t cell_count = 96;
-/// What quadrature says of the density and of f cos, and what samples say.
+/// The integrals of the pdf and of f cos by quadrature, and the samples.
 struct Measured {
   double pdf = 0, flux = 0;
   Drawn drawn;
 };
 
-/// The chi-square test of samples against density, and the integrals for further ones.
+/// The chi-square test of samples against the pdf; returns the integrals for further tests.
 Measured check_pdf(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes which, Transport transport,
                    const std::string& check) {
   const Scatter& scatter = *bound.scatter();
@@ -61,7 +61,7 @@ Measured check_pdf(Trial& trial, const BoundShader& bound, const Vector3& out, L
   for (const Vector3& v : m.drawn.directions) ++counts[cells.cell_of(v)];
   counts.push_back(double(n) - double(m.drawn.directions.size()));  // absorbed or specular
   double p = 0;
-  // A density with sharp borders may need more points than most do.
+  // A pdf with sharp edges may need more quadrature points than most.
   for (double tolerance = 1e-3; tolerance > 1e-5 && !(p > Trial::significance); tolerance /= 10) {
     const auto integrals = cells.integrate<2>(
         [&](const Vector3& local) -> std::array<double, 2> {
@@ -77,7 +77,7 @@ Measured check_pdf(Trial& trial, const BoundShader& bound, const Vector3& out, L
       m.flux += flux;
       expected.push_back(pdf * n);
     }
-    const double absorbed = std::max(0.0, 1 - m.pdf) * n;  // known as well as the quadrature is exact
+    const double absorbed = std::max(0.0, 1 - m.pdf) * n;  // only as exact as the quadrature
     expected.push_back(std::abs(absorbed - counts.back()) < 2e-3 * n ? counts.back() : absorbed);
     p = statistics::chi_square(counts, expected, 10, 1e-3 * n);
   }
@@ -98,13 +98,15 @@ Measured check_pdf(Trial& trial, const BoundShader& bound, const Vector3& out, L
   return m;
 }
 
-/// Importance is power. Where normals are turned, of the shader or of a part of it, which then is not reciprocal, that is so
-/// for radiance, by the model's own measure, but for refraction.
+/// The transport whose weights are fractions of power, for tests of energy. This is importance. Under shading normals, of the
+/// point or of a part of the shader (which then is not reciprocal), it is radiance, measured with the shading normal, except
+/// for refraction.
 Transport conserved(const Trial& trial, const BoundShader& bound) {
   return bound.turned() || !trial.part<Shader>().reciprocal() ? Transport::radiance : Transport::importance;
 }
 
-/// Whether lobes ever send wavelengths different ways: where the hero's way is not there, or is the same, others may have more.
+/// Whether these lobes are dispersive in any direction. Where the hero wavelength is not refracted, or is not deflected, no
+/// sample is marked as dispersive, but other wavelengths may carry more than the hero.
 bool ever_dispersive(Trial& trial, const Scatter& scatter, Lobes which) {
   for (int i = 0; i < 300; ++i) {
     const Vector3 out = trial.direction();
@@ -115,19 +117,19 @@ bool ever_dispersive(Trial& trial, const Scatter& scatter, Lobes which) {
   return false;
 }
 
-/// The albedo, as the shader says it to within its bound, is the mean of the samples' weights: an estimate without bias of the
-/// integral of f cos (and of what specular lobes send on), whose standard error is known. Power is compared, as it is by it
-/// that the albedo goes.
+/// Checks that the shader's albedo is, within its stated error, the mean weight of samples. This is an unbiased estimate of the
+/// integral of f cos (plus specular lobes), with a known standard error. Fractions of power are compared, because the albedo is
+/// defined by power.
 void check_albedo(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes which, const Drawn& drawn) {
   const double angle = bound.angle(out), bias = double(trial.part<Shader>().albedo_error());
-  if (angle > 85 && angle < 95) return;  // where it is not bounded
-  // What is off is measured by the whole: of a lobe that sends on next to nothing the share is hardly known.
+  if (angle > 85 && angle < 95) return;  // the error is not bounded there
+  // The error is relative to the albedo of all lobes: for a lobe that scatters next to nothing the relative error may be large.
   const Spectrum said = bound.scatter()->albedo(out, which), all = bound.scatter()->albedo(out);
-  // A path follows its hero where wavelengths go different ways, and does not know what becomes of the others.
+  // A dispersive path follows its hero wavelength, so its weights say nothing about the other wavelengths.
   const bool hero_alone = drawn.dispersive || ever_dispersive(trial, *bound.scatter(), which);
   for (int k = 0; k < (hero_alone ? 1 : spectrum_size); ++k) {
     const Mean& mean = drawn.others[k];
-    // Tables of what light loses between facets, which the weights rest on as well, and rounding.
+    // Tolerance for rounding, and for the tables of energy lost between microfacets, on which the weights depend as well.
     constexpr double least = 2e-3;
     const double margin = Trial::significant_errors * mean.error() + 10 * mean.largest() / drawn.count + least;
     trial.expect(
@@ -140,7 +142,7 @@ void check_albedo(Trial& trial, const BoundShader& bound, const Vector3& out, Lo
   }
 }
 
-/// All for one direction and set of lobes: samples, density and energy.
+/// Tests samples, pdf and energy for one direction and set of lobes.
 void check_direction(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes which) {
   const Shader& shader = trial.part<Shader>();
   const Transport transport = conserved(trial, bound);
@@ -161,7 +163,8 @@ void check_direction(Trial& trial, const BoundShader& bound, const Vector3& out,
   check_albedo(trial, bound, out, which, m.drawn);
 }
 
-/// Whether a shader rests on another whose values are estimates: then each of its own asks for very many.
+/// Whether a shader contains a stochastic one, whose values are estimates: then each evaluation needs very many of the inner
+/// one.
 bool rests_on_estimates(const Component& shader) {
   for (const Member& m : shader.class_info().members) {
     if (m.kind != Kind::component || m.list) continue;
@@ -173,7 +176,7 @@ bool rests_on_estimates(const Component& shader) {
   return false;
 }
 
-/// Of shaders that are not reciprocal: directions are drawn as for radiance, and weighed with the adjoint.
+/// For shaders that are not reciprocal: directions are sampled as for radiance, and weighted by the adjoint.
 void check_adjoint_samples(Trial& trial, const BoundShader& bound, const Vector3& out) {
   const Lobes which = bound.scatter()->lobes() & smooth_lobes;
   const Measured m = check_pdf(trial, bound, out, which, Transport::importance, "samples of importance follow the density");
@@ -204,13 +207,13 @@ void check_shader_sampling(Trial& trial, const BoundShader& plain, const BoundSh
   }
   if (!trial.part<Shader>().reciprocal() && !plain.turned() && plain.scatter()->has(smooth_lobes))
     for (const double angle : {20.0, 65.0, 140.0}) check_adjoint_samples(trial, plain, plain.at_angle(angle, azimuth()));
-  // Under a tilted normal light is turned back to its side of the surface: none is lost.
+  // Under a tilted shading normal, directions on the wrong side of the surface are mirrored back, so no energy is lost.
   for (const double angle : {30.0, 70.0, 88.0, 130.0})
     check_direction(trial, tilted, tilted.at_angle(angle, azimuth()), tilted.scatter()->lobes());
 }
 
-// The mean of evaluate over directions uniform in a cell, times the cell's solid angle, against the weights of the samples that
-// fall there: both estimate the integral of f cos over the cell.
+// Compares the mean of evaluate over directions uniform in a cell, times the cell's solid angle, with the weights of the
+// samples in the cell: both estimate the integral of f cos over the cell.
 void check_shader_estimates(Trial& trial, const BoundShader& bound) {
   const Scatter& scatter = *bound.scatter();
   const Transport transport = conserved(trial, bound);

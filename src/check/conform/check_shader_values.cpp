@@ -1,4 +1,4 @@
-// What evaluation and sampling of a shader give, direction by direction: finite numbers, masks, sums, weights.
+// Checks a shader's evaluation and sampling direction by direction: finite values, lobe masks, sums of lobes, sample weights.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ bool sane(const Spectrum& s) { return s.finite() && s.minimum() >= 0; }
 
 constexpr double grazing[] = {0, 45, 89, 89.9, 89.99, 90, 90.01, 91, 135, 180};
 
-/// Nothing is infinite, negative or not a number, wherever one asks.
+/// Checks that no value is infinite, negative or NaN for any directions and random numbers.
 void check_finite(Trial& trial, const BoundShader& bound) {
   const Scatter& scatter = *bound.scatter();
   std::vector<Vector3> directions;
@@ -55,7 +55,7 @@ void check_finite(Trial& trial, const BoundShader& bound) {
           }
 }
 
-/// A direction for `in` that is worth asking about: drawn for `out`, or any.
+/// A direction for `in`: sampled for `out`, or with equal probability uniform.
 Vector3 partner(Trial& trial, const Scatter& scatter, const Vector3& out) {
   if (trial.uniform() < 0.5f)
     if (const auto s = scatter.sample(out, trial.uniform(), trial.pair())) return s->direction;
@@ -94,7 +94,7 @@ void check_masks(Trial& trial, const BoundShader& bound) {
   }
 }
 
-/// One sample against evaluation in its direction.
+/// Compares one sample with evaluation in its direction.
 void check_sample(Trial& trial, const BoundShader& bound, const Vector3& out, const ScatterSample& s, Transport transport,
                   Lobes which) {
   const Scatter& scatter = *bound.scatter();

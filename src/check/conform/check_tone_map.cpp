@@ -1,5 +1,5 @@
-// What holds of every tone map: a picture of any numbers becomes one that a display takes, black stays black, grey grey, and
-// more light is never shown as less.
+// Checks of every tone map: an image of any numbers becomes displayable, black stays black, grey stays grey, and more light is
+// never shown darker.
 
 #include "etendue/tone_map.h"
 
@@ -18,7 +18,7 @@ Image picture(int width, int height) {
   return image;
 }
 
-/// Sets a pixel to the white of the tone map's space times a factor.
+/// Sets a pixel to the white of the tone map's colour space times a factor.
 void set_grey(Image& image, size_t pixel, const RgbSpace& space, double value) {
   for (size_t c = 0; c < 3; ++c)
     image.values[3 * pixel + c] = value * (space.to_xyz[3 * c] + space.to_xyz[3 * c + 1] + space.to_xyz[3 * c + 2]);
@@ -38,7 +38,7 @@ class ToneMapTrial {
   }
 
  private:
-  /// From 1e-3 to 1e3, colours of all kinds that exist.
+  /// Colours of all kinds with positive XYZ, with scales from 1e-3 to 1e3.
   Image colors(int width, int height) {
     Image image = picture(width, height);
     for (size_t i = 0; i < image.values.size(); i += 3) {
@@ -50,7 +50,8 @@ class ToneMapTrial {
 
   bool displayable(double v) const { return map_.clips() ? v >= 0 && v <= 1 : std::isfinite(v); }
 
-  /// Names, sizes and texts; what goes in stays as it is; further channels and their order do not matter.
+  /// Checks channel names, sizes and metadata; the input is unchanged; further channels and the order of channels have no
+  /// effect.
   void check_form() {
     Image in = colors(5, 3);
     in.metadata["seed"] = "7";
@@ -73,7 +74,7 @@ class ToneMapTrial {
     const double odd[] = {0, -1, 1e-300, -1e-300, 1e300, -1e300, inf, -inf, std::nan(""), 5e-324};
     for (int i = trial.samples(40); i > 0; --i) {
       Image in = colors(1 + int(trial.random() % 12), 1 + int(trial.random() % 12));
-      // Some among right ones, or nothing else.
+      // Odd values among valid ones, or nothing but odd values.
       const float share = i % 4 == 0 ? 1 : trial.uniform();
       for (double& v : in.values)
         if (trial.uniform() < share) v = odd[trial.random() % std::size(odd)];
@@ -95,7 +96,7 @@ class ToneMapTrial {
     }
   }
 
-  /// Greys from black to very bright, next to each other.
+  /// Greys from black to very bright in one image.
   void check_greys() {
     constexpr int count = 256;
     for (const double brightest : {0.01, 1.0, 1e4}) {
@@ -117,7 +118,7 @@ class ToneMapTrial {
     }
   }
 
-  /// Pictures of one value everywhere, of one pixel and of several.
+  /// Images of one uniform value, of one pixel and of several.
   void check_one_value() {
     double last[2] = {0, 0};
     for (double value = 1e-6; value < 1e7; value *= 3)
@@ -149,7 +150,7 @@ class ToneMapTrial {
                      [&] { return fmt::format("{} and {}", out.values[3 * i + c], out.values[3 * (95 - i) + c]); });
   }
 
-  /// A stop less is half the light, and automatic exposure undoes what multiplies the picture.
+  /// One stop less halves the radiance, and automatic exposure cancels a factor of the whole image.
   void check_exposure(ExposedToneMap& map) {
     const float stops = map.stops;
     const Image in = colors(9, 9);

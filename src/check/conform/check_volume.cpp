@@ -1,4 +1,4 @@
-// What holds of every participating medium.
+// Checks of every participating medium.
 
 #include <fmt/format.h>
 
@@ -83,7 +83,8 @@ void check_phase(Trial& trial, const VolumeShader& volume) {
   }
 }
 
-/// exp(-int s) by the midpoint rule, without what transport does; and that the extinction stays within its bound.
+/// exp(-int sigma_t) by the midpoint rule, independent of the transport code. Also checks that the extinction does not exceed
+/// the majorant.
 Spectrum integrated_transmittance(Trial& trial, const VolumeShader& volume, const Ray& ray, float reach, const Wavelengths& w) {
   constexpr int points = 2000;
   const Spectrum bound = volume.majorant(w);
@@ -98,7 +99,8 @@ Spectrum integrated_transmittance(Trial& trial, const VolumeShader& volume, cons
   return map(depth, [reach](float s) { return s > 0 ? std::exp(-s * reach) : 1.0f; });
 }
 
-/// Walks that are not scattered on the way carry the transmittance; those that are, the light it lacks but for absorption.
+/// The mean weight of unscattered free flights is the transmittance T; that of scattered ones, in a homogeneous medium, is the
+/// single-scattering albedo times 1 - T.
 void check_free_flight(Trial& trial, const VolumeShader& volume) {
   const Wavelengths w = spread_wavelengths(lerp(trial.uniform(), 400, 700));
   const Ref<Sampler> sampler = ref_cast<Sampler>(Registry::instance().create("IndependentSampler"));

@@ -1,5 +1,5 @@
-// What holds of every sampler of wavelengths: they are seen, follow the densities they are said to have, and give a spectrum
-// its colour.
+// Checks of every wavelength sampler: wavelengths are in the visible range, follow their stated pdfs, and give an unbiased
+// colour of a spectrum.
 
 #include <fmt/format.h>
 
@@ -16,11 +16,11 @@
 namespace etendue::conform {
 namespace {
 
-/// How often a wavelength was drawn (or those of an interval), and the sum of 1 / density [nm] over them.
+/// The number of samples at a wavelength (or in an interval), and the sum of their 1 / pdf [nm].
 struct Cell {
   double low = 0, high = 0;  // [nm]
   double count = 0, inverse = 0;
-  /// The probability of the cell, as the densities of what was drawn in it say: with E[1/p | cell] = width / P(cell).
+  /// The probability of the cell according to the pdfs of its samples, by E[1/p | cell] = width / P(cell).
   double probability() const { return count > 0 ? (high - low) * count / inverse : 0; }
 };
 
@@ -37,7 +37,7 @@ class WavelengthTrial {
   }
 
  private:
-  /// Samples of some pixels, in order, as a render takes them.
+  /// Draws the samples of some pixels, in order as in a render.
   void draw() {
     constexpr int per_pixel = 4096;
     const int pixels = std::max(1, trial.samples(40));
@@ -58,7 +58,7 @@ class WavelengthTrial {
     }
   }
 
-  /// The wavelengths there are: a range, or so few single ones that each is a cell of its own.
+  /// Finds the support of the distribution: an interval, or so few single wavelengths that each gets a cell of its own.
   void find_support() {
     std::map<float, int> distinct;
     constexpr size_t most = 5000;
@@ -68,7 +68,7 @@ class WavelengthTrial {
     for (const Wavelengths& w : drawn_)
       for (int k = 0; k < spectrum_size; ++k) low = std::min(low, double(w[k])), high = std::max(high, double(w[k]));
     discrete_ = distinct.size() <= most;
-    constexpr double narrowest = 5;  // [nm]: in less, floats are too far apart to tell
+    constexpr double narrowest = 5;  // [nm]: in a narrower interval the floats are too coarse for a test
     if (distinct.size() > 1 && high - low < narrowest) {
       usable_ = false;
       trial.not_tried("wavelengths follow the density", fmt::format("they lie within {:.3g} nm", high - low));
@@ -80,10 +80,10 @@ class WavelengthTrial {
         cells_.push_back({std::lerp(low, high, double(i) / cells), std::lerp(low, high, double(i + 1) / cells)});
       return;
     }
-    // Borders in the middle between neighbours; the first and last cell are as wide on either side.
+    // Cells end midway between neighbours; the first and the last cell are symmetric about their wavelengths.
     std::vector<double> at;
     for (const auto& [lambda, count] : distinct) at.push_back(double(lambda));
-    if (at.size() == 1) {  // of a width that only the density knows
+    if (at.size() == 1) {  // the width of its cell follows only from the pdf
       const double half = 0.5 / double(drawn_.front().pdf(0));
       cells_.push_back({at[0] - half, at[0] + half});
       return;
@@ -100,7 +100,7 @@ class WavelengthTrial {
     return next == cells_.begin() ? 0 : size_t(next - cells_.begin()) - 1;
   }
 
-  /// Each of a path's wavelengths alone has the density.
+  /// Tests that each of a path's wavelengths by itself follows the pdf.
   void check_lane(size_t lane) {
     std::vector<Cell> cells = cells_;
     for (const Wavelengths& w : drawn_) {
@@ -116,7 +116,7 @@ class WavelengthTrial {
       counts.push_back(c.count);
       expected.push_back(n * c.probability());
     }
-    // A cell that nothing fell into is unknown: it holds what is missing of 1, if anything. In single precision.
+    // The probability of an empty cell is unknown: it is what the sum lacks to 1. The tolerance is that of single precision.
     trial.expect(std::abs(sum - 1) < 1e-3, "densities integrate to 1", [&] {
       return fmt::format("{} over {} to {} nm, of wavelength {}", sum, cells.front().low, cells.back().high, lane);
     });
@@ -126,7 +126,8 @@ class WavelengthTrial {
     });
   }
 
-  /// The mean of the estimates of a spectrum that is 1 everywhere is its colour, over the wavelengths that there are.
+  /// The mean estimate of the colour of a spectrum that is 1 everywhere must be its colour, over the wavelengths in the
+  /// support.
   void check_white() {
     Xyz exact;
     if (discrete_) {

@@ -16,10 +16,10 @@
 namespace etendue::conform {
 namespace {
 
-// Zero before any constructor runs, so that nodes can enlist in any order.
+// Initialized before any constructor runs, so that nodes can register in any order.
 constinit CheckNode* first_check = nullptr;
 
-/// A check, with the interface that it is for; null: for every component.
+/// A check with the interface it applies to; null: every component.
 struct InterfaceCheck {
   const ClassInfo* interface;
   void (*check)(Trial&);
@@ -27,7 +27,7 @@ struct InterfaceCheck {
 
 int depth(const ClassInfo* info) { return info ? 1 + depth(info->parent) : 0; }
 
-/// All that are registered: what holds of more classes first, then by name, then as they were registered.
+/// All registered checks: those of more general classes first, then by name, then in the order of registration.
 std::vector<InterfaceCheck> interface_checks() {
   std::vector<InterfaceCheck> checks;
   for (const CheckNode* node = first_check; node; node = node->next) {
@@ -67,13 +67,13 @@ void run(Trial& trial, void (*check)(Trial&), const std::string& what) {
   std::optional<std::string> thrown;
   try {
     check(trial);
-  } catch (...) {  // a part may throw anything
+  } catch (...) {  // a component may throw anything
     thrown = thrown_text();
   }
   trial.expect(!thrown, "nothing is thrown by the checks of a " + what, [&] { return *thrown; });
 }
 
-/// One part of a class: the one with defaults (0) or a drawn one.
+/// Tests one component of a class: the one with defaults (part 0) or a random one.
 std::vector<Outcome> try_part(const ClassInfo& info, int part, const Options& options, const Fixtures& fixtures) {
   const std::uint64_t seed = seed_of(options.seed, info.name, part);
   std::mt19937_64 random(seed);

@@ -1,6 +1,6 @@
 #pragma once
-// Conformance: what must hold of every part of an interface, tested for all classes that the registry knows, plugins
-// included, with default and with randomly drawn valid members.
+// Conformance: tests the contract of every interface, for all classes in the registry including those of plugins, with default
+// and with random valid members.
 
 #include <functional>
 #include <string>
@@ -13,21 +13,21 @@ namespace etendue::conform {
 struct Options {
   std::vector<std::string> classes;  ///< names of classes or interfaces; empty: all
   Effort effort = Effort::standard;
-  int drawn = 3;  ///< how many parts with random members, beside the one with defaults
+  int drawn = 3;  ///< the number of components with random members, in addition to the one with defaults
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: all cores
-  /// Told after each part, from any thread, one at a time.
+  /// Called after each component, from any thread, one call at a time.
   std::function<void(const std::string& class_name, int done, int of)> progress = {};
 };
 
-/// Runs all checks of the classes asked for; the outcomes depend on the options but for the threads, and on nothing else. A
-/// part that cannot be made or throws is an outcome too. Throws Error for a class that is unknown.
+/// Runs all checks of the chosen classes. The outcomes depend on the options only, except for the number of threads. A
+/// component that cannot be created or throws is an outcome too. Throws Error for an unknown class.
 std::vector<Outcome> conform(const Options&);
 
-/// The interfaces that have checks of their own, plugins' too, by name.
+/// The names of the interfaces that have checks of their own, including those of plugins.
 std::vector<std::string> checked_interfaces();
 
-/// A page that shows outcomes: classes, checks, failures with the parts that failed.
+/// An HTML page with the outcomes: classes, checks, and the components that failed.
 std::string html_report(const std::vector<Outcome>&, const std::string& command_line);
 
 }  // namespace etendue::conform

@@ -16,7 +16,7 @@ class Drawer {
  public:
   Drawer(const Fixtures& fixtures, std::mt19937_64& random) : fixtures_(&fixtures), random_(&random) {}
 
-  /// Not prepared.
+  /// A component with defaults, not prepared.
   Ref<Component> with_defaults(const ClassInfo& info, bool fill_lists, bool with_files) {
     const Ref<Component> c = create(info);
     for (const Member& m : info.members) {
@@ -45,7 +45,7 @@ class Drawer {
     return c;
   }
 
-  /// Of lists too: of any length.
+  /// A random value for any member, including lists of any length.
   Value any_value(const ClassInfo& info, const Member& m) {
     if (m.kind == Kind::file) {
       const std::string path = fixtures_->file_for(info, m);
@@ -72,7 +72,7 @@ class Drawer {
     if (!path.empty()) set(c, m.name, Value(FilePath{path, ""}));
   }
 
-  /// Lists that belong together: a square of two triangles.
+  /// Values for lists that must match each other: a square of two triangles.
   static Value sample_list(const Member& m) {
     if (m.kind == Kind::point3) return Value(Numbers{{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, 3, Dimension::none});
     if (m.kind == Kind::integer && m.name == "triangles") return Value(Numbers{{0, 1, 2, 0, 2, 3}, 3, Dimension::none});
@@ -93,7 +93,7 @@ class Drawer {
       case Kind::transform: return Value(transform());
       case Kind::component: return component_for(m, depth);
       case Kind::string:
-      case Kind::file: return {};  // nothing is known of which are valid
+      case Kind::file: return {};  // the valid values are not known
     }
     return {};
   }
@@ -115,7 +115,7 @@ class Drawer {
       const double kind = uniform();
       if (kind < 0.08 && !r.open_low) return r.low;
       if (kind < 0.16) return r.high;
-      // Wide ranges of positive numbers by order of magnitude.
+      // Wide ranges of positive numbers are sampled by order of magnitude.
       const double least = std::max(low, std::max(std::abs(by_default), r.high * 1e-4) / 100);
       if (r.low >= 0 && (kind < 0.4 || r.high > 1000 * std::max(by_default, 1e-3)))
         return std::clamp(double(float(least * std::pow(r.high / least, uniform()))), low, r.high);
@@ -128,7 +128,7 @@ class Drawer {
     return double(float((by_default != 0 ? std::copysign(1.0, by_default) : (coin(0.5) ? 1.0 : -1.0)) * size));
   }
 
-  /// Small ones: many say how much memory or work there will be.
+  /// A small integer: many members determine the amount of memory or work.
   double whole_number(const Member& m) {
     const double by_default = plain_default(m, 0), low = m.range ? std::max(m.range->low, -8.0) : -8;
     const double high = std::min(m.range ? m.range->high : 32, std::max(low + 32, 2 * by_default));
@@ -147,7 +147,7 @@ class Drawer {
     return n;
   }
 
-  /// Indices stay indices and reflectances reflectances, judged by the default; what fits is for the class to say.
+  /// Indices remain indices and reflectances remain reflectances, judged by the default. The class may reject the colour.
   Color color(const Member& m) {
     const auto* given = m.default_value.as<Color>();
     const Color by_default = given ? *given : nullptr;
@@ -164,7 +164,7 @@ class Drawer {
     }
     const double kind = uniform();
     if (kind < 0.05) return flat_spectrum(coin(0.5) ? 0.0f : 1.0f);
-    if (kind < 0.1) return flat_spectrum(float(between(-0.5, 3)));  // often refused, and rightly
+    if (kind < 0.1) return flat_spectrum(float(between(-0.5, 3)));  // often rejected by the class, as it should be
     if (kind < 0.4) return flat_spectrum(float(uniform()));
     if (kind < 0.7) return rgb_color("srgb", uniform(), uniform(), uniform());
     return table_spectrum({400, 500, 600, 700}, {float(uniform()), float(uniform()), float(uniform()), float(uniform())});
@@ -181,8 +181,8 @@ class Drawer {
     return t;
   }
 
-  /// The classes that may stand for an interface here: not a plugin's, whose faults would be laid to this part, unless there
-  /// are no others; no scenes within scenes.
+  /// The classes to choose from for a member's interface. No plugin's class, whose faults would be attributed to the component
+  /// under test, unless there is no other; and no scenes inside scenes.
   static std::vector<const ClassInfo*> candidates(const Member& m) {
     const Registry& registry = Registry::instance();
     const ClassInfo* wanted = registry.find(m.component_class);
@@ -209,7 +209,7 @@ class Drawer {
     if (!classes.empty())
       for (size_t n = index(4); n > 0; --n) {
         const Ref<Component> part = made(*classes[index(classes.size())], depth);
-        // Where discs and rings as they are made lie in one another, lines meet both at once.
+        // Default discs and rings would be coplanar and overlap, so that rays hit both at the same distance.
         if (dynamic_cast<SceneObject*>(part.get()) && depth > 1)
           set(*part, "transform", Value(AnimatedTransform(Transform::translate(float(n) * Vector3{0.11f, -0.07f, 0.13f}))));
         list.emplace_back(part);
@@ -225,7 +225,8 @@ class Drawer {
   std::mt19937_64* random_;
 };
 
-/// Makes and prepares a part, and a second one read from the first one's text, which is the one to be tested if all goes well.
+/// Creates and prepares a component, and a second one parsed from the first one's text. The second is the one to be tested if
+/// all succeeds.
 template <class F>
 Drawn finished(F&& make) {
   Drawn drawn;
@@ -241,7 +242,7 @@ Drawn finished(F&& make) {
     drawn.refused = error.what();
   } catch (const Errors& errors) {
     drawn.refused = errors.what();
-  } catch (...) {  // a part may throw anything
+  } catch (...) {  // a component may throw anything
     drawn.refused = thrown_text();
     drawn.part = {};
   }
@@ -253,7 +254,7 @@ Drawn finished(F&& make) {
 Drawn default_part(const ClassInfo& info, const Fixtures& fixtures, std::mt19937_64& random) {
   Drawer drawer(fixtures, random);
   Drawn first;
-  // Required parts are drawn, and may be such that others refuse them: more than one try.
+  // Required components are random and may be rejected, hence several tries.
   for (int i = 0; i < 8; ++i)
     for (const auto& [lists, files] : {std::pair(false, false), {true, false}, {false, true}}) {
       const Drawn drawn = finished([&, l = lists, f = files] { return drawer.with_defaults(info, l, f); });
@@ -267,7 +268,7 @@ Value draw_value(const ClassInfo& info, const Member& m, const Fixtures& fixture
   try {
     return Drawer(fixtures, random).any_value(info, m);
   } catch (const Error&) {
-    return {};  // a component that was drawn for it is refused
+    return {};  // the class rejects a component that was drawn for the member
   }
 }
 
@@ -278,8 +279,8 @@ Drawn part_with_files(const ClassInfo& info, const Fixtures& fixtures, std::mt19
 
 namespace {
 
-/// Whether light leaves simple objects with an emission; one that is asked for a power refuses objects that none leaves, which
-/// says nothing of the class. Other parts: true.
+/// Whether the emission emits from simple objects. Computing its power throws for objects from which it emits nothing, which
+/// says nothing about the class. True for other components.
 bool emits(const Ref<Component>& part) {
   const Ref<EmissionShader> emission = ref_cast<EmissionShader>(part);
   if (!emission || emission->only_at_infinity()) return true;
@@ -293,7 +294,7 @@ bool emits(const Ref<Component>& part) {
     } catch (const Error&) {
       all = false;
     }
-    emission->prepare();  // the host it remembers is gone
+    emission->prepare();  // discards data of the host, which is deleted
   }
   return all;
 }
@@ -307,7 +308,7 @@ Drawn draw_part(const ClassInfo& info, const Fixtures& fixtures, std::mt19937_64
   constexpr int tries = 60;
   for (int i = 0; i < tries; ++i) {
     drawn = finished([&] { return drawer.with_random(info, 0, 0.75 - 0.6 * i / tries); });
-    // One with all defaults says nothing new, but some classes have no others.
+    // A component with all defaults tests nothing new, but some classes have no others.
     if (drawn.part && emits(drawn.part) && (drawn.text != defaults || i >= 4)) break;
   }
   return drawn;

@@ -1,5 +1,5 @@
 #pragma once
-// Parts with valid random members, made from what classes say of themselves.
+// Components with valid random members, made from the declarations of their classes.
 
 #include <random>
 #include <string>
@@ -10,22 +10,22 @@
 namespace etendue::conform {
 
 struct Drawn {
-  Ref<Component> part;  ///< prepared; null: none could be made
-  std::string text;     ///< from which it was read: it can be made again
-  std::string refused;  ///< without a part: what the last try said
+  Ref<Component> part;  ///< prepared; null: none could be created
+  std::string text;     ///< the text it was parsed from, which reproduces it
+  std::string refused;  ///< if there is no component: the message of the last try
 };
 
-/// With all defaults; only what must be written is (required members, sample files, lists that must not be empty).
+/// A component with defaults; only required members, sample files and lists that must not be empty are set.
 Drawn default_part(const ClassInfo&, const Fixtures&, std::mt19937_64&);
 
-/// With random members: numbers over their ranges, ends included, choices, colours, transforms, and other components in turn.
-/// What `prepare` refuses is drawn again.
+/// A component with random members: numbers over their ranges including the ends, choices, colours, transforms, and nested
+/// components. If `prepare` rejects it, another one is drawn.
 Drawn draw_part(const ClassInfo&, const Fixtures&, std::mt19937_64&);
 
-/// A random value for one member, which its class may refuse; none: nothing is known of what fits.
+/// A random value for one member, which its class may reject; none: no suitable value is known.
 Value draw_value(const ClassInfo&, const Member&, const Fixtures&, std::mt19937_64&);
 
-/// With defaults and a sample file for each member that names one.
+/// A component with defaults and a sample file for each member that names one.
 Drawn part_with_files(const ClassInfo&, const Fixtures&, std::mt19937_64&);
 
 }  // namespace etendue::conform

@@ -1,4 +1,4 @@
-// Outcomes as one page of HTML without external parts.
+// Writes outcomes as one self-contained HTML page.
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the checks of scene objects share: an object with its size, and what rounding may do there.
+// Shared by the checks of scene objects: an object with its size, and tolerances for rounding.
 
 #include <string>
 
@@ -23,7 +23,7 @@ struct ObjectTrial {
   const Point3 centre;
   const float radius, time;
 
-  /// How far points may be off.
+  /// The tolerance of positions [m].
   float slack(const Point3& p) const { return 1e-4f * radius + 1e-5f * length(p - Point3{}); }
   bool inside(const Bounds3& box, const Point3& p) const {
     const float s = slack(p);
@@ -46,18 +46,18 @@ struct ObjectTrial {
   }
   SurfaceSample sample_area() const { return object.sample_area(trial.pair(), time); }
 
-  /// What may be off by rounding or at borders: so many of n.
+  /// Whether `wrong` of n cases are few enough to be due to rounding or to edges.
   static bool few(int wrong, int n, double share = 1e-3) { return wrong <= 3 + int(share * n); }
 };
 
 std::string text_of(const Point3&);
 std::string text_of(const Vector3&);
 
-/// That tangents lie in the surface and tell where points with other coordinates are.
+/// Checks that tangents lie in the surface and predict the positions of points with other uv coordinates.
 void check_tangents(const ObjectTrial&);
-/// How the object is seen from a point, and whether points sampled to be seen are so.
+/// Checks the solid angle in which the object is seen from a point, and the points of sample_visible.
 void check_seen_from(const ObjectTrial&, const Point3& from);
-/// That a copy which is moved, turned and enlarged is the same, moved, turned and enlarged.
+/// Checks that a copy which is translated, rotated and scaled gives the same hits, transformed.
 void check_moved(const ObjectTrial&);
 
 }  // namespace etendue::conform

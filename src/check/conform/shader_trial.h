@@ -1,5 +1,5 @@
 #pragma once
-// What the checks of shaders share: a shader bound to a point of a sphere, directions, and comparisons that know of rounding.
+// Shared by the checks of shaders: a shader bound to a point of a sphere, directions, and comparisons that allow for rounding.
 
 #include <array>
 #include <string>
@@ -18,25 +18,27 @@ std::string lobe_names(Lobes);
 /// All subsets of some lobes but the empty one, the whole set first.
 std::vector<Lobes> subsets_of(Lobes);
 
-/// A point on a sphere that has the shader, and the scattering there.
+/// A point on a sphere that has the shader, and the bound Scatter there.
 class BoundShader {
  public:
-  /// `tilt` [rad]: how far the shading normal is turned away from the surface's.
+  /// `tilt` [rad]: the angle between the shading normal and the geometric normal.
   BoundShader(const Shader&, const Ref<SceneObject>& carrier, Point2 u, float hero, float tilt, float tilt_azimuth);
 
   /// Null: nothing is scattered here.
   const Scatter* scatter() const { return scatter_; }
   const SurfacePoint& point() const { return point_; }
   const Wavelengths& wavelengths() const { return wavelengths_; }
-  /// From polar angle [deg] and azimuth [rad] around the shading normal; more than 90 degrees: behind.
+  /// A direction with this polar angle [deg] and azimuth [rad] around the shading normal; more than 90 degrees: behind the
+  /// surface.
   Vector3 at_angle(double angle, double azimuth) const;
   /// The angle [deg] of a direction to the shading normal.
   double angle(const Vector3&) const;
   std::string name(const Vector3& direction) const;
-  /// The fraction of the hero's power that specular lobes send on from `out`.
+  /// The fraction of the hero's power that specular lobes scatter from `out`.
   double specular_fraction(const Vector3& out, Lobes specular) const;
-  /// Whether the shader turns normals itself (by a map): radiance and importance are then reflected unequally, and the power
-  /// that leaves by the surface's normal is not what the model says by its own.
+  /// Whether the shading normal differs from the geometric one, by `tilt` or by a normal map in the shader. Then radiance and
+  /// importance have different weights of reflection, and the power relative to the geometric normal is not the model's, which
+  /// is relative to the shading normal.
   bool turned() const { return turned_; }
 
  private:
@@ -47,15 +49,15 @@ class BoundShader {
   bool turned_ = false;
 };
 
-/// By which index a lobe refracts at a point, at each wavelength: index behind the surface over that in front of it, as light
-/// goes. Samples tell it of their hero alone, so each wavelength is made the hero in turn.
+/// The relative index by which a lobe refracts at a point, at each wavelength: the index on the side that light enters over
+/// that on the side it comes from. A sample gives it for the hero only, so each wavelength is made the hero in turn.
 class RelativeIndex {
  public:
   RelativeIndex() = default;
   RelativeIndex(Trial&, const BoundShader&, Lobes);
-  /// Of light that comes from in front, or from behind. Null: it is not the same for all samples, or there are none.
+  /// For light that comes from the front or from behind. Null: the index is not the same for all samples, or there are none.
   const Spectrum* from(bool front) const { return known_[front] ? &index_[front] : nullptr; }
-  /// Whether some sample holds for its hero alone.
+  /// Whether some sample is dispersive, so that it holds for the hero only.
   bool dispersive() const { return dispersive_; }
 
  private:
@@ -66,7 +68,7 @@ class RelativeIndex {
 /// A sphere whose shader is the given one.
 Ref<SceneObject> carrier_of(Shader&);
 
-/// How much a function of a direction changes when the direction is off by rounding.
+/// The largest change of a function of a direction under rounding errors of the direction.
 template <class F>
 Spectrum rounding_of(F&& f, const Vector3& direction) {
   const Spectrum middle = f(direction);
@@ -81,8 +83,8 @@ Spectrum rounding_of(F&& f, const Vector3& direction) {
   return most;
 }
 
-/// Whether two values agree to a relative tolerance, at the hero alone or at all wavelengths; `rounding` is asked for what
-/// rounding explains only if they do not.
+/// Whether two values agree to a relative tolerance, at the hero only or at all wavelengths. If they do not, `rounding` is
+/// called for a further tolerance.
 template <class F>
 bool agree(const Spectrum& a, const Spectrum& b, float relative, bool hero_alone, F&& rounding) {
   const int lanes = hero_alone ? 1 : spectrum_size;
@@ -99,7 +101,7 @@ bool agree(const Spectrum& a, const Spectrum& b, float relative, bool hero_alone
 void check_shader_values(Trial&, const BoundShader& plain, const BoundShader& tilted);
 void check_shader_reversal(Trial&, const BoundShader& plain, const BoundShader& tilted);
 void check_shader_sampling(Trial&, const BoundShader& plain, const BoundShader& tilted);
-/// Of shaders whose `evaluate` is an estimate.
+/// For shaders whose `evaluate` is a stochastic estimate.
 void check_shader_estimates(Trial&, const BoundShader& plain);
 
 }  // namespace etendue::conform

@@ -22,7 +22,7 @@ bool SphereCells::gap(const Box& box, const Place* begin, const Place* end, int&
     high[1] = std::max(high[1], p->y);
   }
   const double begins[2] = {box.x0, box.y0}, ends[2] = {box.x1, box.y1};
-  // As wide again as all samples together: what is sharp has faded there.
+  // A margin as wide as the extent of all samples: beyond it a sharp peak has decayed.
   const double margin = std::max({high[0] - low[0], high[1] - low[1], 1e-6});
   for (axis = 0; axis < 2; ++axis) {
     const double least = std::max(2 * margin, 0.25 * (ends[axis] - begins[axis]));
@@ -40,7 +40,7 @@ size_t SphereCells::divide(const Box& box, size_t begin, size_t end, size_t most
     cells_.push_back(box);
   }
   const double width = box.x1 - box.x0, height = box.y1 - box.y0;
-  constexpr double narrowest = 1e-6;  // some steps of a float
+  constexpr double narrowest = 1e-6;  // a few units in the last place of a float
   int axis = 0;
   double at = 0;
   bool cut = end - begin > 1 && gap(box, places_.data() + begin, places_.data() + end, axis, at);
@@ -52,7 +52,7 @@ size_t SphereCells::divide(const Box& box, size_t begin, size_t end, size_t most
     std::nth_element(places_.begin() + long(begin), places_.begin() + long(half), places_.begin() + long(end),
                      [&](const Place& a, const Place& b) { return along(a) < along(b); });
     const double low = axis == 0 ? box.x0 : box.y0, high = axis == 0 ? box.x1 : box.y1;
-    // Not too near a border: boxes stay compact, and equal samples do not divide for ever.
+    // Away from the ends of the box, so that boxes stay compact and recursion ends for equal samples.
     at = std::clamp(along(places_[half]), low + (high - low) / 16, high - (high - low) / 16);
   }
   if (!cut) {

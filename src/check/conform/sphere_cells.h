@@ -1,6 +1,6 @@
 #pragma once
-// The sphere of directions cut into cells of about equally many samples: narrow where a density is sharp, wide where little
-// goes. Counts in them are compared with integrals over them.
+// Divides the sphere of directions into cells with about equal numbers of samples: small where a pdf is sharp, large where it
+// is low. Counts in the cells are compared with integrals over them.
 
 #include <array>
 #include <cmath>
@@ -10,42 +10,43 @@
 
 namespace etendue::conform {
 
-/// Each hemisphere of local directions (z >= 0, z < 0) is laid out as a square of edge 2: by the concentric map of the square
-/// to the disc (Shirley & Chiu 1997), and the disc of radius r = sqrt(1 - |z|) to the hemisphere, which keep areas. A unit of
-/// the square is pi / 2 steradian. The squares are halved at the median of samples across their longer side, after what lies
-/// far from all samples was cut off; the halving goes on within a cell, down to a few samples, so that quadrature finds what is
-/// narrow: cells are made of patches.
+/// Each hemisphere of local directions (z >= 0, z < 0) is mapped to a square of edge 2, by area-preserving maps: the concentric
+/// map of the square to the disc (Shirley & Chiu 1997), and that of the disc, with radius r = sqrt(1 - |z|), to the hemisphere.
+/// A unit of the square is pi / 2 steradian. First what lies far from all samples is cut off; then boxes are halved at the
+/// median of samples across their longer side. The halving continues within a cell, down to a few samples per patch, so that
+/// quadrature over the cell's patches resolves narrow peaks.
 class SphereCells {
  public:
-  /// From local directions; about `wanted` cells, at least two.
+  /// Builds the cells from local directions: about `wanted` cells, at least two.
   SphereCells(const std::vector<Vector3>& samples, size_t wanted);
 
   size_t size() const { return cells_.size(); }
   size_t cell_of(const Vector3& local) const;
   /// Solid angle [sr].
   double solid_angle(size_t cell) const { return cells_[cell].area() * steradians; }
-  /// A direction uniform in a cell.
+  /// A direction uniformly distributed in a cell.
   Vector3 uniform(size_t cell, double u, double v) const {
     const Box& c = cells_[cell];
     return direction(c.back, c.x0 + u * (c.x1 - c.x0), c.y0 + v * (c.y1 - c.y0));
   }
-  /// Some direction in the middle of a cell.
+  /// A direction in the middle of a cell.
   Vector3 middle(size_t cell) const { return uniform(cell, 0.5, 0.5); }
 
-  /// The integrals over all cells of a function of local direction with N values, of which the first is the density the samples
-  /// were drawn with, to about `tolerance` in the sum of each: 16 Gauss points, and four quarters where these say otherwise,
-  /// but no more than about `most` points in all. In a patch where the density at its samples is so high that they must come
-  /// from a small part of it, and everywhere when more than three digits are asked for, finer points are taken from the start.
+  /// The integrals over all cells of a function of local direction with N values, of which the first is the pdf of the samples,
+  /// to about `tolerance` in the sum of each: 16 Gauss points, and four quarters where these disagree, with at most about
+  /// `most` points in all. The subdivision is forced in a patch where the pdf at the samples is so high that they must come
+  /// from a small part of it, and in all patches if the tolerance is below 1e-3.
   template <size_t N, class F>
   std::vector<std::array<double, N>> integrate(F&& f, double tolerance = 1e-3, long most = 1000000) const {
     std::vector<std::array<double, N>> integrals(cells_.size(), std::array<double, N>{});
     const double each = tolerance / std::sqrt(double(patches_.size()));
     for (const Patch& p : patches_) {
-      // The sum of 1 / density over samples, over their number in all, estimates the solid angle they come from.
+      // The sum of 1 / pdf over the patch's samples, divided by the number of all samples, estimates the solid angle they come
+      // from.
       double covered = p.begin == p.end ? p.box.area() : 0;
       for (size_t i = p.begin; i < p.end; ++i)
         covered += 1 / (f(direction(places_[i].back, places_[i].x, places_[i].y))[0] * double(places_.size()) * steradians);
-      // Of what is sharp, slivers that lie between all points look like nothing at all: closer points see them.
+      // Slivers between the points would be missed: forced subdivision finds them.
       int forced = tolerance < 1e-3 ? 2 : 0;
       for (double share = covered / p.box.area(); share < 0.5 && forced < most_forced; share *= 2) ++forced;
       long left = most / long(patches_.size());
@@ -57,7 +58,7 @@ class SphereCells {
 
  private:
   static constexpr double steradians = 1.57079632679489661923;  // per area of the square
-  static constexpr int deepest = 7;                             // quarterings
+  static constexpr int deepest = 7;                             // maximum number of subdivisions
   static constexpr int most_forced = 4;
   struct Box {
     bool back = false;
@@ -72,23 +73,23 @@ class SphereCells {
     bool back;
     double x, y;
   };
-  /// An inner node cuts a box across an axis; a leaf is a patch.
+  /// An inner node splits a box along an axis; a leaf is a patch.
   struct Node {
     int axis = -1;  ///< -1: a leaf
     double at = 0;
-    size_t low = 0, high = 0;  ///< children; a leaf: low is the cell
+    size_t low = 0, high = 0;  ///< children; of a leaf: low is the cell
   };
   struct Patch {
     Box box;
-    size_t cell, begin, end;  ///< `places_` in it
+    size_t cell, begin, end;  ///< range of its samples in `places_`
   };
   static constexpr size_t no_cell = size_t(-1), patch_samples = 4;
 
   static Place place(const Vector3& local);
   static Vector3 direction(bool back, double x, double y);
-  /// `cell`: the one it is in, if that is decided already.
+  /// `cell`: the cell that the box belongs to, if already decided.
   size_t divide(const Box&, size_t begin, size_t end, size_t most, size_t cell);
-  /// Where to cut off what is far from all samples; false: nowhere.
+  /// Finds where to cut off a part that is far from all samples; false: nowhere.
   static bool gap(const Box&, const Place* begin, const Place* end, int& axis, double& at);
 
   template <size_t N, class F>

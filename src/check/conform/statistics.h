@@ -1,5 +1,5 @@
 #pragma once
-// Chi-square tests and quadrature over the sphere, for the conformance checks and the tests of single parts.
+// Chi-square tests and quadrature over the sphere, for the conformance checks and unit tests.
 
 #include <algorithm>
 #include <array>
@@ -40,8 +40,8 @@ inline double chi_square_tail(double value, double degrees) {
   return front * h;
 }
 
-/// Tests counts against expected numbers; cells that expect fewer than `least` are pooled. So many more than expected may be
-/// in the pool as quadrature may have `missed`: slivers. Returns the p-value.
+/// Chi-square test of counts against expected numbers; returns the p-value. Cells that expect fewer than `least` are pooled.
+/// The pool may hold up to `missed` samples more than expected, from slivers that quadrature has not resolved.
 inline double chi_square(const std::vector<double>& counts, const std::vector<double>& expected, double least = 5,
                          double missed = 0) {
   double statistic = 0, pooled_count = 0, pooled_expected = 0;
@@ -62,11 +62,11 @@ inline double chi_square(const std::vector<double>& counts, const std::vector<do
   if (pooled_expected >= 1)
     add(pooled_count, pooled_expected);
   else if (pooled_count > 5 + 10 * pooled_expected)
-    return 0;  // samples where hardly any may be
+    return 0;  // samples where hardly any are possible
   return cells > 1 ? chi_square_tail(statistic, cells - 1) : 1;
 }
 
-/// The significance of each of several tests so that all together have the given one (Šidák).
+/// The significance of each of several tests for which all together have the given one (Šidák).
 inline double each_of(int tests, double together = 1e-3) { return 1 - std::pow(1 - together, 1.0 / tests); }
 
 /// The 6-point Gauss-Legendre rule on [0, 1].
@@ -110,7 +110,7 @@ inline size_t cell_of(const Frame& frame, int rows, int columns, const Vector3& 
   return size_t(row * columns + column);
 }
 
-/// Mean and spread of numbers that come one by one.
+/// Mean and standard error of numbers that are added one by one.
 class Mean {
  public:
   void add(double x) {

@@ -1,5 +1,6 @@
-// Samples of one pixel computed again. Any sample is a function of the description, the seed, its pixel and its number, so
-// it can be computed alone: first all samples of the pixel for their values, then the brightest again with a record.
+// Recomputes samples of one pixel. Each sample is a function of the description, the seed, its pixel and its number, so it can
+// be computed alone: first all samples of the pixel for their values, then the brightest ones again with a record of their
+// paths.
 
 #include "replay.h"
 
@@ -22,12 +23,12 @@ double splat_weight(const ImageBuffer& image) {
 
 namespace {
 
-/// Y of a value as the film counts it: 0, with false, for what is not a finite non-negative spectrum.
+/// The luminance Y of a value as the film counts it. Returns false, with 0, if the value is not a finite non-negative spectrum.
 bool luminance_of(Spectrum value, const Wavelengths& wavelengths, double& luminance) {
   luminance = 0;
   float largest = 0, least = 0;
   for (int i = 0; i < spectrum_size; ++i) {
-    // Values at wavelengths that were dropped mean nothing when they are no numbers.
+    // Values at dropped secondary wavelengths are ignored if they are not valid numbers.
     if (i > 0 && wavelengths.single() && !(value[i] >= 0 && value[i] <= std::numeric_limits<float>::max())) value.set(i, 0);
     if (!std::isfinite(value[i])) return false;
     largest = std::max(largest, value[i]);
@@ -41,7 +42,7 @@ bool luminance_of(Spectrum value, const Wavelengths& wavelengths, double& lumina
   return true;
 }
 
-/// What the splats of a sample bring to the picture: those that fall beside it are lost.
+/// The luminance that a sample's splats add to the image; splats outside the image are lost.
 double splatted_luminance(const ImageBuffer& image, const std::vector<Splat>& splats) {
   const PixelArea& area = image.area();
   double sum = 0, luminance = 0;
@@ -58,7 +59,7 @@ struct Bright {
   std::uint32_t sample = 0;
 };
 
-/// Equal ones in the order of their numbers, so that the result does not depend on threads.
+/// Equal samples are ordered by their numbers, so that the result does not depend on threads.
 bool brighter(const Bright& a, const Bright& b) { return std::tuple(-a.light, a.sample) < std::tuple(-b.light, b.sample); }
 
 void keep_brightest(std::vector<Bright>& all, size_t most) {
@@ -72,10 +73,10 @@ ReplayedPath replay(const RenderProcess& process, int x, int y, std::uint32_t sa
   path.sample = sample;
   Arena arena;
   std::vector<Splat> splats;
-  PathRequest request;
-  request.observe.record = &path.record;
-  request.splats = &splats;
-  const CameraSample s = process.sample(x, y, sample, arena, request);
+  PathSink sink;
+  sink.record = &path.record;
+  sink.splats = &splats;
+  const CameraSample s = process.sample(x, y, sample, arena, sink);
   path.record.count_from_world(process.context.camera.world_centre);
   path.film = s.film;
   path.bad = !luminance_of(s.value, s.wavelengths, path.luminance);
@@ -114,8 +115,8 @@ std::string replay_refusal(const Render& render) {
 PixelReplay replay_pixel(const Render& render, int x, int y, size_t most) {
   PixelReplay result = begin(render.job(), x, y);
 
-  // In parts of a fixed size, put together in their order: sums are the same on any number of threads. What a renderer makes
-  // for a step serves the samples of that step alone.
+  // Samples are computed in parts of fixed size, whose sums are added in order, so that sums are the same for any number of
+  // threads. A RenderProcess is valid only for the samples of its step.
   const std::uint32_t step = render.samples_per_step(), part_size = std::min(step, 1024u);
   struct Part {
     double sum = 0;
@@ -131,12 +132,12 @@ PixelReplay replay_pixel(const Render& render, int x, int y, size_t most) {
   const auto compute = [&](size_t index) {
     Part& part = parts[index];
     Memory& memory = memories.local();
-    PathRequest request;
-    request.splats = &memory.splats;
+    PathSink sink;
+    sink.splats = &memory.splats;
     const auto first = std::uint32_t(index) * part_size, last = std::min(first + part_size, result.samples);
     for (std::uint32_t n = first; n < last; ++n) {
       memory.splats.clear();
-      const CameraSample s = process->sample(x, y, n, memory.arena, request);
+      const CameraSample s = process->sample(x, y, n, memory.arena, sink);
       double luminance = 0;
       luminance_of(s.value, s.wavelengths, luminance);
       part.sum += luminance;

@@ -1,5 +1,5 @@
 #pragma once
-// Samples of one pixel computed again, and told vertex by vertex: to people as text, to programs as JSON.
+// Recomputes samples of one pixel and reports their paths vertex by vertex: as text, or as JSON for other programs.
 
 #include <cstdint>
 #include <optional>
@@ -10,46 +10,46 @@
 
 namespace etendue {
 
-/// One sample, with all that its path did.
+/// One sample, with the record of its path.
 struct ReplayedPath {
   std::uint32_t sample = 0;
   Point2 film;
   PathRecord record;
-  bool bad = false;             ///< not a finite non-negative spectrum: it counts as black
-  double luminance = 0;         ///< Y of the radiance it brings to its own pixel
-  double splatted = 0;          ///< Y of what it brings to places of the picture by splats, as it counts beside the above
-  std::optional<double> share;  ///< of the light that all samples of the pixel bring there; empty: not known, or no light
+  bool bad = false;             ///< not a finite non-negative spectrum: the film counts it as black
+  double luminance = 0;         ///< Y of its contribution to its own pixel
+  double splatted = 0;          ///< Y of its splats into the image, weighted relative to `luminance`
+  std::optional<double> share;  ///< its fraction of the sum over all samples of the pixel; empty: unknown, or the sum is zero
 };
 
 /// Samples of a pixel.
 struct PixelReplay {
   int x = 0, y = 0;
-  std::uint32_t samples = 0;        ///< how many the pixel has in the picture
-  std::optional<double> luminance;  ///< mean Y of all of them; empty: they were not all computed
+  std::uint32_t samples = 0;        ///< number of the pixel's samples in the image
+  std::optional<double> luminance;  ///< mean Y of all samples; empty: not all were computed
   std::vector<ReplayedPath> paths;  ///< brightest first
 };
 
-/// One sample alone, as it is in the picture.
+/// Computes one sample as it is in the image.
 PixelReplay replay_sample(const Render&, int x, int y, std::uint32_t sample);
-/// Computes all samples of a pixel and tells the paths of the `most` that bring most light.
+/// Computes all samples of a pixel, and records the paths of the `most` brightest ones.
 PixelReplay replay_pixel(const Render&, int x, int y, size_t most);
 
-/// Why no sample of the render can be replayed, as its renderer tells; empty: they can.
+/// The reason, given by the renderer, why no sample of the render can be replayed; empty: samples can be replayed.
 std::string replay_refusal(const Render&);
 
-/// For people to read. `picture_command` is the command line that renders the picture.
+/// The report as text. `picture_command` is the command line that renders the image.
 std::string replay_text(const PixelReplay&, const std::string& picture_command);
-/// For programs to read; docs/finding-fireflies.md describes it. `file` is the description's.
+/// The report as JSON; docs/finding-fireflies.md describes it. `file` is the description's.
 std::string replay_json(const Job&, const PixelReplay&, const std::string& file, const std::string& picture_command);
 
-/// What a splat counts for beside a sample's own value, which counts 1 / n of its pixel: paths from luminaires spread over
-/// the whole film, but there are only n of them for each pixel that is rendered.
+/// The weight of a splat relative to a sample's own value, which counts 1 / n of its pixel: light subpaths are splatted over
+/// the whole film, but only n of them are traced for each rendered pixel.
 double splat_weight(const ImageBuffer&);
 
 /// The command that replays one sample alone.
 std::string replay_command(const std::string& picture_command, int x, int y, std::uint32_t sample);
 
-/// A replayed path for people to read.
+/// A replayed path as text.
 std::string path_text(const PathRecord&, Point2 film);
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// Replayed samples told to programs.
+// Writes replayed samples as JSON.
 
 #include <nlohmann/json.hpp>
 
@@ -87,7 +87,7 @@ std::string replay_json(const Job& job, const PixelReplay& replay, const std::st
                      {"samples", replay.samples},
                      {"luminance", replay.luminance ? Json(*replay.luminance) : Json()},
                      {"paths", paths}};
-  // A file name may hold bytes that are not UTF-8.
+  // A file name may contain bytes that are not UTF-8.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

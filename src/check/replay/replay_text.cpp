@@ -1,4 +1,4 @@
-// Replayed samples told to people.
+// Writes replayed samples as text.
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ std::string place(const V& v) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z);
 }
 
-/// Far from the origin with as many digits as tell places near to each other apart.
+/// Far from the origin more digits are printed, so that nearby points differ.
 std::string place(const DoublePoint3& p) {
   const double largest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), 1.0});
   const int digits = std::clamp(4 + int(std::log10(largest)), 6, 15);

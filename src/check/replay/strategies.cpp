@@ -1,4 +1,5 @@
-// Pictures of single strategies, from the records of all samples. One thread: sums are the same each time.
+// Computes the images of single strategies from the records of all samples. It runs in one thread, so that sums are
+// reproducible.
 
 #include "strategies.h"
 
@@ -14,11 +15,11 @@ namespace {
 
 using Key = std::pair<int, std::string>;  // length, strategy
 
-/// Collects what is contributed, by strategy.
+/// Accumulates contributions by strategy and path length.
 class Shares {
  public:
   explicit Shares(const ImageBuffer& image) : image_(image), area_(image.area()) {
-    constexpr size_t memory = size_t(256) << 20;  // of all pictures [bytes]
+    constexpr size_t memory = size_t(256) << 20;  // for all images [bytes]
     const size_t one = size_t(area_.width()) * size_t(area_.height()) * 6 * sizeof(double);
     most_ = std::max<size_t>(8, memory / one);
   }
@@ -33,7 +34,7 @@ class Shares {
     const double factor = c.splat ? splat_weight(image_) : 1;
     const Xyz light = to_xyz(max(c.value, 0), wavelengths);
     if (!std::isfinite(light.x + light.y + light.z)) return;
-    // A last note may stand for several that were left out: "…, others before it left out".
+    // The record's last entry may stand for several omitted ones: "…, others before it left out".
     Key key(c.length, c.strategy.substr(0, c.strategy.find(", others")));
     if (all_.size() >= most_ && !all_.contains(key)) key = Key(0, "all others");
     const auto [place, is_new] = all_.try_emplace(key);
@@ -83,11 +84,11 @@ std::vector<StrategyPicture> strategy_pictures(const Render& render, std::uint32
       wanted = going_on((done + double(y - area.y0) / area.height()) / samples);
       for (int x = area.x0; x < area.x1; ++x) {
         PathRecord record;
-        PathRequest request;
-        request.observe.record = &record;
+        PathSink sink;
+        sink.record = &record;
         splats.clear();
-        request.splats = &splats;
-        const CameraSample sample = process->sample(x, y, done, arena, request);
+        sink.splats = &splats;
+        const CameraSample sample = process->sample(x, y, done, arena, sink);
         light |= !splats.empty();
         for (int i = 0; i < spectrum_size; ++i) light |= sample.value[i] > 0;
         noted |= !record.contributions.empty();

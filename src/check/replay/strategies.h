@@ -1,6 +1,6 @@
 #pragma once
-// What each strategy of a renderer brings to the picture, apart from the others: for bidirectional path tracing the pyramid of
-// Veach's thesis (1997, figure 10.3), with a picture for each number of vertices from either end.
+// The contribution of each strategy of a renderer to the image: for bidirectional path tracing the pyramid of Veach's thesis
+// (1997, figure 10.3), with an image for each pair of numbers of vertices from the light and from the camera.
 
 #include <functional>
 #include <string>
@@ -10,17 +10,17 @@
 
 namespace etendue {
 
-/// One strategy's share of the light of paths of one length.
+/// The contribution of one strategy by paths of one length.
 struct StrategyPicture {
   std::string strategy;        ///< as PathRecord::Contribution names it
-  int length = 0;              ///< segments from the lens to the luminaire; 0: not said
-  Image weighted, unweighted;  ///< X Y Z, as it counts, and by itself: before weights of multiple importance sampling
+  int length = 0;              ///< segments from the lens to the luminaire; 0: not recorded
+  Image weighted, unweighted;  ///< X Y Z, with and without the weights of multiple importance sampling
 };
 
-/// Renders `samples` samples of every pixel with records, from the first on. Any renderer whose samples are those of pixels and
-/// which notes what it contributes (SampleContext::note) has them; the sum of the weighted ones is the picture that a box
-/// filter of one pixel makes of these samples. Throws Error when a renderer notes nothing. `going_on` is told the fraction that
-/// is done, one call at a time; when it returns false the rest is left out.
+/// Renders the first `samples` samples of every pixel with records. This works for any renderer whose samples belong to pixels
+/// and which records its contributions (SampleContext::note). The sum of the weighted images is the image of these samples with
+/// a box filter of one pixel. Throws Error if the renderer records no contributions. `going_on` is called with the fraction
+/// that is done, one call at a time; when it returns false, the remaining samples are left out.
 std::vector<StrategyPicture> strategy_pictures(const Render&, std::uint32_t samples,
                                                const std::function<bool(double fraction)>& going_on);
 

@@ -1,41 +1,41 @@
 // The statistics of agreement.
 //
-// Each renderer gives K independent passes of the same picture, each with its own random numbers. What is compared are means
-// over a tile or over the whole picture, so a pass contributes one number to each comparison, a mean of thousands of samples.
-// Nothing is assumed of how samples within a pass depend on each other (they are stratified, and splats of one path go to many
-// tiles): the spread is taken from whole passes alone.
+// Each renderer gives K independent passes of the same picture, each with its own random numbers. The means over a tile or over
+// the whole picture are compared, so a pass contributes one number to each comparison, a mean of thousands of samples. No
+// assumption is made about the dependence of samples within a pass (they are stratified, and splats of one path fall into many
+// tiles): the variance is estimated from whole passes only.
 //
 // 1. Two means m_A, m_B with the passes' variances v_A, v_B: Welch's t = (m_A - m_B) / sqrt(v_A/K_A + v_B/K_B), with the
 //    degrees of freedom of Welch & Satterthwaite, and the two-sided probability of Student's t.
 //
-// 2. Rendering's distributions are skewed: much of the light may come in rare, large contributions. A mean in which some of
-//    them are missing is low, and its variance is low as well, so that t exaggerates: with normal pass means the two are
-//    independent, in general
+// 2. The distributions of rendering are skewed: much of the light may come in rare, large contributions. A mean in which some
+//    of them are missing is too low, and its estimated variance is too low as well, so that t is too large. For normally
+//    distributed pass means, mean and variance are independent; in general
 //        Cov(mean, variance) = k3 / K,   Var(mean) = k2 / K     (k2, k3: cumulants of a pass mean),
 //    so a pass mean whose average is d below its expectation has, on the average, a variance estimate that is
 //        (k3 / k2) d
 //    too small (the regression of the variance on the mean). If all light came in events of one size c, as in a Poisson
-//    process, k3 / k2 would be c exactly, and v + c d the variance under the hypothesis that the other renderer's mean is the
-//    true one. This is what is used: the variance of the lower renderer becomes v + c d, with c its "event size". Chen 1995 and
-//    Johnson 1978 correct t for skewness to the same order; as they do it, k3 has to come from the same few passes, where
-//    events too rare to be seen are missing. Here c comes from all tiles of the picture together,
+//    process, k3 / k2 would be c exactly, and v + c d would be the variance under the hypothesis that the other renderer's mean
+//    is the true one. This is used here: the variance of the lower renderer becomes v + c d, with c its "event size". Chen 1995
+//    and Johnson 1978 correct t for skewness to the same order, but they estimate k3 from the same few passes, in which events
+//    too rare to be seen are missing. Here c is estimated from all tiles of the picture together,
 //        c = sum_tiles k3 / sum_tiles k2,
-//    in which the largest events count most, so that what was seen anywhere is thought possible everywhere. (Both sums are of
-//    tiles' sums of light, in which an event has the same size whatever the tile's size.) A place whose own passes are
-//    significantly skewed counts with its own k3 / k2 if that is larger. Events of a path length are thought at least as large
-//    as those of shorter lengths: a path of one segment more is the same path seen by way of one more surface. A layer in which
-//    a renderer saw almost nothing takes the events of all lengths together. Where one pass holds more than half of all that
-//    was found, nothing is known: such a comparison is never counted as a failure.
+//    in which the largest events count most, so that events seen in any tile are assumed possible in all tiles. (Both sums are
+//    over tiles' sums of light, in which an event has the same size whatever the tile's size.) A place whose own passes are
+//    significantly skewed has its own k3 / k2 if that is larger. The event size of a path length is at least that of shorter
+//    lengths: a path with one more segment is the same path seen by way of one more surface. A layer in which a renderer found
+//    almost nothing has the event size of all lengths together. Where one pass holds more than half of all light found, no
+//    estimate is possible: such a comparison is never counted as a failure.
 //
 //    No test of means can be valid for all distributions (Bahadur & Savage 1956): if light comes in events of which none was
-//    seen anywhere, no statistic can know of them. How often this one errs is simulated in tests/check/verify_test.cpp.
+//    seen anywhere, no statistic can detect them. How often this test errs is simulated in tests/check/verify_test.cpp.
 //
-// 3. Differences below 1e-5 of the means, or 1e-7 of the picture's mean, are float arithmetic and are no differences; they are
-//    subtracted before testing. This also decides what two renderers without any variance are to each other.
+// 3. Differences below 1e-5 of the means, or 1e-7 of the picture's mean, are due to float arithmetic; they are subtracted
+//    before testing. This also decides the comparison of two renderers without any variance.
 //
 // 4. All p-values of all pairs are corrected together by Holm's method (1979), which needs no independence. Half of the
 //    significance goes to the mean Y of the whole picture, a quarter to the other means of the whole picture, a quarter to
-//    the thousands of tiles, so that a small difference everywhere is not drowned by the number of places looked at (Holm's
+//    the thousands of tiles, so that a small difference everywhere remains significant despite the number of tiles (Holm's
 //    method with weights, his section 4).
 
 #include "agreement.h"
@@ -52,17 +52,17 @@ namespace {
 constexpr double relative_margin = 1e-5, picture_margin = 1e-7;
 constexpr double whole_share = 0.5, whole_parts_share = 0.25, tiles_share = 0.25;
 
-/// All moments of one renderer, and its event sizes.
+/// The moments of one renderer's means, and its event sizes.
 struct Known {
   std::vector<Moments> moments;    // at layout.index
-  std::vector<double> event_size;  // of each layer, in sums over pixels
+  std::vector<double> event_size;  // of each layer, as sums over pixels
   const std::vector<double>& systematic;
-  /// What a mean's variance has beside that of chance.
+  /// The variance of a mean that is due to the systematic error, not to chance.
   double more_variance(size_t at) const { return systematic.empty() ? 0 : systematic[at] * systematic[at]; }
 };
 
-/// Skewness beyond what the passes of a normal distribution show in one of a hundred places. Its standard error is that of
-/// the sample skewness G1 of a normal sample.
+/// Whether the skewness exceeds what passes of a normal distribution have in one of a hundred places. The standard error is
+/// that of the sample skewness G1 of a normal sample.
 bool significantly_skewed(const Moments& m) {
   if (!(m.variance > 0)) return false;
   const double n = m.count;
@@ -94,7 +94,7 @@ Known know(const Layout& layout, const Measured& measured) {
   return known;
 }
 
-/// What is to be added to the variance of a pass mean when the true mean is higher by `deficit` (lower when negative).
+/// The variance to be added to that of a pass mean if the true mean is higher by `deficit` (lower if negative).
 double missing_variance(const Layout& layout, const Known& known, size_t layer, size_t place, double deficit) {
   const Moments& m = known.moments[layout.index(layer, place)];
   double missing = deficit * known.event_size[layer] / layout.pixels(place);
@@ -102,7 +102,7 @@ double missing_variance(const Layout& layout, const Known& known, size_t layer, 
   return std::max(missing, 0.0);
 }
 
-/// `more` is known of the means' difference beside the passes' variances.
+/// The p-value of Welch's test. `more` is the variance of the means' difference in addition to that of the passes.
 double welch_p(double difference, const Moments& a, const Moments& b, double variance_a, double variance_b, double more) {
   const double sa = variance_a / a.count + more / 2, sb = variance_b / b.count + more / 2, sum = sa + sb;
   if (difference <= 0) return 1;
@@ -202,7 +202,7 @@ std::vector<double> holm(const std::vector<double>& p, const std::vector<double>
   std::vector<size_t> order(p.size());
   std::iota(order.begin(), order.end(), size_t(0));
   std::sort(order.begin(), order.end(), [&](size_t i, size_t j) { return p[i] * weights[j] < p[j] * weights[i]; });
-  // The weight of those not yet rejected, summed from the end so that rounding cannot make it negative.
+  // The total weight of the hypotheses not yet rejected, summed from the end so that rounding cannot make it negative.
   std::vector<double> left(p.size() + 1, 0.0);
   for (size_t i = p.size(); i-- > 0;) left[i] = left[i + 1] + weights[order[i]];
   std::vector<double> corrected(p.size());

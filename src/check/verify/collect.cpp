@@ -135,7 +135,7 @@ Choice choose_renderers(const Job& job, const std::string& names, bool force) {
     if (candidate.renderer != job.renderer) {
       try {
         take_over(*candidate.renderer, *job.renderer);
-      } catch (const Error& error) {  // paths longer than it can keep
+      } catch (const Error& error) {  // thrown for a max_depth above the renderer's limit
         choice.left_out.push_back(
             {candidate.name, std::string("cannot take over what the file's renderer has: ") + error.what()});
         continue;
@@ -154,7 +154,7 @@ Choice choose_renderers(const Job& job, const std::string& names, bool force) {
 }
 
 void prepare_picture(Job& job, int lengths) {
-  if (!job.image) return;  // the job itself will say so
+  if (!job.image) return;  // an error is thrown when the job is prepared
   job.image->filter = ref_cast<Filter>(Registry::instance().create("BoxFilter"));
   job.image->layers.clear();
   set(*job.image, "path_lengths", Value(Number{double(lengths)}));
@@ -168,7 +168,7 @@ int default_tile(const ImageBuffer& image) {
 
 namespace {
 
-/// Renders to so many samples of a pass that has begun, and what is seen there; empty when it was interrupted.
+/// Continues the current pass to so many samples and returns its image; empty when interrupted.
 std::optional<Image> picture_at(Render& render, std::uint32_t samples) {
   render.edit(*render.job().renderer, "samples", Value(Number{double(samples)}));
   if (render.run() != Ended::samples) return {};
@@ -179,7 +179,7 @@ std::vector<double> tile_luminances(const Layout& layout, const std::vector<doub
   return {means.begin(), means.begin() + std::ptrdiff_t(layout.tiles.size())};  // layer 0 is Y of all lengths
 }
 
-/// One more pass; false when it was interrupted. `systematic` sums up what limits leave out.
+/// Renders one more pass; false when interrupted. `systematic` accumulates the uncertainty of extrapolated limits.
 bool add_pass(Render& render, const Layout& layout, double factor, const CollectOptions& options, const LimitOfPass* limit,
               Measured& measured, RendererRun& run) {
   std::vector<std::vector<double>> seen;
@@ -215,7 +215,7 @@ bool add_pass(Render& render, const Layout& layout, double factor, const Collect
   return true;
 }
 
-/// For a renderer whose limit can be told from its steps.
+/// The extrapolation for a renderer whose limit can be estimated from its steps; empty for others.
 std::optional<LimitOfPass> limit_of(const Render& render, const Renderer& renderer, int samples) {
   if (!tells_limit(renderer)) return {};
   const auto& shrinking = dynamic_cast<const ShrinkingBias&>(renderer);
@@ -234,7 +234,7 @@ double share_with_length(const Layout& layout, const Measured& measured) {
   return total > 0 ? told / total : 1;
 }
 
-/// All passes of one renderer; nothing when they were interrupted.
+/// Renders all passes of one renderer; false when interrupted.
 bool measure(Render& render, size_t number, const Candidate& candidate, const CollectOptions& options, std::uint64_t seed,
              Collected& all) {
   const Ref<Renderer>& renderer = candidate.renderer;
@@ -255,7 +255,7 @@ bool measure(Render& render, size_t number, const Candidate& candidate, const Co
   bool going = true;
   const double begun = now();
   for (size_t pass = 0; going && !enough(pass); ++pass) {
-    // No two passes share random numbers, of whatever renderers.
+    // No two passes of any renderers share random numbers.
     render.restart(seed + ((std::uint64_t(number) << 32) + pass) * 0x9e3779b97f4a7c15ull);
     going = (!options.go_on || options.go_on(number, pass)) &&
             add_pass(render, all.layout, number == 0 ? options.inject : 1, options, limit ? &*limit : nullptr, measured, run);

@@ -1,11 +1,11 @@
 // Steps i = 0, 1, … of a consistent algorithm have a bias that shrinks with a known width w_i (ShrinkingBias): as w where a
-// blur takes light over an edge, for the part of the picture that it reaches is as wide as it is, and as w^2 elsewhere (Knaus &
-// Zwicker 2011). For each of both the mean over the samples between two marks is
+// blur carries light over an edge, because the affected part of the picture is as wide as the blur, and as w^2 elsewhere (Knaus
+// & Zwicker 2011). For each of both the mean over the samples between two marks is
 //     y_j = y + b x_j + noise,     x_j the mean of w or of w^2 over those steps,
-// and y is found by least squares: a sum c_j y_j with weights c_j that depend on the w alone. So each pass gives one number
-// with the same expectation as an unbiased renderer's, up to where between w and w^2 the bias really is, and passes are as
-// independent as before: they are compared by the same tests. The mean of both is the limit, and half of their difference
-// counts as a standard error. (Both terms at once would leave less to doubt, and five times the noise.)
+// and y is found by least squares: a sum c_j y_j with weights c_j that depend only on the w. So each pass gives one number with
+// the same expectation as an unbiased renderer's, except that the true bias is between w and w^2, and passes are as independent
+// as before: they are compared by the same tests. The mean of both estimates is the limit, and half of their difference counts
+// as a standard error. (Fitting both terms at once would leave less doubt, but with five times the noise.)
 
 #include "limit.h"
 
@@ -51,7 +51,7 @@ LimitOfPass::LimitOfPass(std::uint32_t samples, std::uint32_t samples_per_step,
     widths.push_back(w / count);
     squares.push_back(ww / count);
     counts.push_back(count);
-    // Photons within r of a point are as many as r^2 is large.
+    // The number of photons within r of a point is proportional to r^2.
     variances.push_back(1 / std::max(ww, 1e-300));
   }
   const std::vector<double> line = limit_weights(widths, variances), square = limit_weights(squares, variances);
@@ -63,7 +63,8 @@ LimitOfPass::LimitOfPass(std::uint32_t samples, std::uint32_t samples_per_step,
                     samples, 8 * samples_per_step));
   if (line.empty() || square.empty())
     throw Error("a renderer that says how its bias shrinks has the same bias in all steps: it goes nowhere");
-  // From the means between marks to those until them: y_j = (n_j m_j - n_{j-1} m_{j-1}) / (n_j - n_{j-1}).
+  // Converts weights of the means y_j between marks to weights of the means m_j until marks: y_j = (n_j m_j - n_{j-1} m_{j-1})
+  // / (n_j - n_{j-1}).
   const auto of_means = [&](const std::vector<double>& weights) {
     std::vector<double> result(weights.size());
     for (size_t j = 0; j < weights.size(); ++j) {
@@ -91,8 +92,8 @@ double LimitOfPass::sum(const std::vector<double>& weights, const std::vector<do
 
 namespace {
 
-/// The mean over tiles of the squared bias of passes, one of which may be left out, relative to the squared mean. Estimated
-/// without a bias of its own, from products of different passes' differences, less the variance of the truth.
+/// The mean over tiles of the squared bias of the passes, relative to the squared mean; pass `left_out` is ignored. An unbiased
+/// estimate from products of different passes' differences, less the variance of the truth.
 double square_bias(const std::vector<std::vector<std::vector<double>>>& tiles, size_t mark, size_t left_out,
                    const std::vector<Estimate>& truth) {
   double total = 0, light = 0;
@@ -122,7 +123,8 @@ Convergence convergence(const std::vector<std::uint32_t>& marks, const std::vect
     means.push_back(mean_of(of_passes));
   }
   Convergence result;
-  std::vector<std::vector<double>> squares(tiles.size() + 1);  // without each pass, and of all, at the marks that tell
+  std::vector<std::vector<double>> squares(
+      tiles.size() + 1);  // without each pass, and of all passes, at the marks where the bias is significant
   std::vector<double> samples;
   for (size_t mark = 0; mark < marks.size(); ++mark) {
     const double of_all = square_bias(tiles, mark, tiles.size(), means);

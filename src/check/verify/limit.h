@@ -1,5 +1,5 @@
 #pragma once
-// What the means of a consistent algorithm go to: extrapolated from its steps. docs/verify.md tells how.
+// Estimates the limit of a consistent algorithm's means by extrapolation from its steps. docs/verify.md describes the method.
 
 #include <functional>
 #include <vector>
@@ -9,21 +9,21 @@
 
 namespace etendue::verify {
 
-/// Weights c_j, with which sum c_j y_j estimates y of y_j = y + b x_j + noise of variance v_j, by least squares. Empty when all
+/// Weights c_j with which sum c_j y_j estimates y of y_j = y + b x_j + noise of variance v_j, by least squares. Empty if all
 /// x_j are equal.
 std::vector<double> limit_weights(const std::vector<double>& x, const std::vector<double>& variances);
 
-/// The samples of a pass, divided at 1, 2, 4, … and at its end, and what makes its limit of the means at those.
+/// Divides the samples of a pass at the marks 1, 2, 4, … steps and its end, and computes the limit from the means at the marks.
 class LimitOfPass {
  public:
-  /// `width` is ShrinkingBias::bias_width. Throws Error when a pass is too short to tell.
+  /// `width` is ShrinkingBias::bias_width. Throws Error if a pass has too few samples for the extrapolation.
   LimitOfPass(std::uint32_t samples, std::uint32_t samples_per_step, const std::function<double(std::uint32_t step)>& width);
 
   const std::vector<std::uint32_t>& marks() const { return marks_; }
-  /// From the means of the pass until each mark: the limit if the bias of a step is proportional to w, and if to w^2.
+  /// The limit, from the means of the pass until each mark, if the bias of a step is proportional to w or to w^2, respectively.
   double limit_by_width(const std::vector<double>& means) const { return sum(by_width_, means); }
   double limit_by_square(const std::vector<double>& means) const { return sum(by_square_, means); }
-  /// The standard error of the mean of both over that of the last mean, if photons alone make noise.
+  /// The ratio of standard errors of the limit (the mean of both) and of the last mean, if all noise is due to photons.
   double noise() const { return noise_; }
 
  private:
@@ -33,14 +33,14 @@ class LimitOfPass {
   double noise_ = 1;
 };
 
-/// How the bias goes away: relative to the mean, root mean square over the tiles, at each mark.
+/// The decrease of the bias relative to the mean, as the root mean square over tiles, at each mark.
 struct Convergence {
   std::vector<double> samples;
-  std::vector<double> bias;      ///< 0 where it is lost in noise
-  std::vector<double> error;     ///< standard error of these
-  std::optional<Estimate> rate;  ///< r of bias ~ N^-r; empty: it cannot be told
+  std::vector<double> bias;      ///< 0 where it is not significant
+  std::vector<double> error;     ///< standard errors of `bias`
+  std::optional<Estimate> rate;  ///< r of bias ~ N^-r; empty: not enough significant marks
 };
-/// `tiles[pass][mark]` are the means of all tiles; `truth` what they should be, of independent passes.
+/// `tiles[pass][mark]` are the means of all tiles; `truth[pass]` the reference means of independent passes.
 Convergence convergence(const std::vector<std::uint32_t>& marks, const std::vector<std::vector<std::vector<double>>>& tiles,
                         const std::vector<std::vector<double>>& truth);
 

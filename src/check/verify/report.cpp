@@ -26,7 +26,7 @@ figcaption { font-size: .85rem; margin-top: .4rem; max-width: 16rem; }
 .scale .ends { display: flex; justify-content: space-between; }
 )";
 
-/// The verdict as a word in its colour.
+/// The verdict as a coloured word.
 std::string badge(Verdict verdict) { return fmt::format("<span class=\"{0}\">{0}</span>", name(verdict)); }
 
 std::string p_text(double p) { return p >= 1 ? "1" : p < 1e-99 ? "&lt; 1e-99" : fmt::format("{:.2g}", p); }

@@ -37,7 +37,7 @@ std::string base64(const std::vector<unsigned char>& bytes) {
 }
 
 std::array<unsigned char, 3> difference_color(double z) {
-  // From a light grey to red or blue, both of which people with colour deficiencies can tell apart.
+  // From light grey to red or blue, which people with colour deficiencies can distinguish.
   constexpr double middle[3] = {247, 247, 247}, red[3] = {178, 24, 43}, blue[3] = {33, 102, 172};
   const double t = std::min(std::abs(z) / z_of_full_color, 1.0);
   const double* end = z > 0 ? red : blue;
@@ -47,7 +47,7 @@ std::array<unsigned char, 3> difference_color(double z) {
 }
 
 std::string difference_map(const Layout& layout, const PairAgreement& pair, size_t layer) {
-  // Between 256 and 512 pixels wide or high, so that frames are thin and files small.
+  // The map is between 256 and 512 pixels wide or high, so that frames are thin and files small.
   constexpr int wanted = 256;
   const PixelArea all = layout.area(layout.whole());
   const int side = std::max(all.width(), all.height());

@@ -57,8 +57,8 @@ double student_upper_quantile(double p, double freedom) {
 double normal_two_sided_quantile(double p) {
   if (!(p < 1)) return 0;
   if (p < 1e-300) return 37;
-  // Newton's method on log erfc(z / sqrt 2) = log p, which is concave. erfc(z / sqrt 2) <= exp(-z^2 / 2), so the start is
-  // not less than the solution, and from there no step goes past it.
+  // Newton's method on log erfc(z / sqrt 2) = log p, which is concave. erfc(z / sqrt 2) <= exp(-z^2 / 2), so the start is not
+  // below the solution, and no step overshoots it.
   const double wanted = std::log(p);
   double z = std::sqrt(-2 * wanted);
   for (int i = 0; i < 100; ++i) {

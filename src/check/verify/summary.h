@@ -1,5 +1,5 @@
 #pragma once
-// What came out of a comparison, put into words: for the terminal and for the report.
+// The results of a comparison in words, for the terminal and for the report.
 
 #include "agreement.h"
 #include "collect.h"
@@ -12,14 +12,14 @@ std::string_view name(Verdict);
 std::string layer_text(const Layout&, size_t layer);
 /// "the whole picture", "x 0 to 8, y 16 to 24"
 std::string place_text(const Layout&, size_t place);
-/// Why a test was not decided.
+/// The reason why a test is undecided.
 std::string_view doubt_text(Doubt);
 
 /// The tests of one layer of a pair.
 struct LayerSummary {
   size_t layer = 0;
   const MeanTest* whole = nullptr;
-  const MeanTest* worst = nullptr;  ///< of all its places
+  const MeanTest* worst = nullptr;  ///< of all its places, the test with the smallest corrected p
   size_t disagreeing_tiles = 0, undecided_tiles = 0;
   Verdict verdict = Verdict::agrees;
 };
@@ -34,16 +34,17 @@ struct MeanLight {
 };
 MeanLight mean_light(const Layout&, const Measured&);
 
-/// How the bias of a pair's consistent renderer goes away, against the other's mean; empty when neither or both are such.
+/// The convergence of a pair's consistent renderer towards the other's mean; empty if both or neither are consistent.
 struct PairConvergence {
-  size_t renderer = 0;  ///< which of all
+  size_t renderer = 0;  ///< index of the consistent one
   Convergence convergence;
 };
 std::optional<PairConvergence> convergence_of(const Collected&, const PairAgreement&);
-/// In words, without a line's end: "its bias is 3.1 % of the light after 1 sample, … and falls as N^-0.33 ± 0.02".
+/// As a text without a line break: "its bias in tiles is 3.1 ± 0.2 % of the light after 1 samples, … and falls as N^-0.33 ±
+/// 0.02".
 std::string convergence_text(const Convergence&);
 
-/// What should be known of a renderer's measurements; empty: nothing.
+/// Remarks on a renderer's measurements for the user; empty: none.
 std::string remark(const Measured&, const RendererRun&, const Candidate&);
 
 }  // namespace etendue::verify

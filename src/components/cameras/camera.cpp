@@ -1,4 +1,4 @@
-// What all cameras have in common: the shutter.
+// The shutter, which all cameras have.
 
 #include "etendue/camera.h"
 
@@ -16,8 +16,9 @@ void Camera::describe(Description<Camera>& d) {
                                         at_least(0), soft(0, 1));
 }
 
-// The opening over time is a trapezium of height 1. With the ramps a and b and the whole time T its area is T - (a + b) / 2;
-// what lies before t is t^2 / (2 a) in the first ramp, t - a / 2 after it, and in the last one all but (T - t)^2 / (2 b).
+// The opening as a function of time is a trapezium of height 1. With the ramps a and b and the whole time T its area is
+// T - (a + b) / 2; the area before t is t^2 / (2 a) in the first ramp, t - a / 2 after it, and in the last ramp the whole area
+// less (T - t)^2 / (2 b).
 float Camera::shutter_time(float u) const {
   if (!(shutter_close > shutter_open)) return shutter_open;
   if (shutter_opening == 0 && shutter_closing == 0) return lerp(u, shutter_open, shutter_close);

@@ -1,4 +1,4 @@
-// LensCamera: rays through a lens's surfaces.
+// LensCamera: a camera that traces rays through the surfaces of a lens.
 
 #include <fmt/format.h>
 
@@ -9,20 +9,21 @@
 namespace etendue {
 namespace {
 
-// A point of the film, uniform over its area A, and a point of the rectangle of area B that holds its exit pupil, on the plane
-// of the rear vertex at distance z, give a ray, which the lens refracts or holds back. In air an element of rays has the same
-// extent dG = dA cos(theta) dw before and behind a lens, whatever its glass (the étendue is conserved). On the film, with theta
-// there,
+// A ray is given by a point of the film, uniform over the film's area A, and a point of the rectangle of area B that contains
+// the exit pupil, on the plane of the rear vertex at distance z from the film. The lens refracts the ray or blocks it. In air a
+// bundle of rays has the same étendue dG = dA cos(theta) dw in front of a lens and behind it, whatever its glass (étendue is
+// conserved). On the film, with theta the angle to the axis at the film,
 //     dG = dA dB cos^4(theta) / z^2,
-// so a ray that leaves the lens was drawn with density  p = z^2 / (A B cos^4(theta))  per dG, and per area and solid angle with
-// p cos(theta'), theta' in front. The irradiance of the film is the integral of L cos(theta) dw over the pupil. Per film area
-// that is what cos^4(theta) B / z^2 [sr] as the weight of a ray gives; over E_0, the same of radiance 1 in the middle of the
-// film, a pixel there is as bright as what it shows, and those at the edges are darker as they are behind such a lens. Hence
+// so a ray that leaves the lens was sampled with the pdf  p = z^2 / (A B cos^4(theta))  per dG, and per area and solid angle
+// with the pdf p cos(theta'), theta' in front of the lens. The irradiance of the film is the integral of L cos(theta) dw over
+// the pupil: with the ray's weight cos^4(theta) B / z^2 [sr], the mean over rays is the irradiance. Divided by E_0, the
+// irradiance in the middle of the film for radiance 1, a pixel in the middle has the radiance that it sees, and pixels at the
+// edges are darker as with such a lens. Hence
 //     W_e = weight * p = 1 / (A E_0)
-// for all rays alike, as far as they reach the film (or 1 / A when irradiance is asked for).
+// for all rays that reach the film (or 1 / A when irradiance is measured).
 //
-// Light from the scene aims at a disc that all rays cross which pass (LensPupils), and is traced inwards. Glass is taken to
-// reflect and absorb nothing, as coated glass nearly does.
+// Connections from the scene sample a disc that all transmitted rays cross (LensPupils), and are traced inwards. Glass is
+// assumed to reflect and absorb nothing, as is nearly true of coated glass.
 class LensCamera final : public Camera {
  public:
   static void describe(Description<LensCamera>& d) {
@@ -104,7 +105,8 @@ class LensCamera final : public Camera {
     return true;
   }
 
-  // Where the lens lets nothing pass, what would be seen through the middle of the pupil, or through a pinhole in its place.
+  // If the lens blocks the ray: the ray through the middle of the pupil, or if that is blocked too, the ray of a pinhole camera
+  // with the same image distance.
   Ray ray(Point2 film, Point2 lens, float time) const override {
     Sent sent;
     if (send(film, lens, sent) || send(film, {0.5f, 0.5f}, sent)) return placed(sent.ray, time);
@@ -112,7 +114,7 @@ class LensCamera final : public Camera {
     const DoubleVector3 way{-at.x, -at.y, lens_.image_distance()};
     return placed({{0, 0, lens_.front()}, (1 / length(way)) * way}, time);
   }
-  // Rays begin before the lens, lens points are on the disc.
+  // Rays begin in front of the lens, whereas lens points lie on the disc, which may be behind the front of the lens.
   Reach reach(const Ray& r) const override { return {nearest(dot(placement_.at(r.time).forward, r.direction)), infinity}; }
 
   std::optional<Point2> film_point(const Ray& r) const override {
@@ -176,7 +178,7 @@ class LensCamera final : public Camera {
   struct Seen {
     bool on_film = false;
     Point2 film;
-    double cosine = 0, film_cosine = 0;  ///< to the axis, before the lens and on the film
+    double cosine = 0, film_cosine = 0;  ///< of the angle to the axis, in front of the lens and at the film
     double box = 0;                      ///< area of the pupil's rectangle [m^2]
   };
 
@@ -205,7 +207,7 @@ class LensCamera final : public Camera {
     return {(0.5 - double(film.x / columns_)) * double(width_), (double(film.y / rows_) - 0.5) * double(height_), 0};
   }
 
-  /// From a film point through the pupil's rectangle, which is turned as the film point is.
+  /// Traces a ray from a film point through a point of the pupil's rectangle, which is rotated to the film point's azimuth.
   bool send(Point2 film, Point2 u, Sent& sent) const {
     const DoublePoint3 at = on_film(film);
     const double r = std::hypot(at.x, at.y), c = r > 0 ? at.x / r : 1, s = r > 0 ? at.y / r : 0;
@@ -219,7 +221,7 @@ class LensCamera final : public Camera {
     return lens_.outwards(sent.ray);
   }
 
-  /// A ray of the world, from the plane of the front vertex on.
+  /// The ray in world space, beginning at the plane of the front vertex.
   Ray placed(const LensRay& ray, float time) const {
     const Pose pose = placement_.at(time);
     Ray r;
@@ -232,7 +234,7 @@ class LensCamera final : public Camera {
 
   float nearest(float cosine) const { return float(lens_.front() - pupils_.disc_z()) / cosine; }
 
-  /// Where light ends that comes in along a ray.
+  /// The film point that light reaches which enters the lens against the direction of a camera ray.
   Seen look(const Ray& r) const {
     Seen seen;
     const Pose pose = placement_.at(r.time);

@@ -20,7 +20,8 @@ bool passes(const LensSystem& lens, double film, double x, double y) {
   return lens.outwards(ray);
 }
 
-/// What passes within a rectangle, by the middles of n x n / 2 cells, and a cell more on all sides.
+/// The bounding box of the points of a rectangle through which rays pass the lens, from the centres of n x n / 2 cells;
+/// enlarged by a cell on all sides.
 Box search(const LensSystem& lens, double film, const Box& within, int n) {
   const double dx = (within.high - within.low) / n, dy = within.half_height / (n / 2);
   Box found{within.high, within.low, -1};
@@ -46,11 +47,12 @@ Box joined(const Box& a, const Box& b) {
 
 void LensPupils::find(const LensSystem& lens, double film_radius) {
   film_radius_ = film_radius;
-  // The plane of the vertex may be crossed outside of the rim that lies on the surface.
+  // Rays may cross the vertex's plane farther from the axis than the rim, which lies on the curved surface.
   const double reach = 1.5 * lens.rear_radius();
   const Box everywhere{-reach, reach, reach};
 
-  // In the middle it is a disc; of its radius rho the projected solid angle is pi sin^2, tan = rho / rear.
+  // From the middle of the film the pupil is a disc of radius rho. Its projected solid angle is pi sin^2(theta) with
+  // tan(theta) = rho / rear.
   if (!passes(lens, 0, 0, 0)) throw Error("no light comes through the lens to the middle of the film");
   double inside = 0, outside = reach;
   for (int i = 1; i <= 4096 && outside == reach; ++i) {
@@ -67,7 +69,7 @@ void LensPupils::find(const LensSystem& lens, double film_radius) {
   solid_angle_ = std::numbers::pi * inside * inside / (inside * inside + lens.rear() * lens.rear());
   if (!(solid_angle_ > 1e-25)) throw Error("the lens is open by too little to count with");
 
-  // Outwards, each pupil near the one before; then as closely as a second search tells.
+  // From the middle of the film outwards, each pupil is searched near the previous one and refined by a second search.
   std::vector<Box> at;
   Box last{-inside, inside, inside};
   constexpr size_t lines = 2 * rings + 1;
@@ -119,7 +121,7 @@ void LensPupils::find_disc(const LensSystem& lens) {
   }
   const size_t best = size_t(std::ranges::min_element(radii) - radii.begin());
   disc_z_ = plane(int(best));
-  disc_radius_ = 1.08 * radii[best];  // what was tried is up to half a step inside of the edge
+  disc_radius_ = 1.08 * radii[best];  // the rays that were traced end up to half a step inside of the pupil's edge
 }
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// Rays through spherical surfaces (Kolb, Mitchell & Hanrahan 1995, section 3.1), and where they form images.
+// Ray tracing through spherical lens surfaces (Kolb, Mitchell & Hanrahan 1995, section 3.1), and focusing.
 
 #include "lens_system.h"
 
@@ -62,7 +62,7 @@ std::vector<LensSurface> lens_surfaces(const std::vector<double>& numbers, doubl
     const double index = numbers[i + 2] == 0 ? 1 : numbers[i + 2];
     const LensSurface s{numbers[i] * unit, numbers[i + 1] * unit, index, numbers[i + 3] * unit};
     const auto wrong = [&](const char* what) { throw Error(fmt::format("{} of surface {}", what, i / 4 + 1)); };
-    const double most = 1e6;  // m: as far as numbers can be counted with
+    const double most = 1e6;  // [m]; keeps the computations finite and precise
     if (!(std::abs(s.radius) < most)) wrong("the radius of curvature must be a number below 1000 km (0: a plane):");
     if (!(s.thickness >= 0 && s.thickness < most)) wrong("the thickness must be at least 0, and below 1000 km:");
     if (!(s.index >= 1 && s.index <= 10)) wrong("the index of refraction must be from 1 to 10, or 0 for air:");
@@ -77,10 +77,10 @@ bool is_stop(const std::vector<LensSurface>& surfaces, size_t i) {
   return surfaces[i].radius == 0 && surfaces[i].index == before;
 }
 
-// Rays near the axis (any textbook's paraxial optics): a surface of curvature c between indices n and n' changes n u, u being
-// the slope of a ray at height y, by -y c (n' - n); a space of length t changes y by t u. Of a ray that arrives along the axis
-// at height 1 the slope u behind the lens gives the focal length, f = -1 / u, and its height y there the back focus, -y / u.
-// The principal planes lie a focal length before the focal points, seen from inside.
+// Paraxial optics: a surface of curvature c between indices n and n' changes n u, u being the slope of a ray at height y, by
+// -y c (n' - n); a space of length t changes y by t u. For a ray that arrives parallel to the axis at height 1, the slope u
+// behind the lens gives the focal length, f = -1 / u, and its height y at the last vertex the back focus, -y / u. Each
+// principal plane lies one focal length from its focal point, towards the lens.
 void LensSystem::set(const std::vector<LensSurface>& list) {
   surfaces_.clear();
   length_ = 0;
@@ -90,12 +90,12 @@ void LensSystem::set(const std::vector<LensSurface>& list) {
     s.open_squared = list[i].diameter * list[i].diameter / 4;
     s.front_index = i == 0 ? 1 : list[i - 1].index;
     s.rear_index = list[i].index;
-    s.vertex = -length_;  // from the front, until it is focused
+    s.vertex = -length_;  // relative to the front vertex, until focus() is called
     if (i + 1 < list.size()) length_ += list[i].thickness;
     surfaces_.push_back(s);
   }
   if (surfaces_.back().rear_index != 1) throw Error("behind the last surface there must be air, of index 1");
-  // From the scene, then the same with all turned around.
+  // A ray from the scene, then a ray through the reversed lens.
   const size_t n = surfaces_.size();
   for (const bool turned : {false, true}) {
     double y = 1, u = 0;
@@ -106,22 +106,22 @@ void LensSystem::set(const std::vector<LensSurface>& list) {
       u = (before * u - y * curvature * (after - before)) / after;
       if (k + 1 < n) y += u * std::abs(surfaces_[turned ? n - 2 - k : k + 1].vertex - s.vertex);
     }
-    focal_length_ = -1 / u;  // the same both ways, with air on both sides
+    focal_length_ = -1 / u;  // equal in both directions, as there is air on both sides
     (turned ? front_focus_ : back_focus_) = -y / u;
   }
   if (!(focal_length_ > 0) || !std::isfinite(focal_length_)) throw Error("the lens does not gather light: it makes no image");
 }
 
 // With s and s' the distances of object and film from the principal planes, which are d apart,  1/s + 1/s' = 1/f  and
-// s + s' + d = D, the distance of both. With T = D - d hence s s' = f T and  s' = (T - sqrt(T^2 - 4 f T)) / 2, of the two
-// solutions that with the film nearer to the lens than the object.
+// s + s' + d = D, the distance of the object from the film. With T = D - d hence s s' = f T and
+// s' = (T - sqrt(T^2 - 4 f T)) / 2: of the two solutions the one in which the film is nearer to the lens than the object.
 void LensSystem::focus(double distance) {
   const double f = focal_length_, apart = length_ + (back_focus_ - f) + (front_focus_ - f), t = distance - apart;
   if (!(t >= 4 * f))
     throw Error(
         fmt::format("a lens of a focal length of {:.4g} m is sharp from {:.4g} m on, counted from the film", f, 4 * f + apart));
   image_distance_ = std::isfinite(t) ? 2 * f / (1 + std::sqrt(1 - 4 * f / t)) : f;
-  const double rear = image_distance_ + back_focus_ - f;  // of the last vertex, before the film
+  const double rear = image_distance_ + back_focus_ - f;  // distance of the last vertex from the film
   if (!(rear > 0)) throw Error("the image that the lens makes lies inside it");
   const double shift = rear - surfaces_.back().vertex;
   for (Surface& s : surfaces_) s.vertex += shift;
@@ -129,7 +129,8 @@ void LensSystem::focus(double distance) {
 
 double LensSystem::rear_radius() const { return std::sqrt(surfaces_.back().open_squared); }
 
-/// Through one surface. Of the two points in which a line meets a sphere it is the one on the vertex's side of the centre.
+/// Refracts a ray at one surface; false: it is blocked, or reflected totally. Of the two intersections of a line and the sphere
+/// the one on the vertex's side of the centre is taken.
 bool LensSystem::pass(const Surface& s, double from, double to, LensRay& r) {
   DoubleVector3 normal{0, 0, 1};
   if (s.radius == 0) {

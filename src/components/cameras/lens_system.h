@@ -1,5 +1,5 @@
 #pragma once
-// A lens: spherical surfaces on one axis, and the paths of rays through them.
+// LensSystem: a lens of coaxial spherical surfaces, and ray tracing through it.
 
 #include <string>
 #include <vector>
@@ -11,32 +11,33 @@ namespace etendue {
 /// One of a lens's surfaces, as lens tables have them, from the front (the scene) to the rear (the film).
 struct LensSurface {
   double radius = 0;     ///< of curvature, positive when its centre is towards the film [m]; 0: a plane
-  double thickness = 0;  ///< to the next surface [m]; of the last it does not count
-  double index = 1;      ///< of refraction of what lies behind it, towards the film; 0 as 1: air
-  double diameter = 0;   ///< of what lets light through [m]
+  double thickness = 0;  ///< distance to the next surface [m]; not used of the last surface
+  double index = 1;      ///< index of refraction behind the surface, towards the film; 0, like 1, is air
+  double diameter = 0;   ///< of the clear aperture [m]
 };
 
-/// Numbers in fours as text, without units; `#` begins a comment. Throws Error with the reason.
+/// Reads a lens table, text with four numbers for each surface, without units; `#` begins a comment. Throws Error with the
+/// reason.
 std::vector<double> read_lens_file(const std::string& path);
-/// Such numbers, times `unit` [m]. Throws Error.
+/// The surfaces given by such numbers, with lengths multiplied by `unit` [m]. Throws Error.
 std::vector<LensSurface> lens_surfaces(const std::vector<double>& numbers, double unit);
-/// Where its stop is: planes with the same on both sides, which nothing but a stop can be.
+/// Whether surface i is a stop: a plane with the same index on both sides, which has no other purpose.
 bool is_stop(const std::vector<LensSurface>&, size_t i);
 
 struct LensRay {
   DoublePoint3 origin;
   DoubleVector3 direction;  ///< unit
 
-  /// Where it meets a plane across the axis.
+  /// The intersection with the plane perpendicular to the axis at z.
   DoublePoint3 at(double z) const { return origin + ((z - origin.z) / direction.z) * direction; }
 };
 
-/// Coordinates are those of a camera: the film is the plane z = 0, the scene towards +z.
+/// In camera coordinates: the film is the plane z = 0, the scene lies towards +z.
 class LensSystem {
  public:
-  /// Throws Error when what it is given is no lens that makes images.
+  /// Throws Error if the surfaces do not form a lens that makes images.
   void set(const std::vector<LensSurface>&);
-  /// Moves it so that a point so far from the film is sharp on it [m]. Throws Error when that is too near.
+  /// Moves the lens so that a point at this distance from the film [m] is in focus. Throws Error if the distance is too small.
   void focus(double distance);
 
   double focal_length() const { return focal_length_; }      ///< [m]
@@ -44,9 +45,10 @@ class LensSystem {
   double image_distance() const { return image_distance_; }  ///< from the rear principal plane to the film [m]
   double rear() const { return surfaces_.back().vertex; }    ///< z of the rear vertex
   double front() const { return surfaces_.front().vertex; }
-  double rear_radius() const;  ///< of what lets light through at the rear
+  double rear_radius() const;  ///< of the clear aperture of the rear surface [m]
 
-  /// From the film to the scene, and back. False: it is held back by a rim or the stop, or reflected totally.
+  /// Trace a ray from the film to the scene, and from the scene to the film. False: the ray is blocked by a rim or the stop, or
+  /// totally reflected.
   bool outwards(LensRay& ray) const;
   bool inwards(LensRay& ray) const;
 

@@ -1,13 +1,13 @@
-// OrthographicCamera: parallel rays.
+// OrthographicCamera: a camera with parallel rays.
 
 #include "pose.h"
 
 namespace etendue {
 namespace {
 
-// The film is a rectangle of area A through `from`; each of its points looks in the one direction. A pixel's value is the
-// mean radiance over the film: W_e is 1 / A times a delta in direction, of which only 1 / A is returned; film points have
-// density 1 / A [1/m^2] and directions probability 1.
+// The film is a rectangle of area A through `from`; all rays from its points have the same direction. A pixel's value is the
+// mean radiance over its part of the film: W_e is 1 / A times a delta distribution in direction, of which only 1 / A is
+// returned; film points have the pdf 1 / A [1/m^2] and directions the probability 1.
 class OrthographicCamera final : public Camera {
  public:
   static void describe(Description<OrthographicCamera>& d) {
@@ -54,7 +54,7 @@ class OrthographicCamera final : public Camera {
   bool parallel() const override { return true; }
   std::optional<Point2> film_point(const Ray& r) const override {
     const Pose pose = placement_.at(r.time);
-    // Only the camera's own rays have exactly its direction.
+    // Only rays that the camera itself generated have its direction.
     const Vector3 direction = pose.to_camera(normalize(r.direction));
     if (!(direction.z > 0) || std::abs(direction.x) + std::abs(direction.y) > 1e-5f) return std::nullopt;
     return project(pose.to_camera(r.origin - pose.position));
@@ -100,7 +100,7 @@ class OrthographicCamera final : public Camera {
   Placement placement_;
   Clip clip_;
   float columns_ = 1, rows_ = 1;  // of the picture, in pixels
-  float pixel_ = 1;               // width of one [m]
+  float pixel_ = 1;               // width of a pixel [m]
   float pdf_ = 1;                 // 1 / area of the film [1/m^2]
 };
 

@@ -1,4 +1,4 @@
-// PerspectiveCamera: a pinhole, or a thin lens.
+// PerspectiveCamera: a camera with a pinhole or a thin lens.
 
 #include "etendue/core/warp.h"
 #include "pose.h"
@@ -10,9 +10,9 @@ namespace {
 // lens point give the ray from the lens point to the film point's image, `focus_distance` times farther along the ray
 // through the centre.
 //
-// Densities. Film points uniform over A are, on the plane of focus at distance d, uniform over A d^2. Seen from a lens
-// point, under the angle theta to the axis, that plane's points lie at distance d / cos: the density per solid angle is
-// (d / cos)^2 / (A d^2 cos) = 1 / (A cos^3) for all lens points. Lens points have density 1 / A_lens.
+// Pdfs. Film points uniform over A are, on the plane of focus at distance d, uniform over A d^2. From a lens point, in a
+// direction at the angle theta to the axis, the plane of focus is at distance d / cos: the pdf per solid angle is
+// (d / cos)^2 / (A d^2 cos) = 1 / (A cos^3) for all lens points. Lens points have the pdf 1 / A_lens.
 //
 // Importance (Veach 1997, section 8.2.2; Pharr, Jakob & Humphreys, section 16.1.1): a pixel's value is the mean radiance
 // of its rays, so for the whole film  1 = integral of W_e cos dw dA  with  W_e cos = p_direction p_position:
@@ -140,7 +140,7 @@ class PerspectiveCamera final : public Camera {
   AnimatedTransform transform;
   float fov = 40;
   Axis fov_axis = Axis::smaller;
-  float focal_length = 0, sensor_size = 0.0432666f;  // the latter of 36 mm by 24 mm
+  float focal_length = 0, sensor_size = 0.0432666f;  // the diagonal of 36 mm by 24 mm
   Vector2 principal_point{0, 0};
   float lens_radius = 0, focus_distance = 0;
   float near_clip = 0, far_clip = 0;
@@ -175,7 +175,7 @@ class PerspectiveCamera final : public Camera {
     seen.on_film = seen.film.x >= 0 && seen.film.x < width_ && seen.film.y >= 0 && seen.film.y < height_;
   }
 
-  /// Where a ray that leaves the lens comes from on the film. A ray of a pinhole is taken to pass through it.
+  /// The film point of a ray that leaves the lens. For a pinhole the ray is assumed to pass through the pinhole.
   Seen look(const Ray& r) const {
     Seen seen;
     const Pose pose = placement_.at(r.time);

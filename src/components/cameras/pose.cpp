@@ -1,4 +1,4 @@
-// Where a camera stands, and what is wrong with how that was said.
+// Sets a camera's placement, clipping planes and shutter from its members, and checks these members.
 
 #include "pose.h"
 
@@ -14,7 +14,7 @@ void Placement::set(const Camera& camera, const DoublePoint3& from, const Double
   if (!is_finite(up) || !(length(up) > 0)) camera.fail("up", "must be a direction other than zero");
   if (!(length(cross(forward, normalize(up))) > 1e-5f)) camera.fail("up", "must not point along the line of sight");
   if (!transform.valid()) camera.fail("transform", "cannot be inverted");
-  // A camera that is stretched would measure lens and film in other units than the world's.
+  // With a scaled camera the sizes of lens and film would be in other units than those of the world.
   for (const auto& key : transform.keys()) {
     const Vector3 axes[3] = {key.transform(Vector3{1, 0, 0}), key.transform(Vector3{0, 1, 0}), key.transform(Vector3{0, 0, 1})};
     for (int i = 0; i < 3; ++i)

@@ -1,12 +1,12 @@
 #pragma once
-// Where a camera stands and how it is turned: what all cameras share.
+// Position and orientation, clipping planes and the check of the shutter, which cameras share.
 
 #include "etendue/camera.h"
 
 namespace etendue {
 
-/// Axes of a camera in the world, orthonormal. `right` points to the right of the picture: direction x up (Transform's
-/// camera convention has +x to the left).
+/// The orthonormal axes of a camera in world space. `right` points to the right of the picture: viewing direction x up (in
+/// Transform's camera convention +x points to the left).
 struct Pose {
   Point3 position;
   Vector3 right{-1, 0, 0}, up{0, 1, 0}, forward{0, 0, 1};
@@ -25,7 +25,7 @@ struct Pose {
 /// The placement of a camera: from, to and up, and a transform (which may move) on top of them.
 class Placement {
  public:
-  /// Checks and takes the members of a camera; throws at the member that is wrong.
+  /// Sets the placement from a camera's members. Throws Error with the location of a member that is wrong.
   void set(const Camera& camera, const DoublePoint3& from, const DoublePoint3& to, const Vector3& up,
            const AnimatedTransform& transform);
   Pose at(float time) const { return moving_ ? Pose(transform_.at(time) * base_) : still_; }
@@ -37,16 +37,16 @@ class Placement {
   AnimatedTransform transform_;
 };
 
-/// Two planes across a camera's axis, between which lies what it sees.
+/// Near and far clipping planes, perpendicular to the camera's axis.
 class Clip {
  public:
-  /// Checks and takes the members of a camera; throws at the member that is wrong.
+  /// Sets the planes from a camera's members. Throws Error with the location of a member that is wrong.
   void set(const Camera& camera, float near_clip, float far_clip);
-  /// Whether a point so far along the axis [m] lies between them.
+  /// Whether a point at this depth along the axis [m] lies between the planes.
   bool holds(float depth) const { return depth >= nearest_ && depth <= farthest_; }
-  /// Along a direction under an angle of this cosine to the axis.
+  /// The distances of the planes along a ray whose angle to the axis has this cosine.
   Camera::Reach reach(float cosine) const { return {nearest_ / cosine, farthest_ / cosine}; }
-  /// Lets a ray that leaves the lens begin and end there.
+  /// Shortens a ray that leaves the lens to the part between the planes.
   void cut(Ray& ray, float cosine) const {
     if (!cuts_) return;
     const auto [nearest, farthest] = reach(cosine);
@@ -60,7 +60,7 @@ class Clip {
   bool cuts_ = false;
 };
 
-/// The members that say where they are.
+/// Describes the members near_clip and far_clip.
 template <auto near_clip, auto far_clip, class C>
 void describe_clip(Description<C>& d) {
   d.group("Clipping")
@@ -76,7 +76,8 @@ void describe_clip(Description<C>& d) {
                                  at_least(0), soft(1, 10000), logarithmic);
 }
 
-/// Throws when the shutter closes before it opens.
+/// Throws Error if the shutter's times are not finite, if it closes before it opens, or if its ramps are longer than its
+/// opening.
 void check_shutter(const Camera&);
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// SphericalCamera: a pinhole that sees in all directions.
+// SphericalCamera: a pinhole camera whose picture covers all directions.
 
 #include "geometry/equal_area_square.h"
 #include "pose.h"
@@ -8,15 +8,15 @@ namespace {
 
 constexpr double exact_pi = 3.14159265358979323846;
 
-// The whole picture is the whole sphere; u goes from 0 to 1 across it, v down.
-//   equirectangular: the longitude 2 pi (u - 1/2), from the viewing direction to the right, and the angle pi v from above. A
-//     solid angle is dw = sin(theta) dtheta dphi = 2 pi^2 sin(theta) du dv, so film points that are uniform have density
+// The picture covers the whole sphere; u goes from 0 to 1 across the picture, v from 0 to 1 downwards.
+//   equirectangular: the longitude is 2 pi (u - 1/2), from the viewing direction to the right, and the angle from the top pi v.
+//     The solid angle is dw = sin(theta) dtheta dphi = 2 pi^2 sin(theta) du dv, so uniform film points have the pdf
 //     p = 1 / (2 pi^2 sin(theta)) [1/sr].
 //   equal_area: the mapping of equal_area_square.h, with the viewing direction in the middle; p = 1 / (4 pi) everywhere.
 //
-// A pinhole that faces every direction alike has no cosine. A pixel's value is the mean radiance of its rays, so W_e = p: its
-// integral over directions is 1. Of light that arrives from a point at distance d, d^2 is what makes an area there a solid
-// angle here (LensSample::density).
+// The pinhole faces all directions equally, so there is no cosine. A pixel's value is the mean radiance of its rays, so
+// W_e = p: its integral over directions is 1. For a point at distance d, the factor from area at the point to solid angle at
+// the pinhole is contained in LensSample::pdf = d^2.
 class SphericalCamera final : public Camera {
  public:
   static void describe(Description<SphericalCamera>& d) {
@@ -86,7 +86,7 @@ class SphericalCamera final : public Camera {
     return s;
   }
 
-  // A ray of a pinhole is taken to pass through it.
+  // The ray is assumed to pass through the pinhole.
   float importance(const Ray& r) const override { return pdf_of(local_direction(r)); }
   CameraPdf pdf(const Ray& r) const override { return {1, pdf_of(local_direction(r))}; }
 
@@ -99,7 +99,7 @@ class SphericalCamera final : public Camera {
  private:
   Vector3 local_direction(const Ray& r) const { return placement_.at(r.time).to_camera(normalize(r.direction)); }
 
-  /// Of a unit direction in camera coordinates [1/sr].
+  /// The pdf of a unit direction in camera coordinates [1/sr].
   float pdf_of(const Vector3& d) const {
     if (mapping == Mapping::equal_area) return 1 / (4 * pi);
     const float sine = std::hypot(d.x, d.z);
@@ -115,7 +115,7 @@ class SphericalCamera final : public Camera {
       u = 0.5 + std::atan2(double(d.x), double(d.z)) / (2 * exact_pi);
       v = std::atan2(std::hypot(double(d.x), double(d.z)), double(d.y)) / exact_pi;
     }
-    // The far edges belong to no pixel.
+    // Points on the right and lower edge of the picture are moved into the last pixel.
     return {std::min(float(u * width_), std::nextafter(float(width_), 0.0f)),
             std::min(float(v * height_), std::nextafter(float(height_), 0.0f))};
   }

@@ -1,4 +1,4 @@
-// Round profiles: directions about an axis, and how much of them a surface sends out.
+// Rotationally symmetric profiles: sampling of directions about an axis, and K (ShapedEmission) of a surface.
 
 #include "axial_emission.h"
 
@@ -14,7 +14,7 @@ Spectrum AxialEmission::radiance(const SurfacePoint& p, const Vector3& direction
   return f > 0 && emits(p, direction) ? scaled(p, w, f) : Spectrum();
 }
 
-/// 1 - cos of the angle to the axis, which is the normal on the direction's side for profiles about it.
+/// h = 1 - cos of the angle to the axis. For profiles about the normal the axis is the normal on the direction's side.
 float AxialEmission::height(const SurfacePoint& p, const Vector3& direction) const {
   if (!about_normal(p)) return length_squared(direction - axis_at(p)) / 2;
   const Vector3 n(p.normal);
@@ -60,10 +60,11 @@ DirectionSample AxialEmission::sample_incident(Point2 u) const {
 }
 float AxialEmission::incident_pdf(const Vector3& towards) const { return drawn(length_squared(towards + axis_) / 2, false); }
 
-/// K of the front alone at n . axis = c: the integral over h of f times that around the axis of max(a + b cos(phi), 0), with
-/// a = c cos(theta) and b = sqrt(1 - c^2) sin(theta), which is 2 pi a, 0, or 2 (a phi_0 + b sin(phi_0)) with
-/// phi_0 = acos(-a / b). It is smooth in x = sqrt(h) but for the inner h and for the h at which the cone touches the horizon,
-/// |a| = b. Between those, x goes as s^2 (3 - 2s): all is flat at the ends then, and midpoints converge fast.
+/// K of the front side alone, for n . axis = c: the integral over h of f times the integral over the azimuth phi of
+/// max(a + b cos(phi), 0), with a = c cos(theta) and b = sqrt(1 - c^2) sin(theta). The azimuthal integral is 2 pi a, 0, or
+/// 2 (a phi_0 + b sin(phi_0)) with phi_0 = acos(-a / b). The integrand is smooth in x = sqrt(h) except at the inner h and at
+/// the h where the cone touches the horizon, |a| = b. On each interval between these, x is substituted by s^2 (3 - 2s), whose
+/// derivative vanishes at both ends, so that the midpoint rule converges fast.
 double AxialEmission::front(double c) const {
   constexpr int steps = 32;
   const double rise = std::sqrt(std::max(0.0, 1 - c * c)), horizon = 1 - rise;

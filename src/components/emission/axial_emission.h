@@ -1,19 +1,19 @@
 #pragma once
-// AxialEmission: a profile that is round about an axis or about the surface's normal.
+// AxialEmission: base class of emissions whose profile is rotationally symmetric about an axis or the surface's normal.
 
 #include "shaped_emission.h"
 
 namespace etendue {
 
-// With theta the angle to the axis, a profile is a function of h = 1 - cos(theta), found from the difference d of the two unit
-// vectors as |d|^2 / 2, which stays exact in narrow cones. As dw = 2 pi dh, Omega = 2 pi integral of f dh.
+// With theta the angle to the axis, a profile is a function of h = 1 - cos(theta). h is computed from the difference d of the
+// two unit vectors as |d|^2 / 2, which stays exact in narrow cones. As dw = 2 pi dh, Omega = 2 pi integral of f dh.
 class AxialEmission : public ShapedEmission {
  public:
   Spectrum radiance(const SurfacePoint&, const Vector3& direction, const Wavelengths&) const override;
 
-  // All light of a point at infinity travels the same way: straight away from it, with probability 1. On a surface some of a
-  // profile about an axis may lie on a side that does not emit; what is drawn there has density 0, and the density over the
-  // emitting sides adds up to the share of the profile that lies there.
+  // A point at infinity emits in one direction only, from the point towards the object's origin, with probability 1. On a
+  // surface a part of a profile about an axis may lie on a side that does not emit. Samples of this part have pdf 0, and the
+  // pdf integrates over the emitting sides to the share of the profile that lies there.
   DirectionSample sample(const SurfacePoint&, Point2 u) const override;
   float pdf(const SurfacePoint&, const Vector3& direction) const override;
 
@@ -26,19 +26,20 @@ class AxialEmission : public ShapedEmission {
   About about = About::axis;
 
  protected:
-  /// To be called when the profile is known.
+  /// Derived classes call this when the parameters of fall_off() are set.
   void prepare_axis() {
     axis_ = checked_direction(axis, "axis");
     normal_share_ = front(1);
   }
 
-  // ---- what a profile says of itself --------------------------------------------------------------------------------------
+  // ---- defined by each profile --------------------------------------------------------------------------------------------
   /// f at 1 - cos(theta) = h.
   virtual float fall_off(float h) const = 0;
-  /// The least h beyond which there is nothing (or too little to count), and one before it where f is not smooth (0: none).
+  /// outer(): the least h beyond which f is zero or negligible. inner(): an h before it where f is not smooth (0: none).
   virtual double outer() const = 0;
   virtual double inner() const { return 0; }
-  /// Draws h, and its density [1/sr]; `surface`: about the normal of a surface, whose cosine goes with it.
+  /// draw() samples h, drawn() returns its pdf [1/sr]. `surface`: the profile is about a surface's normal, so the pdf may be
+  /// proportional to f times the cosine.
   virtual float draw(float u, bool surface) const = 0;
   virtual float drawn(float h, bool surface) const = 0;
 
@@ -48,7 +49,7 @@ class AxialEmission : public ShapedEmission {
   Vector3 own_axis(const SurfacePoint& p) const override { return about_normal(p) ? Vector3{} : axis_at(p); }
 
  private:
-  /// A point has no normal, and at infinity all light travels along it.
+  /// False for points without a normal (a Point), and at infinity, where all light travels along the normal.
   bool about_normal(const SurfacePoint& p) const {
     return about == About::normal && !(p.normal == Normal3{}) && !(p.object && p.object->infinite());
   }

@@ -1,17 +1,18 @@
-// CollimatedEmission: a beam.
+// CollimatedEmission: a beam of small divergence, like a laser's.
 
 #include "axial_emission.h"
 
 namespace etendue {
 namespace {
 
-// Profile f = 1 for h <= H, where H = 1 - cos(divergence), else 0 (AxialEmission); Omega = 2 pi H, and directions are drawn
-// uniformly from the cone, with density 1 / Omega.
+// Profile f = 1 for h <= H, where H = 1 - cos(divergence), else 0 (AxialEmission); Omega = 2 pi H, and directions are sampled
+// uniformly in the cone, with pdf 1 / Omega.
 //
-// A beam of no divergence would have a density that is a delta function, which only paths begun at the beam could find. With
-// a divergence all is finite: at 0.1 degrees Omega = 9.6e-6 sr, so a beam of 1 W from 1 mm^2 has the radiance of
-// 1e11 W m^-2 sr^-1, and every algorithm can deal with it; those that look for light from surfaces find the beam seldom, with
-// large values, those that start at the light (light tracing, bidirectional path tracing) find what it lights at once.
+// Without divergence the directional distribution would be a delta function, and only paths that start at the beam could
+// sample it. With a divergence all values are finite: at 0.1 degrees Omega = 9.6e-6 sr, so a beam of 1 W from 1 mm^2 has the
+// radiance 1e11 W m^-2 sr^-1, and every algorithm can render it. Algorithms that sample the light from surface points hit the
+// beam rarely, with large contributions; those that start at the light (light tracing, bidirectional path tracing) sample the
+// illuminated surface with every path.
 class CollimatedEmission final : public AxialEmission {
  public:
   CollimatedEmission() { about = About::normal; }
@@ -46,7 +47,8 @@ class CollimatedEmission final : public AxialEmission {
   float divergence = 0.1f;
 
  protected:
-  // Directions are rounded to some 6e-8, which blurs the border: by 3e-5 of the beam's width at 0.1 degrees, 4e-3 at 1e-3.
+  // Directions have rounding errors of about 6e-8, which blur the cone's border: by 3e-5 of the beam's width at a divergence of
+  // 0.1 degrees, by 4e-3 at 1e-3 degrees.
   float fall_off(float h) const override { return h <= height_ ? 1 : 0; }
   double solid_angle() const override { return double(solid_angle_); }
   double outer() const override { return double(height_); }

@@ -6,12 +6,12 @@ namespace etendue {
 namespace {
 
 // Profile f = cos(theta)^n = (1 - h)^n for h < 1 (AxialEmission), the generalized Lambertian source: n = 0 is a hemisphere of
-// constant radiance, n = 1 what many a diode is sold as. Omega = 2 pi / (n + 1); about the normal of a surface leaves, per area
-// and M, K = integral of cos^(n + 1) dw = 2 pi / (n + 2) on each side. Half of the greatest radiance is left at
+// constant radiance, n = 1 the nominal pattern of many LEDs. Omega = 2 pi / (n + 1); for a lobe about a surface's normal,
+// K = integral of cos^(n + 1) dw = 2 pi / (n + 2) on each side. The radiance is half of its maximum at
 // cos(theta) = 2^(-1/n).
 //
-// Directions are drawn in proportion to f, and about a normal to f cos: with density (m + 1) / (2 pi) cos^m, m = n or n + 1,
-// from h = 1 - (1 - u)^(1 / (m + 1)), written so that narrow lobes keep their digits.
+// Directions are sampled in proportion to f, and about a normal to f cos: with the pdf (m + 1) / (2 pi) cos^m, m = n or n + 1,
+// by h = 1 - (1 - u)^(1 / (m + 1)), written with expm1 and log1p so that narrow lobes keep their precision.
 class CosineLobeEmission final : public AxialEmission {
  public:
   CosineLobeEmission() { about = About::normal; }
@@ -47,7 +47,7 @@ class CosineLobeEmission final : public AxialEmission {
  protected:
   float fall_off(float h) const override { return h < 1 ? power(h, exponent) : 0; }
   double solid_angle() const override { return 2 * 3.14159265358979323846 / (double(exponent) + 1); }
-  /// Where f is exp(-40).
+  /// The h at which f is about exp(-40).
   double outer() const override { return std::min(1.0, 40 / (double(exponent) + 1e-3)); }
 
   float draw(float u, bool surface) const override {

@@ -8,8 +8,7 @@ namespace {
 
 constexpr double pi_exactly = 3.14159265358979323846;
 
-// A profile of f = 1 (ShapedEmission): of s sides a surface sends out, per area and radiance, K = s * integral of cos dw = s
-// pi.
+// The profile is f = 1 (ShapedEmission). A surface that emits from s sides has K = s * integral of cos dw = s pi.
 class DiffuseEmission final : public ShapedEmission {
  public:
   static void describe(Description<DiffuseEmission>& d) {

@@ -1,4 +1,4 @@
-// Tabulated densities over directions.
+// Tabulated pdfs over directions.
 
 #include "direction_table.h"
 
@@ -42,7 +42,7 @@ void DirectionTable::build(const std::vector<double>& polar, const std::vector<d
 
   std::vector<double> row_totals(rows);
   for (size_t row = 0; row < rows; ++row) {
-    // Of the borders as they are kept, so that the density is exactly that of what is drawn.
+    // Computed from the borders as stored, in float, so that the pdf is exactly that of the samples.
     const double band = double(height_[row + 1]) - double(height_[row]);
     double sum = 0;
     std::vector<double> running(count);

@@ -1,4 +1,4 @@
-// What all emission shaders have in common: the sides that emit.
+// The description of the member that all emission shaders have: the sides that emit.
 
 #include "etendue/emission_shader.h"
 

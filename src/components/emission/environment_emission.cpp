@@ -1,4 +1,4 @@
-// EnvironmentEmission: light from all around, from an image or of a map.
+// EnvironmentEmission: light from all directions at infinity, given by an image or a map.
 
 #include "equal_area.h"
 #include "etendue/core/warp.h"
@@ -13,17 +13,17 @@
 namespace etendue {
 namespace {
 
-// Directions are in the coordinates of the object that carries this emission; y is up. Longitude and latitude:
-// u = atan2(x, -z) / (2 pi), wrapped to [0, 1), and v = acos(y) / pi from the top; texels are squares of that plane, row 0 at
-// the top, and the radiance is bilinear between their centres (beyond the first and last row it is that row). With `rows:
-// poles` the middle of the first row is the top and that of the last the bottom: row j of h lies at v = j / (h - 1).
+// Directions are in object space; y is up. Longitude and latitude: u = atan2(x, -z) / (2 pi), wrapped to [0, 1), and
+// v = acos(y) / pi from the top. Texels are squares of the (u, v) plane, row 0 at the top, and the radiance is bilinear between
+// their centres (constant beyond the centres of the first and last row). With `rows: poles` the centre of the first row lies at
+// the top and that of the last row at the bottom: row j of h lies at v = j / (h - 1).
 //
-// Importance sampling: a density that is constant over each texel's solid angle
+// Importance sampling: a pdf that is constant over each texel's solid angle
 //   Omega_row = (2 pi / width) (cos(theta_top) - cos(theta_bottom)),
 // in proportion to the mean of the bilinear radiance's importance over the texel. The mean of a hat function over its own
-// texel is 3/4, over each neighbour 1/8, in both directions, so the mean is a 3 x 3 filter, and it is positive wherever the
+// texel is 3/4, over each neighbour 1/8, in both dimensions, so the mean is a 3 x 3 filter, and it is positive wherever the
 // radiance is. A texel is chosen with probability importance * Omega / sum, a point in it uniformly in longitude and in
-// cos(theta), hence density = importance / sum [1/sr].
+// cos(theta), hence pdf = importance / sum [1/sr].
 class EnvironmentEmission final : public EmissionShader {
  public:
   static void describe(Description<EnvironmentEmission>& d) {
@@ -96,7 +96,7 @@ class EnvironmentEmission final : public EmissionShader {
     const Vector3 towards = p.object_position - Point3{};
     if (!image_.rgb.empty()) {
       const Point2 at = place(towards);
-      prefetch_pdf(at);  // a path that came here by itself asks for it next
+      prefetch_pdf(at);  // a path whose BSDF sample escaped to infinity evaluates incident_pdf next, for its MIS weight
       const std::array<float, 3> rgb = look_up(at);
       return rgb_spectrum(*space_, factor_ * rgb[0], factor_ * rgb[1], factor_ * rgb[2], image_use(), w);
     }
@@ -104,7 +104,7 @@ class EnvironmentEmission final : public EmissionShader {
     return map_radiance(p, towards, w);
   }
 
-  // All light of a point at infinity travels the same way: straight away from it, with probability 1.
+  // A point at infinity emits in one direction only, from the point towards the object's origin, with probability 1.
   DirectionSample sample(const SurfacePoint& p, Point2) const override {
     Vector3 away = Point3{} - p.object_position;
     if (p.object) away = normalize(p.object->transform.at(p.time)(away));
@@ -112,8 +112,8 @@ class EnvironmentEmission final : public EmissionShader {
   }
   float pdf(const SurfacePoint&, const Vector3&) const override { return 1; }
 
-  /// Of all the light that enters through the object's area [W/nm]: pi * area * mean radiance. For an image, of its mean
-  /// colour.
+  /// The power that enters the scene through the object's area [W/nm]: pi * area * mean radiance. For an image the mean
+  /// radiance is that of the mean RGB.
   Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
     const float sphere_times_disc = pi * object.area();
     if (!image_.rgb.empty())
@@ -124,7 +124,7 @@ class EnvironmentEmission final : public EmissionShader {
     Spectrum sum;
     for (int i = 0; i < side; ++i)
       for (int k = 0; k < side; ++k) {
-        // With all that maps may ask for: normals and positions in the scene as well.
+        // The points have all that maps may read: world-space normals and positions as well.
         const Point2 u{(float(i) + 0.5f) / side, (float(k) + 0.5f) / side};
         const SurfacePoint p = object.infinite() ? object.sample_visible({}, u, 0).point : facing(warp::sphere(u));
         sum += map_radiance(p, p.object_position - Point3{}, w);
@@ -165,10 +165,10 @@ class EnvironmentEmission final : public EmissionShader {
   ColorUse image_use() const { return illuminant ? ColorUse::radiance : ColorUse::coefficient; }
 
   bool rows_at_poles() const { return rows == Rows::poles && image_.height > 1; }
-  /// The row whose middle lies at v.
+  /// The row whose centre lies at v, as a fractional index.
   float row_at(float v) const { return rows_at_poles() ? v * float(image_.height - 1) : v * float(image_.height) - 0.5f; }
   int clamp_row(int y) const { return std::clamp(y, 0, image_.height - 1); }
-  /// v of the upper border of row y: half-way between the middles.
+  /// v of the upper border of row y: half-way between the rows' centres.
   double border(size_t y, size_t h) const {
     if (!rows_at_poles()) return double(y) / double(h);
     return std::clamp((double(y) - 0.5) / double(h - 1), 0.0, 1.0);
@@ -183,7 +183,7 @@ class EnvironmentEmission final : public EmissionShader {
     return {std::min(u, one_minus_epsilon), safe_acos(d.y) / pi};
   }
 
-  /// The point in a direction, for an object that is not moved.
+  /// The environment's point in a direction, for an object whose transform is the identity.
   static SurfacePoint facing(const Vector3& towards) {
     SurfacePoint p;
     p.position = p.object_position = Point3{} + towards;
@@ -210,18 +210,18 @@ class EnvironmentEmission final : public EmissionShader {
     for (size_t i = 0; i < 3; ++i) rgb[i] = etendue::lerp(fy, etendue::lerp(fx, a[i], b[i]), etendue::lerp(fx, c[i], d[i]));
     return rgb;
   }
-  /// Column and row of the texel that a place lies in.
+  /// Column and row of the texel that contains (u, v).
   std::pair<size_t, size_t> texel_at(Point2 p) const {
     return {size_t(std::min(int(p.x * float(image_.width)), image_.width - 1)), size_t(clamp_row(int(row_at(p.y) + 0.5f)))};
   }
 
-  // The image lies in memory that is not near, and what is looked up in it is known well before it is needed: of a sampled
-  // direction the surface answers first.
+  // The image is rarely in the cache, and the addresses of a lookup are known well before the values are needed: after a
+  // direction is sampled the BSDF is evaluated first.
   void prefetch_pdf(Point2 at) const {
     const auto [x, y] = texel_at(at);
     texels_.prefetch(x, y);
   }
-  /// What `look_up` will look at, of a direction in a texel.
+  /// Prefetches the texels that `look_up` will read for a direction in a texel.
   void prefetch_texels(int x, int y, Point2 within) const {
     const int left = within.x < 0.5f ? std::max(x - 1, 0) : x;
     const int above = within.y < 0.5f ? std::max(y - 1, 0) : y;
@@ -231,12 +231,13 @@ class EnvironmentEmission final : public EmissionShader {
 
   const float* texel(int x, int y) const { return image_.rgb.data() + (size_t(y) * size_t(image_.width) + size_t(x)) * 3; }
 
-  /// Given what a factor of 1 gives [lx].
+  /// Sets the factor for the requested illuminance. `given`: the illuminance with a factor of 1 [lx].
   void ask_for(double given) {
     if (!(given > 0)) fail("illuminance", "nothing that the eye sees shines from above");
     factor_ = float(lux / given);
   }
-  /// E = 683.002 integral of V L cos dw over the upper half; of an image, luminances are Y times 106.857 nm.
+  /// E = 683.002 integral of V L cos dw over the upper hemisphere. For an image the integral of V L over wavelengths is Y times
+  /// the integral of ybar, 106.857 nm.
   double image_illuminance() const {
     const size_t width = size_t(image_.width);
     double sum = 0;
@@ -281,8 +282,8 @@ class EnvironmentEmission final : public EmissionShader {
            location_of("file"));
   }
 
-  /// Of one texel: its luminance. No less than a small part of the channels' sum, as wide primaries may have a colour of
-  /// no luminance that emits all the same.
+  /// The importance of a texel: its luminance, but at least 0.02 times the sum of its channels, as with wide-gamut primaries a
+  /// colour without luminance may emit all the same.
   float texel_importance(const float* rgb) const {
     const auto& m = space_->to_xyz;
     const double y = m[3] * double(rgb[0]) + m[4] * double(rgb[1]) + m[5] * double(rgb[2]);
@@ -323,7 +324,7 @@ class EnvironmentEmission final : public EmissionShader {
   bool constant_map_ = true;
   float factor_ = 1;  // multiplies all radiance
   LinearImage image_;
-  std::array<float, 3> mean_{};      // RGB over the sphere
+  std::array<float, 3> mean_{};      // mean RGB over the sphere
   TexelDistribution texels_;         // by importance times solid angle
   std::vector<double> row_cosines_;  // cos(theta) at the rows' borders
 };

@@ -1,4 +1,4 @@
-// Squares of equal areas as images in longitude and latitude.
+// Resampling of equal-area square images of directions to images in longitude and latitude.
 
 #include "equal_area.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double exact_pi = 3.14159265358979323846;
 
-/// Bilinear.
+/// Adds `weight` times the bilinear value of the image at a place of the square to `sum`.
 void add(const LinearImage& image, SquarePlace at, double weight, double* sum) {
   const int n = image.width;
   const double px = at.x * n - 0.5, py = at.y * n - 0.5;

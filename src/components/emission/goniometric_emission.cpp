@@ -1,4 +1,4 @@
-// GoniometricEmission: light of a point whose intensity an image says for every direction.
+// GoniometricEmission: a point light whose intensity in every direction is given by an image.
 
 #include "etendue/core/warp.h"
 #include "geometry/equal_area_square.h"
@@ -12,13 +12,14 @@ namespace {
 constexpr double exact_pi = 3.14159265358979323846;
 
 // The profile f (ShapedEmission) is the image's value in a direction, times `scale`: a point's intensity is M f * 1 m^2, and
-// Omega = integral of f dw the sum of all texels' values times what each counts for (weight_of).
+// Omega = integral of f dw is the sum of all texels' values times their weights (weight_of).
 //
-// Directions are drawn with a density that is constant over each texel. Of squares without anything between that is the value
-// itself, and f over the density the same everywhere. Of a bilinear image it is the mean of the value over the texel as if its
-// neighbours were as large as itself: a hat function's mean over its own texel is 3/4, over each neighbour 1/8, in both
-// directions; it is positive wherever the value is. Within a texel of equal areas any square is as good as its area; in one of
-// longitude and latitude, longitude and cos(theta) are uniform.
+// Directions are sampled with a pdf that is constant over each texel. With nearest interpolation the pdf is proportional to the
+// texel's value, so that f / pdf is the same everywhere. With bilinear interpolation it is proportional to the mean of the
+// value over the texel, computed as if the texel's neighbours had its size: a hat function's mean over its own texel is 3/4,
+// over each neighbour 1/8, in both dimensions; the mean is positive wherever the value is. Within a texel of the equal-area
+// layout the position in the square is uniform, which is uniform in solid angle; within a texel of the lat_long layout,
+// longitude and cos(theta) are uniform.
 class GoniometricEmission final : public ShapedEmission {
  public:
   static void describe(Description<GoniometricEmission>& d) {
@@ -68,7 +69,7 @@ class GoniometricEmission final : public ShapedEmission {
     return f > 0 ? scaled(p, w, f) : Spectrum();
   }
 
-  // Some of the light may lie on a side that does not emit; what is drawn there has density 0.
+  // A part of the light may lie on a side that does not emit: samples of this part have pdf 0.
   DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
     if (!(texels_.total() > 0)) return {{0, 0, 1}, 0};
     const auto [x, y, within, drawn] = texels_.choose(u);
@@ -85,7 +86,7 @@ class GoniometricEmission final : public ShapedEmission {
       local = {float(sine * std::sin(phi)), float(cosine), float(-sine * std::cos(phi))};
     }
     const Vector3 direction = frame(p).to_world(normalize(local));
-    return {direction, pdf(p, direction)};  // at a texel's border rounding may put it into the next
+    return {direction, pdf(p, direction)};  // evaluated anew: at a texel's border rounding may move it into the next texel
   }
   float pdf(const SurfacePoint& p, const Vector3& direction) const override {
     if (!(texels_.total() > 0) || !emits(p, direction)) return 0;
@@ -112,7 +113,7 @@ class GoniometricEmission final : public ShapedEmission {
     return factor() * (interpolation == Interpolation::nearest ? texel(int(column(at.x)), int(row(at.y))) : bilinear(at));
   }
   double solid_angle() const override { return double(factor()) * omega_; }
-  /// Over the sides that emit, by 64 x 64 directions.
+  /// K over the emitting sides, by quadrature with 64 x 64 directions.
   double surface_share(const SurfacePoint& p) const override {
     constexpr int steps = 64;
     double sum = 0;
@@ -171,11 +172,11 @@ class GoniometricEmission final : public ShapedEmission {
     texels_.build(importance, width_, solid_angles);
   }
 
-  /// What a texel's value counts for in the integral over all directions [sr]: its own solid angle, which is also what it has
-  /// of its neighbours' in the square of equal areas. Rows of latitudes differ in size. Between the middles of rows, delta
-  /// apart, values are linear in theta: int hat(theta) sin(theta) dtheta = 2 sin(theta_y) (1 - cos(delta)) / delta about the
-  /// middle theta_y of a row; from a pole, where the outermost row's value stays, 1 - (sin(3 delta / 2) - sin(delta / 2)) /
-  /// delta.
+  /// The weight of a texel's value in the integral over all directions [sr]. With nearest interpolation it is the texel's solid
+  /// angle, and also with bilinear interpolation in the equal-area layout, where all texels have the same solid angle. Rows of
+  /// the lat_long layout differ in solid angle. Between the centres of rows, delta apart, bilinear values are linear in theta:
+  /// int hat(theta) sin(theta) dtheta = 2 sin(theta_y) (1 - cos(delta)) / delta about the centre theta_y of a row; for the
+  /// outermost row, whose value is constant from its centre to the pole, 1 - (sin(3 delta / 2) - sin(delta / 2)) / delta.
   double weight_of(size_t row, const std::vector<double>& solid_angles) const {
     if (layout != Layout::lat_long || interpolation != Interpolation::bilinear) return solid_angles[row];
     const double delta = exact_pi / double(height_), across = 2 * exact_pi / double(width_);
@@ -184,7 +185,7 @@ class GoniometricEmission final : public ShapedEmission {
     return across * 2 * std::sin((double(row) + 0.5) * delta) * (1 - std::cos(delta)) / delta;
   }
 
-  /// The object's axes in the scene, at right angles; of a mirrored object one is mirrored.
+  /// The object's axes in world space, orthonormalized. For a mirrored object the frame is left-handed.
   static Frame frame(const SurfacePoint& p) {
     const Vector3 y = turned(p, {0, 1, 0});
     Vector3 x = turned(p, {1, 0, 0});
@@ -201,7 +202,8 @@ class GoniometricEmission final : public ShapedEmission {
   size_t column(double u) const { return std::min(size_t(u * double(width_)), width_ - 1); }
   size_t row(double v) const { return std::min(size_t(v * double(height_)), height_ - 1); }
 
-  /// Longitudes go around.
+  /// The value of a texel. Beyond the image, longitudes wrap around, latitudes are clamped, and the equal-area square is
+  /// folded.
   float texel(int x, int y) const {
     const int w = int(width_), h = int(height_);
     if (layout == Layout::equal_area) {
@@ -221,7 +223,7 @@ class GoniometricEmission final : public ShapedEmission {
 
   size_t width_ = 1, height_ = 1;
   std::vector<float> values_;
-  TexelDistribution texels_;  // by the value, or its mean over the texel, times the solid angle
+  TexelDistribution texels_;  // in proportion to the value, or its mean over the texel, times the solid angle
   double omega_ = 0;          // the integral of the image [sr]
 };
 

@@ -1,4 +1,4 @@
-// IesEmission: the measured light of a lamp.
+// IesEmission: the measured light of a lamp, from an IES photometric file.
 
 #include "direction_table.h"
 #include "ies_file.h"
@@ -9,20 +9,21 @@ namespace {
 
 constexpr double pi_exactly = 3.14159265358979323846, degree = pi_exactly / 180;
 
-// The file gives I(w) [cd]. With the colour M of luminance per sr l = 683.002 integral of M V dlambda, the profile
+// The file gives the intensity I(w) [cd]. The colour M has the luminance l = 683.002 integral of M V dlambda. The profile
 // (ShapedEmission) of a point is f = I / l [1], as its intensity is M f * 1 m^2, with Omega = flux / l.
 //
-// A surface of area A about whose normal the lamp's axis lies sends the same out when each part of it does so:
-//     L = I / (A |n . w|),   f = I / (l A |n . w|),   K = (flux to the sides that emit) / (l A);
-// the whole object then has the intensities of the file if it is flat, and its flux if it is not. A cosine below 1e-3 (the last
-// 0.06 degrees) counts as that, so that the radiance stays finite.
+// A surface of area A whose normal is the lamp's axis (`about: normal`) emits the file's distribution if each part of it emits
+// this distribution in proportion to its area:
+//     L = I / (A |n . w|),   f = I / (l A |n . w|),   K = (flux to the sides that emit) / (l A).
+// The whole object then has the intensities of the file if it is flat, and the flux of the file if it is not. Cosines below
+// 1e-3 (the last 0.06 degrees) are replaced by 1e-3, so that the radiance stays finite.
 //
-// About an axis a surface has the radiance of a point of 1 m^2 in each of its places, L = I / m^2, as UsdLux has it: f = I / l,
-// and K is summed over directions.
+// With `about: axis` every point of a surface has the radiance L = I / (1 m^2), as in UsdLux: f = I / l, and K is computed by
+// quadrature over directions.
 //
-// Directions are drawn from a table over the file's own grid, finely divided (2 degrees of the polar angle, 5 around it). In a
-// cell the intensity is bilinear in the angles; its mean over four points at the corners, which is positive if any of it is, is
-// the cell's importance.
+// Directions are sampled from a table over the file's own grid, subdivided to steps of 2 degrees of the polar angle and 5 of
+// the azimuth. In a cell the intensity is bilinear in the angles; the cell's importance is the mean intensity at four points
+// near its corners, which is positive if the intensity is positive anywhere in the cell.
 class IesEmission final : public ShapedEmission {
  public:
   static void describe(Description<IesEmission>& d) {
@@ -101,7 +102,7 @@ class IesEmission final : public ShapedEmission {
     return f > 0 ? scaled(p, w, f) : Spectrum();
   }
 
-  // Some of the light may lie on a side that does not emit; what is drawn there has density 0.
+  // A part of the light may lie on a side that does not emit: samples of this part have pdf 0.
   DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
     const DirectionSample s = table_.sample(u);
     const Vector3 direction = frame(p).to_world(s.direction);
@@ -145,7 +146,7 @@ class IesEmission final : public ShapedEmission {
  private:
   bool about_normal(const SurfacePoint& p) const { return about == About::normal && !(p.normal == Normal3{}); }
 
-  /// The integral of f |n . w| over the sides that emit, by midpoints.
+  /// K: the integral of f |n . w| over the sides that emit, by the midpoint rule.
   double share_about_axis(const SurfacePoint& p) const {
     constexpr int rows = 48, columns = 48;
     const Frame own = frame(p);
@@ -162,12 +163,12 @@ class IesEmission final : public ShapedEmission {
     return sum * (pi_exactly / rows) * (2 * pi_exactly / columns);
   }
 
-  /// x, y, z of the file's grid, z being its pole.
+  /// The axes x, y, z of the file's grid in world space; z is its pole.
   Frame frame(const SurfacePoint& p) const {
     const Vector3 a = about_normal(p) ? Vector3(p.normal) : turned(p, axis_);
     Vector3 s = turned(p, across_);
     s = s - dot(s, a) * a;
-    // A normal may happen to lie along it: then any direction will do.
+    // If the normal is parallel to `across`, any perpendicular direction is taken.
     const float l = length(s);
     s = l > 1e-4f ? s / l : Frame(Normal3(a)).s;
     Frame f;
@@ -176,7 +177,7 @@ class IesEmission final : public ShapedEmission {
       case Photometry::a: f.s = a, f.t = cross(a, s), f.n = Normal3(s); break;  // pole up
       case Photometry::b: f.s = a, f.t = s, f.n = Normal3(cross(a, s)); break;  // pole to the right
     }
-    // Of a mirrored object all is mirrored: what was found by a cross product points the other way.
+    // For a mirrored object the distribution is mirrored too: the axis computed by a cross product is reversed.
     if (dot(turned(p, cross(axis, across)), cross(a, s)) < 0) {
       if (ies_.type == Photometry::b)
         f.n = -f.n;
@@ -189,15 +190,15 @@ class IesEmission final : public ShapedEmission {
   /// The flux within 90 degrees of the axis [lm].
   double front_lumens() const {
     if (ies_.type == Photometry::c) return ies_.lumens(0, 90);
-    // Azimuths of types A and B are within 90 degrees of the axis, so all of it lies before it.
+    // Azimuths of types A and B are within 90 degrees of the axis, so all of the flux is in front.
     return ies_.lumens();
   }
 
   IesDistribution ies_;
   DirectionTable table_;
   Vector3 axis_{0, -1, 0}, across_{1, 0, 0};
-  float per_candela_ = 0;        // M f per candela
-  double flux_ = 0, front_ = 0;  // over the colour's luminance: Omega, and what lies before the axis [sr]
+  float per_candela_ = 0;        // f per candela, 1 / l [1/cd]
+  double flux_ = 0, front_ = 0;  // flux over the colour's luminance l [sr]: all (Omega), and within 90 degrees of the axis
 };
 
 const Register<IesEmission> registered;

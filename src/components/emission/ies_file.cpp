@@ -16,7 +16,7 @@ constexpr std::uint64_t largest_file = 32u << 20;  // bytes; real ones have some
 constexpr int most_angles = 7201;                  // 0.05 degrees all around
 constexpr double degree = 3.14159265358979323846 / 180;
 
-/// Lines up to TILT, then numbers that are separated by blanks, commas and ends of lines.
+/// Reads lines up to TILT=, then numbers that are separated by blanks, commas and ends of lines.
 class Reader {
  public:
   Reader(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
@@ -83,7 +83,7 @@ class Reader {
     return all;
   }
 
-  /// How many more numbers the rest of the file may hold at most, each of a digit and a blank.
+  /// An upper bound of how many numbers the rest of the file holds: each takes at least a digit and a blank.
   size_t left() const { return (rest_.size() + numbers_.size() + 2) / 2; }
 
   static std::string shortest(double x) {
@@ -102,7 +102,7 @@ class Reader {
   int line_ = 0;
 };
 
-/// What the file gives: intensities for each horizontal angle at all vertical ones.
+/// The values of the file: for each horizontal angle the intensities at all vertical angles.
 struct Grid {
   std::vector<double> vertical, horizontal;
   std::vector<float> candelas;
@@ -159,8 +159,8 @@ void unfold_c(const Reader& in, const Grid& g, IesDistribution& d) {
   }
 }
 
-/// Types A and B: the pole's latitude is the vertical angle of the one, the horizontal angle of the other. Horizontal angles
-/// that begin at 0 are the same to both sides.
+/// Types A and B: the latitude with respect to the pole is the vertical angle in type A, the horizontal angle in type B. If the
+/// horizontal angles begin at 0, the distribution is symmetric to both sides and is unfolded.
 void unfold_ab(Grid g, IesDistribution& d) {
   if (g.horizontal.front() == 0 && g.horizontal.size() > 1) {
     Grid both;
@@ -207,7 +207,8 @@ IesDistribution parse_ies(std::string_view text, const std::string& name) {
   const double ballast = in.number("the ballast factor");
   const double photometric = in.number("the ballast-lamp photometric factor");
   d.input_watts = in.number("the input power");
-  // In 2019 a code for how the file was made took that place; 0 is what some programs write for "none".
+  // LM-63-2019 replaced the ballast-lamp photometric factor by a code for how the file was made. Some programs write a factor
+  // of 0 for "none".
   const double factor = multiplier * ballast * (newest || photometric == 0 ? 1 : photometric);
   if (!(factor > 0 && factor < 1e9))
     in.fail("the product of the multiplier and the ballast factors is " + Reader::shortest(factor));
@@ -254,7 +255,7 @@ float IesDistribution::at(double polar_angle, double azimuth_angle) const {
   double turn = azimuth_angle - azimuth.front();
   turn -= 360 * std::floor(turn / 360);
   const double around = azimuth.front() + turn;
-  constexpr double border = 1e-9;  // what rounding may put just beyond the last angle is within
+  constexpr double border = 1e-9;  // [deg]; angles that rounding puts just beyond the last one count as within
   if (around > azimuth.back() + border || polar_angle < polar.front() - border || polar_angle > polar.back() + border) return 0;
   const auto cell = [](const std::vector<double>& angles, double x, float& t) {
     const size_t after = size_t(std::upper_bound(angles.begin(), angles.end(), x) - angles.begin());
@@ -268,9 +269,9 @@ float IesDistribution::at(double polar_angle, double azimuth_angle) const {
   return (1 - s) * ((1 - t) * low[0] + t * low[1]) + s * ((1 - t) * high[0] + t * high[1]);
 }
 
-/// Along the azimuth trapezoids are exact; between two polar angles t_0 and t_1, where the intensity goes from a to b,
-/// integral of (a + m (t - t_0)) sin t dt = a_0 cos t_0 - b_1 cos t_1 + m (sin t_1 - sin t_0), with m the slope and a_0, b_1
-/// the intensities at the ends of what is asked for.
+/// The intensity is linear in the azimuth, so the trapezoid rule is exact there. Between two polar angles t_0 and t_1, where
+/// the intensity goes from a to b, integral of (a + m (t - t_0)) sin t dt = a_0 cos t_0 - b_1 cos t_1 + m (sin t_1 - sin t_0),
+/// with m the slope and a_0, b_1 the intensities at the ends of the part of the interval within [from, to].
 double IesDistribution::lumens(double from, double to) const {
   double sum = 0;
   for (size_t k = 0; k + 1 < polar.size(); ++k) {

@@ -7,13 +7,13 @@
 
 namespace etendue {
 
-/// How a goniometer counts its angles (IES LM-75). Type C turns about the lamp's downward axis; types A and B look at the lamp
-/// along its beam, with the pole upwards or to the side.
+/// Coordinate systems of goniophotometers (IES LM-75). In type C the pole is the lamp's downward axis; in types A and B the
+/// pole is perpendicular to the beam, upwards (A) or to the side (B).
 enum class Photometry { c = 1, b = 2, a = 3 };
 
-/// A distribution of luminous intensity [cd], whatever the file's type on one grid: `polar` angles [deg] from a pole, within
-/// [0, 180], and `azimuth` [deg] around it, over at most 360, both increasing; symmetries are unfolded. Between the angles the
-/// intensity is bilinear in them, beyond them it is zero.
+/// A distribution of luminous intensity [cd], for all types on the same kind of grid: `polar` angles [deg] from a pole, within
+/// [0, 180], and `azimuth` [deg] around the pole, over at most 360, both increasing; symmetries are unfolded. Between the
+/// angles the intensity is bilinear in the angles, beyond them it is zero.
 ///   type C  pole along the axis (down), azimuth 0 across it, counted counter-clockwise as seen from above;
 ///   type A  pole up, azimuth 0 along the axis (the beam), positive to the right as seen along it;
 ///   type B  pole to the right, azimuth 0 along the axis, positive upwards.
@@ -26,9 +26,9 @@ struct IesDistribution {
   std::vector<double> tilt_angles, tilt_factors;  ///< of TILT=INCLUDE, else empty
 
   float at(double polar_angle, double azimuth_angle) const;
-  /// The flux [lm] within polar angles [from, to]: the exact integral of what `at` gives.
+  /// The flux [lm] within polar angles [from, to]: the exact integral of the bilinear intensity.
   double lumens(double from = 0, double to = 180) const;
-  /// By which the intensity changes when the lamp is tilted; linear between the angles, 1 for files that do not say.
+  /// The factor of the intensity when the lamp is tilted; linear between the angles, 1 for files without tilt factors.
   double tilt_factor(double degrees) const;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// A number that belongs to each object which has an emission: found when the object is first met, then remembered.
+// PerObject: a lock-free cache of one number for each object that has an emission, computed when it is first needed.
 
 #include <atomic>
 #include <memory>
@@ -8,12 +8,12 @@
 
 namespace etendue {
 
-/// Objects are not prepared yet when the emission they carry is, so what depends on both is found later, while rendering,
-/// by whichever thread comes first. It is the same whoever finds it, and nobody waits.
+/// Emissions are prepared before the objects that carry them, so a number that depends on both is computed later, while
+/// rendering, by the first thread that needs it. All threads compute the same number, and none waits for another.
 ///
-/// Slots lie in tables, each eight times as long as the one before and made when that fills up: a lamp may stand in a million
-/// places. An object's slot is the first that was free among a few in the first table, a few in the second and so on; slots
-/// are never given back, so all threads come to the same.
+/// Slots lie in hash tables, each eight times as long as the one before and allocated when a probe of the one before finds no
+/// free slot: a lamp may have a million instances. An object's slot is the first one that was free among the 16 slots probed in
+/// the first table, then in the second and so on; slots are never released, so all threads find the same slot.
 class PerObject {
  public:
   PerObject() = default;
@@ -21,16 +21,16 @@ class PerObject {
   PerObject& operator=(const PerObject&) = delete;
   ~PerObject() { clear(); }
 
-  /// Forgets all. Not while rendering.
+  /// Removes all numbers. Must not be called while rendering.
   void forget() {
     if (!used_.exchange(false)) return;
     clear();
     table(0);
   }
-  /// Takes memory now for what will surely be asked for.
+  /// Allocates the first table now, before rendering.
   void expect() { table(0); }
 
-  /// The number of an object; find() computes it, and gives a number that is not negative.
+  /// The number of an object. find() computes it and must return a number that is not negative.
   template <class F>
   double get(const SceneObject& object, const F& find) const {
     const size_t first = size_t(mix_bits(reinterpret_cast<std::uintptr_t>(&object)));
@@ -41,7 +41,7 @@ class PerObject {
         const SceneObject* owner = slot.object.load(std::memory_order_acquire);
         if (owner == &object) {
           const double known = slot.number.load(std::memory_order_acquire);
-          return known >= 0 ? known : find();  // another thread is finding it
+          return known >= 0 ? known : find();  // another thread has the slot but has not stored the number yet
         }
         if (owner != nullptr) continue;
         const double found = find();
@@ -52,7 +52,7 @@ class PerObject {
         }
       }
     }
-    return find();  // more objects than slots: slow, and right
+    return find();  // no slot is free: computed at every call, slow but correct
   }
 
  private:

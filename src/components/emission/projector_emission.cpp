@@ -1,4 +1,4 @@
-// ProjectorEmission: an image, projected.
+// ProjectorEmission: an image or a map, projected through a pinhole.
 
 #include "direction_table.h"
 #include "etendue/describe/color.h"
@@ -9,18 +9,18 @@
 namespace etendue {
 namespace {
 
-// The image lies on a plane across the axis at distance 1, w wide and h high. A direction under the angle theta to the axis
-// meets it at (x, y), and plane areas and solid angles go as dA = dw / cos^3(theta). A screen across the axis at distance d
-// gets the irradiance I cos^3(theta) / d^2, so a projector that shows a white image evenly white sends out
+// The image lies on a plane perpendicular to the axis at distance 1, w wide and h high. A direction at the angle theta to the
+// axis intersects the plane at (x, y), with dA = dw / cos^3(theta). A screen perpendicular to the axis at distance d receives
+// the irradiance I cos^3(theta) / d^2, so a projector that shows a white image as evenly white has the intensity
 //     I(x, y) = scale rgb(x, y) / cos^3(theta)                                 [W sr^-1 nm^-1]
-// as good projectors do. With profile f = 1 / cos^3 within the image (ShapedEmission; M is the colour space's white) it is, for
-// a point, Omega = integral of f dw = w h, the image's area. A projector that is even over directions (pbrt's) has f = 1, and
+// as good projectors do. The profile (ShapedEmission; M is the colour space's white) is f = 1 / cos^3 within the image, and
+// Omega = integral of f dw = w h, the image's area. A projector that is even over directions (pbrt's) has f = 1, and
 // Omega = 4 atan(a b / sqrt(1 + a^2 + b^2)), with a and b half of w and h, the solid angle of the image.
 //
-// Importance sampling: a density that is constant over each pixel, in proportion to the mean over the pixel of the importance
+// Importance sampling: a pdf that is constant over each pixel, in proportion to the mean over the pixel of the importance
 // (luminance) of the bilinear image. The mean of a hat function over its own pixel is 3/4, over each neighbour 1/8, in both
-// directions, so the mean is a 3 x 3 filter, positive wherever the image is. With p(x, y) per plane area the density is
-// p / cos^3 [1/sr], and I over it is nearly constant.
+// dimensions, so the mean is a 3 x 3 filter, positive wherever the image is. With the pdf p(x, y) per plane area the pdf per
+// solid angle is p / cos^3 [1/sr], and I over this pdf is nearly constant.
 class ProjectorEmission final : public ShapedEmission {
  public:
   static void describe(Description<ProjectorEmission>& d) {
@@ -57,7 +57,7 @@ class ProjectorEmission final : public ShapedEmission {
   void prepare() override {
     if (file.empty() && !picture) fail("file", "an image file is needed, or a map as the `picture`");
     of_map_ = file.empty();
-    space_ = &rgb_space(of_map_ ? "srgb" : color_space);  // a map makes its own spectra; white is D65 then
+    space_ = &rgb_space(of_map_ ? "srgb" : color_space);  // a map returns spectra; sRGB then only defines the white, D65
     if (of_map_ && !std::isfinite(aspect)) fail("aspect", "must be finite");
     of_map_ ? look_at_picture() : read_image();
     const float shape = of_map_ ? aspect : float(image_.width) / float(image_.height), half = std::tan(radians(fov) / 2);
@@ -68,7 +68,7 @@ class ProjectorEmission final : public ShapedEmission {
     if (!(half_width_ > 0 && half_height_ > 0 && std::isfinite(half_width_) && std::isfinite(half_height_)))
       fail("fov", "is too small or too large to count with");
     build();
-    // Amounts are those of a white image, as projectors are sold: the base class sees the colour space's white.
+    // Amounts are those of a white image, as projectors are specified: the base class gets the colour space's white as its map.
     map = ref_cast<ObjectMap>(Registry::instance().create("ConstantMap"));
     set(*map, "value", Value(space_->illuminant));
     map->prepare();
@@ -101,10 +101,12 @@ class ProjectorEmission final : public ShapedEmission {
     return pdfs_[y * size_t(image_.width) + x] / (cosine * square(cosine));
   }
 
-  /// Of the image's mean colour: on a Point exactly its mean, on others as if it were the same all over the image [W/nm].
+  /// The power of a white image times the image's mean colour [W/nm]: exact for a Point; for surfaces it is the power of an
+  /// image that has the mean colour everywhere.
   Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
     if (object.infinite()) fail("file", "a projector belongs on a Point or on a surface, not at infinity");
-    // A white image's power over its radiance in the axis is the same at all wavelengths; not at all of them is there a white.
+    // The ratio of a white image's power to its radiance along the axis is the same at all wavelengths. It is evaluated at
+    // 555 nm, as the white may be 0 at other wavelengths.
     Wavelengths middle;
     for (int i = 0; i < spectrum_size; ++i) middle.place(i, 555, 1 / (wavelength_high - wavelength_low));
     const float share = ShapedEmission::power(object, middle)[0] / map->color({}, middle, ColorUse::radiance)[0];
@@ -122,7 +124,7 @@ class ProjectorEmission final : public ShapedEmission {
   std::string color_space = "srgb", transfer = automatic_transfer;
 
  protected:
-  // Of a white image.
+  // The profile and its integrals are those of a white image.
   float profile(const SurfacePoint& p, const Vector3& direction) const override {
     Point2 at;
     float cosine = 0;
@@ -133,7 +135,8 @@ class ProjectorEmission final : public ShapedEmission {
     const double a = double(half_width_), b = double(half_height_);
     return 4 * std::atan(a * b / std::sqrt(1 + a * a + b * b));
   }
-  /// integral of |n . w| f dw over the part of the image towards the sides that emit: 64 x 64 midpoints.
+  /// K: the integral of |n . w| f dw over the part of the image on the emitting sides, by the midpoint rule with 64 x 64
+  /// points.
   double surface_share(const SurfacePoint& p) const override {
     constexpr int steps = 64;
     const Frame f = picture_frame(p);
@@ -149,7 +152,7 @@ class ProjectorEmission final : public ShapedEmission {
 
  private:
   double area() const { return 4 * double(half_width_) * double(half_height_); }
-  /// f, and f dw / dA.
+  /// brightness: f. per_area: f dw / dA, with dA on the plane at distance 1.
   float brightness(float cosine) const { return even == Even::screen ? 1 / (cosine * square(cosine)) : 1; }
   double per_area(float cosine) const { return even == Even::screen ? 1 : double(cosine * square(cosine)); }
   double per_area(Point2 at) const {
@@ -168,8 +171,8 @@ class ProjectorEmission final : public ShapedEmission {
     }
   }
 
-  // Of a map the density knows the means over 2 x 2 points in each cell of a grid. What is narrower may be missed, so a tenth
-  // of the mean is added everywhere, and directions are never drawn more than 11 times too rarely for an even picture.
+  // For a map the pdf is made from the means of 2 x 2 points in each cell of a grid. Finer details may be missed, so a tenth of
+  // the overall mean is added everywhere: the pdf is then never less than 1/11 of that for an even picture.
   static constexpr int picture_cells = 128;
   void look_at_picture() {
     image_ = {};
@@ -206,7 +209,7 @@ class ProjectorEmission final : public ShapedEmission {
     return sum / float(weights);
   }
 
-  /// Where in the image, from its upper left corner, a direction goes; false: beside it.
+  /// The position in the image, from its upper left corner, that a direction projects to; returns false outside the image.
   bool find(const SurfacePoint& p, const Vector3& direction, Point2& at, float& cosine) const {
     const Vector3 local = picture_frame(p).to_local(direction);
     cosine = local.z;
@@ -230,7 +233,7 @@ class ProjectorEmission final : public ShapedEmission {
   Spectrum colour(const std::array<float, 3>& rgb, const Wavelengths& w) const {
     return rgb_spectrum(*space_, rgb[0], rgb[1], rgb[2], ColorUse::radiance, w);
   }
-  /// What multiplies the image: its scale, or what the amount asks for.
+  /// The factor of the image: its scale, or the factor that gives the requested amount.
   float factor(const SceneObject* object, float time) const {
     return amount_asked() && object ? scale(*object, time) : image_scale;
   }
@@ -284,8 +287,8 @@ class ProjectorEmission final : public ShapedEmission {
   float half_width_ = 1, half_height_ = 1;  // of the image at distance 1
   std::array<float, 3> mean_{};
   bool empty_ = true;
-  std::vector<float> pdfs_;            // of each pixel, per area at distance 1
-  std::vector<float> rows_, columns_;  // cumulative probabilities: of rows, and in each row of its pixels
+  std::vector<float> pdfs_;            // of each pixel, per area of the plane at distance 1
+  std::vector<float> rows_, columns_;  // CDF of the rows, and in each row the CDF of its pixels
 };
 
 const Register<ProjectorEmission> registered;

@@ -1,11 +1,11 @@
 #pragma once
-// In what unit one asks for light: radiant and luminous quantities.
+// Radiant and luminous quantities in which the amount of emitted light can be given.
 
 #include "etendue/describe/color.h"
 
 namespace etendue {
 
-/// Of all that an object emits, or of what it sends along its axis.
+/// A quantity of an object's whole emission (power, flux), or of its emission along its axis (intensity, illuminance).
 enum class Quantity : std::uint8_t {
   power,       ///< [W] between 360 and 830 nm
   flux,        ///< luminous flux [lm]
@@ -17,13 +17,13 @@ enum class Quantity : std::uint8_t {
 /// 555 nm, where V = 1 (CIE 18.2; BIPM 2019).
 inline constexpr double luminous_efficacy = 683.002;  // [lm/W]
 
-/// What a watt at a wavelength counts for: 1 W, or K_m V(lambda) lm, as V is the observer's ybar.
+/// The weight of a watt at a wavelength: 1 W, or K_m V(lambda) lm, as V is the observer's ybar.
 inline double weight(Quantity quantity, float wavelength) {
   return quantity == Quantity::power ? 1 : luminous_efficacy * observer(wavelength).y;
 }
 
-/// The integral over wavelengths of a spectral radiance, weighted: values at 1 nm by the trapezoid rule, as tables are linear
-/// between those.
+/// The weighted integral of a spectral radiance over wavelengths, by the trapezoid rule with steps of 1 nm, as tabulated
+/// spectra are linear between these.
 template <class F>
 double integrate_spectrum(Quantity quantity, const F& value_at) {
   double sum = 0;
@@ -34,7 +34,7 @@ double integrate_spectrum(Quantity quantity, const F& value_at) {
   return sum;
 }
 
-/// The same of something known only at a path's wavelengths: at the middle of 48 equal steps.
+/// The same for a function that is evaluated at a path's Wavelengths: the midpoint rule with 48 equal steps.
 template <class F>
 double integrate_wavelengths(Quantity quantity, const F& spectrum_at) {
   constexpr int sets = 48 / spectrum_size;

@@ -1,4 +1,4 @@
-// What an object emits, by quadrature over its points.
+// The amounts of light that an object emits, by quadrature over its points.
 
 #include "shaped_emission.h"
 
@@ -14,7 +14,7 @@ bool along_axis(Quantity q) { return q == Quantity::intensity || q == Quantity::
 
 Point2 midpoint(int i) { return {(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side}; }
 
-/// A lattice by the golden ratio: even, and in step with no pattern of bricks or checks.
+/// A lattice of the golden ratio: evenly distributed, and without aliasing with periodic maps such as bricks or checks.
 Point2 place(int i) {
   const double x = (i + 0.5) * 0.61803398874989485;
   return {float(x - std::floor(x)), (float(i) + 0.5f) / count};
@@ -104,7 +104,7 @@ std::optional<double> ShapedEmission::mean_share(const SceneObject& object) cons
   return surface_share(any);
 }
 
-/// What k = 1 gives per area [W/m^2 or the like].
+/// The amount per area with k = 1 [W/m^2 or the like].
 double ShapedEmission::measured(const SceneObject& object) const {
   if (constant_ && !along_axis(quantity_))
     if (const std::optional<double> share = mean_share(object)) return integral_ * *share;
@@ -116,7 +116,7 @@ double ShapedEmission::measured(const SceneObject& object) const {
   });
 }
 
-/// The same at some wavelengths and not weighted; for the power also when another quantity was asked for.
+/// The same as a spectrum, not weighted over wavelengths. It is also called for the power when another quantity was requested.
 Spectrum ShapedEmission::mean(const SceneObject& object, Quantity quantity, const Wavelengths& w) const {
   if (constant_ && quantity == quantity_)
     return integral_ > 0 ? constant_->evaluate(w, ColorUse::radiance) * float(measured(object) / integral_) : Spectrum();
@@ -135,14 +135,14 @@ Spectrum ShapedEmission::mean(const SceneObject& object, Quantity quantity, cons
   return constant_ ? constant_->evaluate(w, ColorUse::radiance) * float(share) : sum;
 }
 
-/// Gives points and weights so that a quantity per area is the sum of weight * M(point).
+/// Calls add(point, weight) with points and weights such that the quantity per area is the sum of weight * M(point).
 template <class F>
 void ShapedEmission::for_points(const SceneObject& object, Quantity quantity, const F& add) const {
   if (object.infinite()) return for_infinity(object, quantity, add);
   if (!object.delta()) return for_surface(object, quantity, add);
   const SurfacePoint p = object.sample_area({0.5f, 0.5f}, 0).point;
   if (along_axis(quantity)) {
-    // M f(a) * 1 m^2, per area of the point; without an axis it is the same everywhere.
+    // M f(a) * 1 m^2, per area of the point. Without an axis f is replaced by its mean over all directions.
     const Vector3 axis = own_axis(p);
     const double intensity = axis == Vector3{} ? solid_angle() / (4 * pi_exactly) : double(profile(p, axis));
     const double r = quantity == Quantity::illuminance ? double(distance) : 1;
@@ -162,7 +162,7 @@ void ShapedEmission::for_infinity(const SceneObject& object, Quantity quantity, 
     return;
   }
   for (int i = 0; i < count; ++i) {
-    const Vector3 v = warp::sphere(midpoint(i));  // exact midpoints along its z, which becomes y
+    const Vector3 v = warp::sphere(midpoint(i));  // its z, along which the points are exact midpoints, becomes y
     const DirectionSample d =
         knows_incident() ? sample_incident(midpoint(i)) : DirectionSample{{v.y, v.z, v.x}, warp::sphere_pdf};
     if (!(d.pdf > 0)) continue;
@@ -184,7 +184,7 @@ void ShapedEmission::for_infinity(const SceneObject& object, Quantity quantity, 
 
 template <class F>
 void ShapedEmission::for_surface(const SceneObject& object, Quantity quantity, const F& add) const {
-  // The first round finds what the second needs: the sum of weights, the middle and the mean normal.
+  // The first pass computes what the second needs: the sum of weights, the centroid and the mean normal.
   double weights = 0, middle[3] = {}, normal[3] = {};
   Vector3 axis{};
   for (int i = 0; i < count; ++i) {
@@ -207,7 +207,7 @@ void ShapedEmission::for_surface(const SceneObject& object, Quantity quantity, c
   const Point3 centre{float(middle[0] / weights), float(middle[1] / weights), float(middle[2] / weights)};
   const double everywhere = quantity == Quantity::illuminance ? 4 * pi_exactly * double(square(distance)) : 4 * pi_exactly;
 
-  Normal3 known;  // flat objects: K is found once
+  Normal3 known;  // for flat objects, whose normals are equal, K is computed once
   double share = 0;
   for (int i = 0; i < count; ++i) {
     const SurfaceSample s = object.sample_area(constant_ ? midpoint(i) : place(i), 0);

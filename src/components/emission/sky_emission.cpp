@@ -10,13 +10,14 @@
 namespace etendue {
 namespace {
 
-// Directions are in the coordinates of the object that carries this emission: x east, y up, z south. What lies below the
-// horizon is black: the ground is a scene's own.
+// Directions are in object space: x east, y up, z south. Below the horizon the radiance is 0: a scene has to model its own
+// ground.
 //
-// Importance sampling mixes two densities over directions,
+// Importance sampling mixes two pdfs over directions,
 //     p = P_sun [within the disc] / Omega_sun + (1 - P_sun) p_sky   [1/sr],
-// uniform over the sun's disc, and for the sky a table that is finer around the sun and near the horizon. P_sun is the sun's
-// part of all light, but neither is starved. All light is weighted here by xbar + ybar + zbar.
+// a uniform one over the sun's disc, and for the sky a table that is finer around the sun and near the horizon. P_sun is the
+// sun's share of all light, clamped to [0.1, 0.9] so that neither pdf is undersampled. Light is weighted here by
+// xbar + ybar + zbar.
 class SkyEmission final : public EmissionShader {
  public:
   static void describe(Description<SkyEmission>& d) {
@@ -75,7 +76,7 @@ class SkyEmission final : public EmissionShader {
     return seen(p.object_position - Point3{}, w);
   }
 
-  // All light of a point at infinity travels the same way: straight away from it, with probability 1.
+  // A point at infinity emits in one direction only, from the point towards the object's origin, with probability 1.
   DirectionSample sample(const SurfacePoint& p, Point2) const override {
     Vector3 away = Point3{} - p.object_position;
     if (p.object) away = normalize(p.object->transform.at(p.time)(away));
@@ -83,7 +84,7 @@ class SkyEmission final : public EmissionShader {
   }
   float pdf(const SurfacePoint&, const Vector3&) const override { return 1; }
 
-  /// Of all the light that enters through the object's area [W/nm]: pi * area * mean radiance.
+  /// The power that enters the scene through the object's area [W/nm]: pi * area * mean radiance.
   Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
     return SkyModel::between_channels(w, [&](int c) { return all_[size_t(c)]; }) * (factor_ * object.area() / 4);
   }
@@ -147,15 +148,17 @@ class SkyEmission final : public EmissionShader {
     return value * factor_;
   }
 
-  /// What the sun adds at 1 - cos of the angle from its middle.
+  /// The radiance of the sun's disc at h = 1 - cos of the angle from its middle.
   Spectrum in_sun(const Vector3& towards, float h, const Wavelengths& w) const {
-    // The sine of the angle from the sun's middle over that of its radius is the sine seen from the sun's centre.
+    // The sine of the angle from the disc's middle over the sine of the disc's angular radius is sin(psi), with psi the angle
+    // at the sun's centre (SkyModel::sun).
     const float sines = h * (2 - h) / (height_ * (2 - height_));
     return model_.sun(safe_asin(towards.y), safe_sqrt(1 - sines), w) * disc_;
   }
 
   using OfChannels = std::array<double, SkyModel::channels>;
-  /// Adds the integrals of the sun's light over what of its disc is above the horizon, and of the same on level ground.
+  /// Integrates over the part of the sun's disc above the horizon: adds the integral of radiance to `all`, and that of radiance
+  /// times the cosine to the zenith, the irradiance of level ground, to `level`.
   void integrate_sun(OfChannels& all, OfChannels& level) const {
     constexpr int rings = 64, sectors = 32;
     const Frame frame{Normal3(sun_)};
@@ -178,8 +181,8 @@ class SkyEmission final : public EmissionShader {
     }
   }
 
-  /// Integrals over directions at each channel, by steps of 1 degree from the zenith and 2 around it; the sky is the same to
-  /// both sides of the sun.
+  /// Integrals over directions at each channel, by steps of 1 degree from the zenith and 2 around it. Only one half of the sky
+  /// is summed, as it is symmetric to both sides of the sun.
   void integrate() {
     constexpr int rows = 90, columns = 90;
     const double step = 3.14159265358979323846 / 180;
@@ -239,7 +242,7 @@ class SkyEmission final : public EmissionShader {
           for (const int c : {2, 5, 7})  // 440, 560 and 640 nm stand for all
             sum += tristimulus(c) * double(model_.sky(c, std::max(cosine, 0.0f), gamma));
         }
-      return sum + 1e-6;  // where the fit gives nothing at some channels, others may shine
+      return sum + 1e-6;  // where the fit is 0 at these channels, it may be positive at others
     });
   }
 
@@ -248,8 +251,8 @@ class SkyEmission final : public EmissionShader {
   Vector3 sun_{0, 1, 0};                         // unit
   float elevation_ = 0;                          // [rad]
   float height_ = 0;                             // 1 - cos of the disc's radius
-  float sun_angle_ = 0;                          // its solid angle [sr]
-  float disc_ = 1;                               // what its size makes of its radiance
+  float sun_angle_ = 0;                          // the disc's solid angle [sr]
+  float disc_ = 1;                               // factor of the disc's radiance that keeps the irradiance at any diameter
   float sun_share_ = 0;                          // P_sun
   float factor_ = 1;                             // multiplies all radiance
   std::array<float, SkyModel::channels> all_{};  // integral of radiance over directions [W m^-2 nm^-1]

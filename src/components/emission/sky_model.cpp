@@ -30,7 +30,7 @@ SkyModel::SkyModel(float turbidity, const std::array<float, channels>& albedo, f
   const size_t level = std::min(size_t(place), size_t(turbidities) - 2);
   const double t = place - double(level);
   const double x = std::cbrt(std::clamp(double(elevation) / half_pi, 0.0, 1.0));
-  // Of a table of [turbidity][albedo][control][channel][width]: one number, linear in turbidity and albedo.
+  // One number from a table of [turbidity][albedo][control][channel][width], linear in turbidity and albedo.
   const auto find = [&](const float* table, int width, int channel, int k) {
     const double a = std::clamp(double(albedo[size_t(channel)]), 0.0, 1.0);
     const auto at = [&](size_t turbid, size_t bright) {
@@ -64,7 +64,7 @@ float SkyModel::sky(int channel, const View& v) const {
   const float chi = (1 + squared) / (base * std::sqrt(base));
   const float value = (1 + p[0] * std::exp(p[1] * v.inverse_zenith)) *
                       (p[2] + p[3] * std::exp(p[4] * v.gamma) + p[5] * squared + p[6] * chi + p[7] * v.root);
-  return std::max(value * radiance_[size_t(channel)], 0.0f);  // below 0 in a few corners of the fit
+  return std::max(value * radiance_[size_t(channel)], 0.0f);  // for a few extreme parameters the fit is negative
 }
 
 Spectrum SkyModel::sky(float cos_theta, float gamma, const Wavelengths& w) const {

@@ -9,7 +9,7 @@
 namespace etendue {
 
 // Hosek & Wilkie 2012, "An analytic model for full spectral sky-dome radiance", equations 6 to 9 and section 5. With theta the
-// angle to the zenith and gamma that to the sun, the radiance at each of a few wavelengths is
+// angle to the zenith and gamma the angle to the sun, the radiance at each of ten wavelengths is
 //     F(theta, gamma) = (1 + A e^(B / (cos theta + 0.01)))
 //                       (C + D e^(E gamma) + F cos^2 gamma + G chi(H, gamma) + I sqrt(cos theta)),
 //     chi(g, gamma) = (1 + cos^2 gamma) / (1 + g^2 - 2 g cos gamma)^(3/2),
@@ -17,10 +17,11 @@ namespace etendue {
 // linear in the turbidity and the ground's albedo. Between wavelengths the radiance is linear.
 //
 // The sun: Hosek & Wilkie 2013, "Adding a solar-radiance function to the Hosek-Wilkie skylight model": a radiance for each
-// elevation, through which the setting sun is redder below than above, and the limb darkening of Neckel & Labs. The authors
-// multiply the two; yet the radiance is already the disc's mean: times the sun's true solid angle it is, at turbidity 1 in the
-// zenith, the extraterrestrial irradiance (ASTM E-490) less what Rayleigh scattering and ozone take, to 1 % at 520 and 720 nm,
-// where the product would miss a fifth. So the darkening is divided here by its mean over the disc, and keeps the irradiance.
+// elevation, by which the setting sun is redder at its lower edge than at its upper one, and the limb darkening of Neckel &
+// Labs. The authors multiply the two, but the radiance is already the disc's mean: at turbidity 1 in the zenith, the radiance
+// times the sun's true solid angle equals the extraterrestrial irradiance (ASTM E-490) reduced by Rayleigh scattering and
+// ozone, to 1 % at 520 and 720 nm, whereas the product with the limb darkening would be a fifth too low. So the limb darkening
+// is divided here by its mean over the disc, which keeps the irradiance.
 //
 // The data end at 720 nm. Beyond, radiance falls as that of a black body of the sun's 5778 K does.
 class SkyModel {
@@ -38,7 +39,7 @@ class SkyModel {
   /// Of the sun's disc at an elevation [rad] above the horizon; `cos_psi` is the cosine, seen from the sun's centre, between
   /// the place on its surface and the observer: 1 in the middle, 0 at the limb.
   Spectrum sun(float elevation, float cos_psi, const Wavelengths&) const;
-  /// From the values of the channels to those at wavelengths.
+  /// Interpolates the values of the channels at the wavelengths of a path.
   template <class F>
   static Spectrum between_channels(const Wavelengths& w, const F& value) {
     Spectrum result;
@@ -52,16 +53,17 @@ class SkyModel {
     }
     return result;
   }
-  /// What is left beyond 720 nm of the radiance there.
+  /// The radiance at a wavelength beyond 720 nm, relative to that at 720 nm.
   static float beyond(float wavelength);
 
  private:
-  /// What all channels need of a direction.
+  /// Functions of a direction that are the same for all channels.
   struct View {
     View(float cos_theta, float gamma);
     float gamma, cosine, inverse_zenith, root;
   };
-  /// Where an elevation lies among the nodes: the first of two, the fraction towards the second, their distance [rad].
+  /// The interval of nodes that contains an elevation: the index of its first node, the fraction towards the second node, and
+  /// the distance of the nodes [rad].
   struct Piece {
     explicit Piece(float elevation);
     size_t node;

@@ -1,5 +1,5 @@
 #pragma once
-// The data of the Hosek-Wilkie sky model, for wavelengths of 360, 400, ... 720 nm; see the tables for where they are from.
+// The data of the Hosek-Wilkie sky model, for wavelengths of 360, 400, ... 720 nm; the files of the tables name their source.
 
 namespace etendue::sky_tables {
 

@@ -9,26 +9,27 @@ constexpr double pi_exactly = 3.14159265358979323846;
 
 // Profile, with h = 1 - cos(theta) of the angle to the axis (AxialEmission):
 //     f = 1 for h <= h_i,   f = t^2 (3 - 2t), t = (h_o - h) / (h_o - h_i), between,   f = 0 for h >= h_o,
-// where h_i and h_o belong to the inner and outer angle. As t^2 (3 - 2t) has the mean 1/2, the solid angle it counts for is
+// where h_i and h_o belong to the inner and outer angle. As t^2 (3 - 2t) has the mean 1/2, the effective solid angle is
 //     Omega = integral of f dw = 2 pi (h_i + (h_o - h_i) / 2) = pi (h_i + h_o).
 //
-// A square edge falls as f = t^2, with the mean 1/3 and t^3 for the distribution of its light (glTF's KHR_lights_punctual), a
-// quartic one as t^4, with 1/5 and t^5 (pbrt until version 3).
+// A square edge falls as f = t^2, with the mean 1/3 and the CDF t^3 (glTF's KHR_lights_punctual), a quartic one as t^4, with
+// the mean 1/5 and the CDF t^5 (pbrt until version 3).
 //
-// A linear edge falls with the angle itself, f = (theta_o - theta) / (theta_o - theta_i), as lamps of some other renderers do;
+// A linear edge falls linearly in the angle, f = (theta_o - theta) / (theta_o - theta_i), as lamps of some other renderers do;
 // by parts,  Omega = 2 pi (1 - (sin theta_o - sin theta_i) / (theta_o - theta_i)).
 //
-// One that is smooth in the angle (UsdLux' shaping:cone:softness) falls as t^2 (3 - 2t) with t = (theta_o - theta) /
+// An edge that is smooth in the angle (UsdLux' shaping:cone:softness) falls as t^2 (3 - 2t) with t = (theta_o - theta) /
 // (theta_o - theta_i); by parts, with m the mean of the angles and x half their difference,
 //     Omega = 2 pi (1 - integral_0^1 6 t (1 - t) cos(theta_o - 2 x t) dt) = 2 pi (1 - cos(m) 3 (sin x - x cos x) / x^3).
 //
-// Directions are drawn with density f / Omega: h is uniform up to h_i with probability h_i / (h_i + (h_o - h_i) / 2); else t
-// has the density 2 t^2 (3 - 2t) and the distribution G(t) = 2 t^3 - t^4. G is convex and G(cbrt(v)) >= v, so Newton's method
-// for G(t) = v comes down to the solution from cbrt(v) and never passes it. On the edges by the angle the distribution is
-// that of f sin(theta), integrated by eight points, of which nothing cancels, and inverted by Newton's method between bounds.
+// Directions are sampled with the pdf f / Omega: h is uniform up to h_i with probability h_i / (h_i + (h_o - h_i) / 2); else t
+// has the pdf 2 t^2 (3 - 2t) and the CDF G(t) = 2 t^3 - t^4. G is convex and G(cbrt(v)) >= v, so Newton's method for G(t) = v
+// descends from cbrt(v) to the solution and never overshoots. For the edges that fall by the angle the pdf of theta is
+// proportional to f sin(theta); its CDF is integrated with eight points, whose terms do not cancel, and inverted by Newton's
+// method with bisection as a fallback.
 //
-// A picture (a gobo) lets through what its map says as a transmittance. It lies across the axis and its unit square spans the
-// outer angle. Directions are drawn as without it.
+// A picture (a gobo) multiplies the light by its map as a transmittance. It lies perpendicular to the axis, and its unit square
+// spans the outer angle. Directions are sampled as without it.
 class SpotEmission final : public AxialEmission {
  public:
   static void describe(Description<SpotEmission>& d) {
@@ -89,7 +90,8 @@ class SpotEmission final : public AxialEmission {
     return !picture || all.black() ? all : all * seen_through(p.time, picture_frame(p).to_local(direction), w);
   }
 
-  /// With a picture: times its mean over the cone, which is exact for a Point and a good guess for surfaces.
+  /// With a picture the power is multiplied by the picture's mean over the cone, which is exact for a Point and approximate for
+  /// surfaces.
   Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
     const Spectrum all = AxialEmission::power(object, w);
     if (!picture) return all;
@@ -146,8 +148,8 @@ class SpotEmission final : public AxialEmission {
   void prepare_edge_by_angle() {
     theta_inner_ = double(inner_angle) * (pi_exactly / 180);
     theta_outer_ = double(outer_angle) * (pi_exactly / 180);
-    // Both are cos(m) K(x) with m = (a + b) / 2 and x = (b - a) / 2; (sin b - sin a) / (b - a) has K = sin(x) / x. 1 - K is
-    // found without cancellation.
+    // Both edges have Omega = 2 pi (1 - cos(m) K(x)), with a and b the angles, m = (a + b) / 2 and x = (b - a) / 2; for the
+    // linear edge (sin b - sin a) / (b - a) = cos(m) K with K = sin(x) / x. 1 - K is computed without cancellation.
     const double middle = (theta_inner_ + theta_outer_) / 2, x = (theta_outer_ - theta_inner_) / 2, x2 = x * x;
     const double missing = edge == Edge::linear ? (x < 1e-2 ? x2 / 6 - x2 * x2 / 120 : 1 - std::sin(x) / x)
                            : x < 0.1            ? x2 / 10 - x2 * x2 / 280 + x2 * x2 * x2 / 15120
@@ -156,8 +158,8 @@ class SpotEmission final : public AxialEmission {
     solid_angle_ = float(2 * pi_exactly * (2 * s * s + std::cos(middle) * missing));
   }
 
-  /// The integral of the profile times sin(t) dt from theta to theta_o, by Gauss and Legendre: exact for polynomials of the
-  /// fifteenth degree, which over less than half a turn is exact to 1e-7.
+  /// The integral of the profile times sin(t) dt from theta to theta_o, by Gauss-Legendre quadrature with eight points. The
+  /// quadrature is exact for polynomials of degree 15, and for less than half a turn exact to 1e-7.
   double beyond(double theta) const {
     constexpr double points[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
     constexpr double weights[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
@@ -168,7 +170,7 @@ class SpotEmission final : public AxialEmission {
     return half * sum;
   }
 
-  /// h where the share v of the edge's light lies beyond.
+  /// The h beyond which the share v of the edge's light lies.
   float draw_edge_by_angle(double v) const {
     const double wanted = v * beyond(theta_inner_);
     double low = theta_inner_, high = theta_outer_, theta = theta_outer_ - std::sqrt(v) * (theta_outer_ - theta_inner_);
@@ -193,7 +195,7 @@ class SpotEmission final : public AxialEmission {
       fail("picture", "must not be negative");
     picture_scale_ = float(0.5 / std::tan(double(outer_angle) * (pi_exactly / 180)));
   }
-  /// What the picture lets through in a direction given in picture_frame().
+  /// The picture's transmittance in a direction given in picture_frame().
   Spectrum seen_through(float time, const Vector3& local, const Wavelengths& w) const {
     if (!(local.z > 0)) return {};
     const Point2 uv{0.5f - picture_scale_ * local.x / local.z, 0.5f + picture_scale_ * local.y / local.z};
@@ -202,7 +204,7 @@ class SpotEmission final : public AxialEmission {
 
   float h_inner_ = 0, h_outer_ = 0;           // 1 - cos of the angles
   float solid_angle_ = 0;                     // Omega [sr]
-  double theta_inner_ = 0, theta_outer_ = 0;  // of an edge by the angle [rad]
+  double theta_inner_ = 0, theta_outer_ = 0;  // the angles, set for edges that fall by the angle [rad]
   float picture_scale_ = 0;                   // from a plane at distance 1 to (u, v)
   float inner_share_ = 0;                     // probability that a direction lies within the inner angle
 };

@@ -1,4 +1,4 @@
-// The sun's place: the low-precision formulas of the Astronomical Almanac (page C5).
+// The sun's position, by the low-precision formulas of the Astronomical Almanac (page C5).
 
 #include "sun_position.h"
 
@@ -27,7 +27,7 @@ UniversalTime parse_time(const std::string& text) {
     return Error("'" + text + "' " + why + "; a time is written as \"2024-06-21T12:00:00Z\" (universal time)");
   };
   std::string_view rest = text;
-  // A number of so many digits and what must follow it.
+  // Reads a number of `digits` digits and the character `after` that must follow (0: none).
   const auto number = [&](size_t digits, char after) {
     int value = 0;
     if (rest.size() < digits) throw bad("is no time");

@@ -22,10 +22,11 @@ TexelDistribution::Searched::Searched(size_t lists, size_t count)
 
 void TexelDistribution::Searched::set(size_t list, size_t i, float cumulative) {
   lowest_[list * lowest_nodes_ + i / fanout].cumulative[i % fanout] = cumulative;
-  size_t behind = (list + 1) * upper_nodes_;  // the end of the level at hand
+  size_t behind = (list + 1) * upper_nodes_;  // the end of the current level's nodes
   for (size_t level = levels_.size(); level-- > 0;) {
     i /= fanout;
-    upper_[behind - levels_[level] + i / fanout].cumulative[i % fanout] = cumulative;  // of the last that is set below
+    upper_[behind - levels_[level] + i / fanout].cumulative[i % fanout] =
+        cumulative;  // ends as the last entry of the node below
     behind -= levels_[level];
   }
 }
@@ -37,10 +38,10 @@ size_t TexelDistribution::Searched::find(size_t list, float& u) const {
     return size_t(below);
   };
   const Node* level = upper_.data() + list * upper_nodes_;
-  size_t place = 0;  // the node of the level at hand, and lastly the thing
+  size_t place = 0;  // index of the node in the current level
   for (size_t k = 0; k < levels_.size(); ++k) {
     const size_t below = k + 1 < levels_.size() ? levels_[k + 1] : lowest_nodes_;
-    // Rounding can make the whole sum less than 1, and u no less than that: then it is the last.
+    // By rounding the CDF may end below 1, and u may be no less than this end: then the last entry is taken.
     place = std::min(place * fanout + next(level[place]), below - 1);
     level += levels_[k];
   }

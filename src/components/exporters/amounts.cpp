@@ -19,7 +19,7 @@ bool has_amount(const Component& e) {
                              [&](const char* member) { return e.class_info().find(member) && number_of(e, member) > 0; });
 }
 
-// What the object emits with the amount over what it emits without.
+// The ratio of the object's power with the amount to its power without.
 double strength_of(const SceneObject& o, const Component& e) {
   if (!has_amount(e)) return 1;
   const Ref<Component> object = copy(o);

@@ -1,5 +1,5 @@
 #pragma once
-// Light that is given as an amount, such as a power.
+// Emission given as an amount of light, such as a power.
 
 #include "etendue/scene_object.h"
 
@@ -7,7 +7,7 @@ namespace etendue {
 
 /// Whether an emission is given as an amount of light.
 bool has_amount(const Component& emission);
-/// What the amount multiplies the emission's radiance by; 1: none is given.
+/// The factor by which the amount multiplies the emission's radiance; 1 if none is given.
 double strength_of(const SceneObject&, const Component& emission);
 
 }  // namespace etendue

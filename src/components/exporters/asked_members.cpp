@@ -12,7 +12,7 @@ namespace {
 
 thread_local AskedMembers* asking = nullptr;
 
-/// All parts below a part, each once; what a scene holds, be it written or imported, among them.
+/// All components below a component, each once, including the objects of scenes, described or imported.
 void collect(const Component& part, std::unordered_set<const Component*>& known, std::vector<const Component*>& all) {
   if (!known.insert(&part).second) return;
   all.push_back(&part);
@@ -46,7 +46,7 @@ void AskedMembers::tell(const Job& job, Exporting& exporting) const {
 
 void AskedMembers::tell_part(const Component& part, Exporting& exporting) const {
   const auto asked = asked_.find(&part);
-  // A scene itself is a list of objects, and a way to search it.
+  // A scene itself is only a list of objects with an acceleration structure.
   if (asked == asked_.end() || dynamic_cast<const Scene*>(&part)) return;
   const bool object = dynamic_cast<const SceneObject*>(&part);
   for (const Member& m : part.class_info().members) {

@@ -1,5 +1,5 @@
 #pragma once
-// Which members an exporter has asked for.
+// Tracks the members that an exporter has read, in order to warn of the others.
 
 #include <string>
 #include <string_view>
@@ -11,9 +11,9 @@
 
 namespace etendue {
 
-/// As long as it lives, the functions of members.h note what they are asked for on this thread. What an exporter never asks for
-/// it cannot have written, so whatever is said there is told to be left out. What it asks for and does not write it must tell
-/// itself.
+/// During its lifetime, the functions of members.h record on this thread which members are read. An exporter cannot have
+/// written a member that it never read, so a warning states that the member is left out. If the exporter reads a member and
+/// does not write it, it must add the warning itself.
 class AskedMembers {
  public:
   AskedMembers();
@@ -21,13 +21,13 @@ class AskedMembers {
   AskedMembers(const AskedMembers&) = delete;
   AskedMembers& operator=(const AskedMembers&) = delete;
 
-  /// Tells of the camera of a job and of all parts of its scene of which anything was asked: members that are not as by default
-  /// and that nobody has asked for. Parts of which nothing was asked are the exporter's to tell.
+  /// Warns of members that were never read and differ from their defaults, of the job's camera and all components of its scene
+  /// of which any member was read. The exporter itself warns of other components.
   void tell(const Job&, Exporting&) const;
 
-  /// Somebody asks for a member.
+  /// Records that a member is read.
   static void note(const Component&, std::string_view member);
-  /// An object is written as triangles, which tell all that makes its shape: what it has more than all objects have.
+  /// An object is written as triangles, which express all members of its shape: records those that not all objects have.
   static void note_shape(const SceneObject&);
 
  private:

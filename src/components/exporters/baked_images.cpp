@@ -12,7 +12,7 @@
 namespace etendue {
 namespace {
 
-/// Portable float map: "PF", the size, -1 for little-endian numbers, then rows from the lowest upwards.
+/// Portable float map: "PF", the size, -1 for little-endian numbers, then rows from the bottom upwards.
 std::string as_pfm(const LinearImage& image) {
   std::string bytes = fmt::format("PF\n{} {}\n-1.0\n", image.width, image.height);
   const size_t row = size_t(image.width) * 3 * sizeof(float), head = bytes.size();
@@ -22,14 +22,14 @@ std::string as_pfm(const LinearImage& image) {
   return bytes;
 }
 
-/// The same part with another member.
+/// A copy of the component with one member changed.
 Ref<Component> changed(const Component& part, std::string_view member, const Value& value) {
   Ref<Component> made = copy(part);
   set(*made, member, value);
   return made;
 }
 
-/// The ImageMap with other pixels, which are written beside the exported file.
+/// The ImageMap with other pixels, which are written to a file beside the exported one.
 Ref<Component> with_pixels(Exporting& exporting, const Component& image, const char* what, const LinearImage& pixels) {
   const std::string name = exporting.write_beside(what, "pfm", as_pfm(pixels));
   const FilePath file{(std::filesystem::path(exporting.folder()) / name).string(), {}};
@@ -46,7 +46,7 @@ std::array<double, 3> times(const std::array<double, 9>& m, const std::array<dou
           m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
 }
 
-/// What `change` makes of an ImageMap's linear texels; those of one channel have it three times.
+/// Applies `change` to an ImageMap's linear texels; the value of a single channel is repeated three times.
 template <class Change>
 LinearImage texels(const Component& image, Change change) {
   LinearImage pixels = read_linear_image(word_of(image, "file"), word_of(image, "transfer"), word_of(image, "channel"));
@@ -102,7 +102,7 @@ bool says_it_is_a_cube(const std::string& file) {
   return file.ends_with(".exr") && read_linear_image(file, "linear").from_cube;
 }
 
-// Three equal values have themselves for their mean and for their luminance.
+// Mean and luminance of three equal values are that value.
 Ref<Component> baked_number(Exporting& exporting, const Component& image, AsNumber there, bool decoded_there) {
   const std::string file = word_of(image, "file"), channel = word_of(image, "channel"), space = word_of(image, "color_space");
   if (!one_file(image)) return nullptr;

@@ -1,4 +1,4 @@
-// What all exporters have in common: which of them writes a file.
+// The class Exporter, the base of all exporters, and the choice of the exporter for a file.
 
 #include "etendue/exporter.h"
 

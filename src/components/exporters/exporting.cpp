@@ -1,4 +1,4 @@
-// What all exporters share: files beside the one that is written, names, and notes.
+// Exporting, the services that all exporters share: files beside the exported one, names, and warnings.
 
 #include <fmt/format.h>
 
@@ -53,7 +53,7 @@ std::string Exporting::copy_beside(const std::string& path) {
   const fs::path here = fs::weakly_canonical(fs::absolute(folder_.empty() ? fs::path(".") : fs::path(folder_)), error);
   const fs::path from = fs::weakly_canonical(fs::absolute(path), error);
   const fs::path relative = from.lexically_relative(here);
-  if (!taken_paths_.contains((fs::path(folder_) / relative).string())) note_input(from.string());  // else it is written here
+  if (!taken_paths_.contains((fs::path(folder_) / relative).string())) note_input(from.string());  // else written here
   if (!relative.empty() && *relative.begin() != "..") return relative.generic_string();
   std::string& name = copied_[from.string()];
   if (!name.empty()) return name;
@@ -62,7 +62,7 @@ std::string Exporting::copy_beside(const std::string& path) {
   } catch (const Error& reason) {
     throw Error(fmt::format("cannot read '{}': {}", path, reason.what()));
   }
-  // Two files of one name in two folders stay two.
+  // Two files of the same name in two folders must stay separate.
   const std::string last = from.filename().string();
   std::string target;
   do {
@@ -75,14 +75,14 @@ std::string Exporting::copy_beside(const std::string& path) {
   return name;
 }
 
-// An image within a model, which other programs cannot open there, becomes a file of its own.
+// An image inside a model file, which other programs cannot open there, is extracted to a file of its own.
 std::string Exporting::unpack_beside(const std::string& path, const ContainedFile& inner) {
   std::error_code error;
   const fs::path container = fs::weakly_canonical(fs::absolute(inner.container), error);
   note_input(container.string());
   std::string& name = copied_[container.string() + "#" + inner.name];
   if (!name.empty()) return name;
-  // "model.glb#images[3].png" is called "model-images_3.png" behind the stem.
+  // "model.glb#images[3].png" becomes "model-images_3.png", prefixed with the stem.
   const fs::path last(inner.name);
   std::string plain;
   for (const char c : last.stem().string())

@@ -28,7 +28,7 @@ double number_of(const Component& of, std::string_view member) {
   const Value value = value_of(of, member);
   const Number* n = value.as<Number>();
   if (!n) return 0;
-  // Angles come in radians, and are floats in degrees.
+  // Angles are stored in radians, and were floats in degrees.
   return n->dimension == Dimension::angle ? shortest(double(float(n->value * 180 / std::numbers::pi))) : shortest(n->value);
 }
 bool truth_of(const Component& of, std::string_view member) {
@@ -124,7 +124,8 @@ double mean_cosine(const Component& medium) {
 
 double mean_cosine_of(const Component& phase_function) {
   if (class_of(phase_function) == "HenyeyGreensteinPhase") return number_of(phase_function, "anisotropy");
-  // The mean of what is drawn with evenly spaced numbers, from one that is prepared, which what is exported is not.
+  // The mean cosine of samples with evenly spaced primary samples. A prepared copy is sampled, since exported components are
+  // not prepared.
   const Ref<PhaseFunction> phase = ref_cast<PhaseFunction>(copy(phase_function));
   prepare_tree(*phase);
   constexpr int samples = 1 << 16;

@@ -1,5 +1,5 @@
 #pragma once
-// What exporters ask of the parts that they write.
+// Functions by which exporters read members of components.
 
 #include <array>
 #include <optional>
@@ -14,9 +14,9 @@
 
 namespace etendue {
 
-// Members of a part by name, which it must have. Exporters ask for them here and nowhere else, so that it is known what they
-// asked for (asked_members.h). What is of another kind is 0, false, "" or null. Numbers that floats hold are as they would be
-// written (0.3, not 0.30000001192092896), angles are in degrees, files are paths that can be opened.
+// They read a member by name, which must exist. Exporters read members only by these functions, so that the members read are
+// recorded (asked_members.h). If the member has another type, the result is 0, false, "" or null. Numbers stored as floats are
+// returned as they would be written (0.3, not 0.30000001192092896), angles in degrees, files as paths that can be opened.
 Value value_of(const Component&, std::string_view member);
 double number_of(const Component&, std::string_view member);
 bool truth_of(const Component&, std::string_view member);
@@ -27,26 +27,26 @@ Color color_of(const Component&, std::string_view member);
 AnimatedTransform transform_of(const Component&, std::string_view member);
 const std::string& class_of(const Component&);
 
-/// Whether a part, or one within it, is of one of these classes; null: it is not.
+/// Whether a component, or one nested in it, has one of these classes; false for null.
 bool holds(const Component* part, std::initializer_list<std::string_view> classes);
-/// Whether any map of a shader looks at surface coordinates; null: none does.
+/// Whether any map of a shader depends on texture coordinates; false for null.
 bool textured(const Component* shader);
-/// The value of a map that is the same everywhere; null: it is not.
+/// The value of a constant map; null: the map is not constant.
 Color constant_of(const Component& map);
-/// The components of a colour that was written as rgb(...), perhaps times a number; nothing: it was written otherwise.
+/// The components of a colour written as rgb(...), possibly times a number; nothing: it was written otherwise.
 std::optional<std::array<double, 3>> written_rgb(const Color&);
-/// Wavelengths [nm] and values of a spectrum. Between whole nanometres everything is linear or smooth; steps of five are fine
-/// enough for what is smooth.
+/// Wavelengths [nm] and values of a spectrum. Between integer nanometres all spectra are linear or smooth; smooth ones are
+/// sampled every 5 nm, which is fine enough.
 std::vector<std::pair<int, double>> sampled(const Color&, ColorUse);
-/// Linear sRGB of a spectrum: of light as it is, of a reflectance under D65, of a coefficient as if it were one.
+/// Linear sRGB of a spectrum: of a radiance directly, of a reflectance under D65, of a coefficient like a radiance.
 std::array<double, 3> rgb_of(const Color&, ColorUse);
-/// The angle of view of a PerspectiveCamera across its fov_axis [deg].
+/// The field of view of a PerspectiveCamera along its fov_axis [deg].
 double field_of_view(const Component& camera);
-/// Whether light turns in a medium as Henyey's and Greenstein's function says, of whichever anisotropy.
+/// Whether a medium has a Henyey-Greenstein phase function, of any anisotropy.
 bool turns_by_anisotropy_alone(const Component& medium);
-/// The mean cosine of the angle that light turns by in a medium.
+/// The mean cosine of the scattering angle in a medium.
 double mean_cosine(const Component& medium);
-/// The same of a PhaseFunction.
+/// The mean cosine of a PhaseFunction.
 double mean_cosine_of(const Component& phase_function);
 
 }  // namespace etendue

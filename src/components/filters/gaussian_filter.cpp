@@ -7,11 +7,11 @@ class GaussianFilter final : public Filter {
   float radius_pixels = 1.5f;
   float deviation = 0.5f;
 
-  // The value at the radius is taken off, so that the filter ends without a step:
+  // The value at the radius is subtracted, so that the filter ends without a step:
   //   w(x) = exp(-x^2 / (2 s^2)) - exp(-r^2 / (2 s^2)).
   float along(float x) const {
     const float k = -0.5f / square(deviation);
-    const float here = k * square(x);  // so written nothing cancels where the curve is nearly flat
+    const float here = k * square(x);  // with expm1 nothing cancels where the curve is nearly flat
     return std::max(0.0f, -std::exp(here) * std::expm1(k * square(radius_pixels) - here));
   }
 

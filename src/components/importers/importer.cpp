@@ -1,4 +1,4 @@
-// What all importers have in common: they have no members of their own; and which of them reads a file.
+// The class Importer, the base of all importers, which has no members; and the choice of the importer for a file.
 
 #include "etendue/importer.h"
 #include "etendue/import_by.h"

@@ -1,4 +1,4 @@
-// What all importers share: which files a source may read, where they lie, and what was said of it.
+// Importing, the services that all importers share: finding files, the folders that may be read, and collecting warnings.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A path with all links followed and without "..", as far as it exists.
+/// The path with all symbolic links resolved and without "..", as far as it exists.
 fs::path real_path(const fs::path& path) {
   std::error_code error;
   fs::path found = fs::weakly_canonical(fs::absolute(path, error), error);
@@ -36,7 +36,7 @@ bool is_file(const fs::path& path) {
   return fs::exists(path, error) && !fs::is_directory(path, error);
 }
 
-/// The file of this name in a folder, small letters and capitals aside.
+/// The file of this name in a folder, ignoring case.
 std::optional<fs::path> in_folder(const fs::path& folder, const std::string& name) {
   std::error_code error;
   std::vector<fs::path> found;
@@ -103,7 +103,7 @@ std::optional<std::string> Importing::find(const std::string& named, const std::
       if (allowed(path.string())) return path.string();
       refused = real_path(path).parent_path().string();
     }
-  // Sources name folders of the machine they were made on: what is beside them is meant.
+  // Sources often name folders of the author's machine: a file of the same last name beside the source is taken instead.
   const std::string last = fs::path(slashes).filename().string();
   for (const std::string& folder : folders)
     if (const auto path = in_folder(folder.empty() ? "." : folder, last); path && allowed(path->string()))

@@ -4,8 +4,8 @@ namespace etendue {
 
 namespace {
 
-/// Of Jensen et al. 2001, "A practical model for subsurface light transport", table 1; from "Lowfat Milk" on of Narasimhan et
-/// al. 2006, "Acquiring scattering properties of participating media by dilution", as pbrt has them.
+/// From Jensen et al. 2001, "A practical model for subsurface light transport", table 1; from "Lowfat Milk" on from Narasimhan
+/// et al. 2006, "Acquiring scattering properties of participating media by dilution", as pbrt lists them.
 constexpr MeasuredMedium measured[] = {
     {"Apple", {2.29, 2.39, 1.97}, {0.0030, 0.0034, 0.046}},
     {"Chicken1", {0.15, 0.21, 0.38}, {0.015, 0.077, 0.19}},

@@ -1,12 +1,12 @@
 #pragma once
-// What importers may read that are not called by what loads a scene.
+// Read permissions for importers that run while a scene is prepared, after the loader.
 
 #include "etendue/language/language.h"
 
 namespace etendue {
 
-/// What the person who runs the program allows and asks of importers that read when a part is prepared, such as those of
-/// Import. A scene cannot change it. Set before anything is read.
+/// The options from the command line for importers that read while a component is prepared, such as those of Import. A scene
+/// cannot change them. Set before anything is read.
 const ImportOptions& import_permissions();
 void set_import_permissions(ImportOptions);
 

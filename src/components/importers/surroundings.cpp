@@ -12,24 +12,24 @@ namespace etendue {
 
 namespace {
 
-/// Whether a point of the world lies inside a closed object. What it is now is a copy's business: the object itself is not
-/// prepared.
+/// Whether a world-space point lies inside a closed object. A copy of the object is prepared for the test, with its current
+/// members; the object itself stays unprepared.
 bool holds(const SceneObject& object, const DoublePoint3& p) {
   const Ref<SceneObject> body = ref_cast<SceneObject>(copy(object));
   body->shader = nullptr;
   body->emission = nullptr;
   body->interior = nullptr;
-  // Counted from the point, as floats are finest there.
+  // The point becomes the origin, where floats are most precise.
   body->transform.count_from(p, body->transform.inner());
   try {
     prepare_tree(*body);
-  } catch (const Error&) {  // the scene will say so
+  } catch (const Error&) {  // reported again when the scene is prepared
     return false;
   } catch (const Errors&) {
     return false;
   }
   if (!body->closed()) return false;
-  // A ray from the point to infinity goes once more out of it than in.
+  // A ray from a point inside to infinity leaves the body once more than it enters.
   constexpr int most = 1000;
   int depth = 0;
   Ray ray;
@@ -61,7 +61,7 @@ bool may_let_in(const Component& shader) {
   return false;
 }
 
-/// A box that is not seen, filled with it.
+/// An invisible box filled with the medium.
 Ref<SceneObject> filled_box(Importing& importing, const AroundCamera& around) {
   const Ref<Component> box = importing.make("Box", around.at);
   set_member(*box, "centre", Numbers{{0.5, 0.5, 0.5}, 1, Dimension::none}, around.at);
@@ -69,7 +69,7 @@ Ref<SceneObject> filled_box(Importing& importing, const AroundCamera& around) {
   set_member(*box, "transform", *around.box, around.at);
   set_member(*box, "shader", importing.make("PassThrough", around.at), around.at);
   set_member(*box, "interior", around.medium, around.at);
-  set_member(*box, "priority", -1, around.at);  // all that stands in it displaces it
+  set_member(*box, "priority", -1, around.at);  // objects inside the box displace its medium
   return ref_cast<SceneObject>(box);
 }
 

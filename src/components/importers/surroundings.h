@@ -1,10 +1,10 @@
 #pragma once
-// The medium that a camera of another program is told to be in.
+// The medium that surrounds the camera in scenes of other programs.
 //
-// In pbrt and in Mitsuba a surface says which media are on its two sides, and the camera in which one it is; where a ray goes
-// through nothing it stays in the medium it began in, for ever. Here media are the inside of bodies. So a medium around a
-// camera is the interior of a body that holds the camera, where the file has one, the box of its densities, if they are on a
-// grid, and else Surroundings.
+// In pbrt and Mitsuba a surface states the media on its two sides, and the camera the medium it is in; a ray that hits nothing
+// stays in its medium to infinity. Here media are interiors of bodies. So a medium around a camera becomes, in this order, the
+// interior of a body of the file that encloses the camera, the interior of the bounding box of a density grid, or the interior
+// of Surroundings.
 
 #include "etendue/importer.h"
 #include "etendue/scene_object.h"
@@ -12,23 +12,22 @@
 namespace etendue {
 
 struct AroundCamera {
-  Ref<Component> medium;  ///< a VolumeShader
-  std::string name;       ///< of the medium, for messages: "'fog'"
-  std::string program;    ///< whose file it is: "pbrt"
-  Location at;            ///< where the file says so
-  DoublePoint3 camera;    ///< in the world
-  std::optional<Transform>
-      box;  ///< of a medium that is not the same everywhere: from the unit cube, which holds it, to the world
-  /// Objects whose inside it is, and beyond whose surface is something else.
+  Ref<Component> medium;         ///< a VolumeShader
+  std::string name;              ///< the medium's name in messages: "'fog'"
+  std::string program;           ///< the program in messages: "pbrt"
+  Location at;                   ///< location in the file
+  DoublePoint3 camera;           ///< camera position, in world space
+  std::optional<Transform> box;  ///< of a heterogeneous medium: from the unit cube, which holds the medium, to world space
+  /// Objects that have the medium inside and something else outside.
   std::vector<Ref<SceneObject>> bodies;
 };
 
-/// What has to be added to the objects of the world; null: a body among them holds the camera, or it cannot be expressed, which
-/// was told.
+/// The object to be added to the world. Null: an object of the world encloses the camera, or the medium cannot be expressed,
+/// which adds a warning.
 Ref<SceneObject> surroundings_for(Importing&, const AroundCamera&, const std::vector<Ref<SceneObject>>& world);
 
-/// In those programs a surface that names no media lets the one around go on behind it. Where light may get into such a body,
-/// it is given the medium as its interior, if that is everywhere; else it is told that there is none.
+/// In pbrt and Mitsuba the surrounding medium continues inside a body whose surface names no media. If the body may transmit
+/// light, its interior is set to the medium when the medium is everywhere; otherwise a warning is added.
 void let_medium_go_on(Importing&, const AroundCamera&, SceneObject& body, bool everywhere, Location at);
 
 }  // namespace etendue

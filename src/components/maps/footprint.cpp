@@ -6,7 +6,7 @@
 namespace etendue {
 namespace {
 
-/// At grazing angles the ellipse is cut off at this many times its width.
+/// At grazing angles the ellipse's length is limited to this many times its width.
 constexpr float longest = 64;
 
 }  // namespace
@@ -16,7 +16,7 @@ Footprint footprint_of(const SurfacePoint& p) {
   const Vector3 n(p.normal), d = p.ray_direction;
   const Vector3 along = d - dot(d, n) * n;
   const float sine2 = length_squared(along);
-  if (!(sine2 > 1e-8f)) {  // seen from above, or who knows from where: a circle
+  if (!(sine2 > 1e-8f)) {  // perpendicular incidence, or an unknown ray direction: a circle
     const Frame frame(p.normal);
     return {p.footprint * frame.s, p.footprint * frame.t};
   }
@@ -31,8 +31,8 @@ Footprint object_footprint(const SurfacePoint& p) {
   return {t.back(seen.longer), t.back(seen.shorter)};
 }
 
-// The points a cos t + b sin t are farthest from the centre, and nearest a quarter of a turn on, where the derivative of their
-// squared length, (b^2 - a^2) sin 2t + 2 a b cos 2t, vanishes.
+// The ellipse's points are a cos t + b sin t. The derivative of their squared length, (b^2 - a^2) sin 2t + 2 a b cos 2t,
+// vanishes at the major axis, and a quarter of a turn further at the minor axis.
 void set_footprint(SurfacePoint& p, const Footprint& diameters) {
   const Vector3 &a = diameters.longer, &b = diameters.shorter;
   const float t = 0.5f * std::atan2(2 * dot(a, b), dot(a, a) - dot(b, b)), cosine = std::cos(t), sine = std::sin(t);
@@ -52,8 +52,8 @@ Vector2 UvFootprint::box() const { return {std::hypot(longer.x, shorter.x), std:
 
 // A step s in the surface is du dpdu + dv dpdv. With the unit vectors a and b of the tangents, and c = a x b,
 //   du |dpdu| = (s x b) . c / c^2   and   dv |dpdv| = (a x s) . c / c^2.
-// Where the tangents do not span the surface (at a pole, on a triangle whose corners have coordinates on a line) no step
-// belongs to a change of one coordinate: a circle is taken then, by the lengths there are.
+// Where the tangents do not span the surface (at a pole, on a triangle whose corners have collinear (u, v)) this cannot be
+// solved. Then the footprint is taken as a circle, scaled by the lengths of the tangents that are not zero.
 UvFootprint uv_footprint(const SurfacePoint& point) {
   if (!(point.footprint > 0)) return {};
   SurfacePoint p = point;
@@ -93,7 +93,8 @@ const Transform& placement(const SurfacePoint& p, Transform& scratch) {
   const Vector3 outer_area = cross(outer.dpdu, outer.dpdv);
   const float a = dot(area, n);
   if (!(a * a > 0)) return own;
-  // The linear map that takes u, v and n to dpdu, dpdv and the normal enlarged alike: columns by the dual basis of u, v, n.
+  // The linear map from u, v and n to dpdu, dpdv and the normal, which is scaled as the tangents are: the sum of the outer
+  // products of these images with the dual basis of u, v, n.
   const float scale = std::sqrt(length(outer_area) / std::abs(a));
   const Vector3 m = scale * Vector3(p.normal), du = cross(v, n) / a, dv = cross(n, u) / a;
   Transform::Matrix matrix{};
@@ -119,7 +120,7 @@ SolidPoint solid_point(const SurfacePoint& p, MapSpace space, float size) {
     case MapSpace::object: {
       s.at = p.object_position - Point3{};
       if (!(width > 0)) break;
-      // An area with normal n in the object's coordinates grows by det(M) |M^-T n|.
+      // The transform M scales an area with object-space normal n by det(M) |M^-T n|.
       Transform scratch;
       const Transform& t = placement(p, scratch);
       if (!t.identity()) width /= std::sqrt(std::abs(linear_determinant(t)) * length(Vector3(t(p.object_normal))));

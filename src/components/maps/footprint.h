@@ -1,5 +1,5 @@
 #pragma once
-// What a ray's cone sees of a surface, for filtering maps, and where the surface lies in its object's own coordinates.
+// The footprint of a ray's cone on a surface, for the filtering of maps, and the transform from object space at a point.
 
 #include "etendue/core/ray.h"
 #include "etendue/core/transform.h"
@@ -9,23 +9,23 @@ namespace etendue {
 /// Where a map takes its coordinates from.
 enum class MapSpace : std::uint8_t { object, world, uv };
 
-// A footprint of zero, the default, asks a map for its own value at the point; any other (Renderer::map_filter) for the mean
-// over it. All maps keep to that one rule, and none has a filter of its own (decision 013).
+// With a footprint of zero, the default, a map returns its value at the point; with any other (Renderer::map_filter) its mean
+// over the footprint. All maps follow this rule, and none has a filter width of its own (decision 013).
 
-/// The ellipse a cone of a ray cuts out of the surface, by its two axes: vectors in the surface, in the coordinates of the
-/// scene the renderer sees, as long as the ellipse is wide [m]. Zero without a footprint.
+/// The ellipse in which a ray's cone intersects the surface, by its two diameters: vectors in the surface, in the coordinates
+/// in which the renderer traces rays [m]. Zero without a footprint.
 struct Footprint {
   Vector3 longer, shorter;
 };
 Footprint footprint_of(const SurfacePoint&);
-/// Gives a point the ellipse of two conjugate diameters: vectors in its surface, such as a footprint's axes become when the
-/// surface is deformed. The ray's direction is then that of a ray that sees such an ellipse.
+/// Sets a point's footprint to the ellipse with two conjugate diameters: vectors in the surface, which a footprint's axes
+/// become when the surface is deformed. The point's ray direction becomes that of a ray whose cone has this footprint.
 void set_footprint(SurfacePoint&, const Footprint&);
 
-/// Both axes in the object's own coordinates.
+/// Both axes in object space.
 Footprint object_footprint(const SurfacePoint&);
-/// Calls f(point, weight) at points of the object's coordinates, spread evenly over the parallelogram of the footprint's axes,
-/// whose weights add up to 1; without a footprint at the point itself. A map that has no better filter takes its mean so.
+/// Calls f(point, weight) at object-space points spread evenly over the parallelogram of the footprint's axes, with weights
+/// that add up to 1; without a footprint only at the point itself. For maps that have no analytic filter.
 template <class F>
 void over_footprint(const SurfacePoint& p, const F& f) {
   if (!(p.footprint > 0)) {
@@ -40,26 +40,27 @@ void over_footprint(const SurfacePoint& p, const F& f) {
         1.0f / (side * side));
 }
 
-/// The same axes as changes of the surface coordinates.
+/// The axes of a footprint as changes of (u, v).
 struct UvFootprint {
   Vector2 longer, shorter;
-  /// Widths along u and v of the box of the same second moments as the parallelogram of both axes.
+  /// Widths along u and v of the box that has the same second moments as the parallelogram of both axes.
   Vector2 box() const;
 };
 UvFootprint uv_footprint(const SurfacePoint&);
-/// Its box; 0 by 0 without a footprint.
+/// The box of a point's UvFootprint; 0 by 0 without a footprint.
 inline Vector2 uv_box(const SurfacePoint& p) { return p.footprint > 0 ? uv_footprint(p).box() : Vector2{}; }
 
-/// dpdu and dpdv of a point, found when they are not there yet.
+/// Computes dpdu and dpdv of a point if they are not set yet.
 void with_tangents(SurfacePoint&);
 
-/// From the object's own coordinates to the renderer's, around a point. Beyond the object's transform a nested scene has
-/// others, of which a point does not tell; there the answer is made from tangents, exact when those are similarities and no
-/// other map has changed the tangents before. `scratch` may hold the answer.
+/// The transform from object space to the coordinates in which the renderer traces rays, at a point. An object of a nested
+/// scene (an instance) is placed by further transforms, which the point does not store. Then the transform is reconstructed
+/// from the tangents, which is exact if the further transforms are similarities and no other map has changed the tangents
+/// before. The result may refer to `scratch`.
 const Transform& placement(const SurfacePoint&, Transform& scratch);
 
-/// A point in the space of a solid texture, in units of its features, and the width there of the circle that has the area of
-/// the footprint.
+/// A point in the space of a solid texture, in units of the texture's features, and the diameter of the circle that has the
+/// area of the footprint, in the same units.
 struct SolidPoint {
   Vector3 at;
   float width = 0;

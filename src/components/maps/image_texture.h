@@ -1,5 +1,5 @@
 #pragma once
-// Images as textures: their texels, averages of those, and means over ellipses.
+// ImageTexture: interface of images as textures, with nearest, bilinear and filtered (elliptical) lookups.
 
 #include <memory>
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace etendue {
 
-/// What lies outside an image.
+/// How an image is continued outside the unit square.
 enum class Wrap : std::uint8_t { repeat, mirror, clamp, black };
-/// To its left and right, and above and below it.
+/// u: to the left and right of the image; v: above and below it.
 struct Wraps {
   Wrap u, v;
-  Wraps(Wrap both) : u(both), v(both) {}  // NOLINT: one may stand for both
+  Wraps(Wrap both) : u(both), v(both) {}  // NOLINT: implicit, the same for both
   Wraps(Wrap along_u, Wrap along_v) : u(along_u), v(along_v) {}
 };
 
@@ -22,29 +22,29 @@ class ImageTexture {
  public:
   virtual ~ImageTexture();
 
-  /// Reads the whole file, so that a damaged one is found before rendering; the same image again is shared. Throws Error
-  /// naming the file and the reason.
+  /// Reads the whole file, so that a damaged file is found before rendering. Images that are opened again are shared. Throws
+  /// Error with the file's name and the reason.
   static std::shared_ptr<const ImageTexture> open(const std::string& path, const std::string& transfer,
                                                   const std::string& channel);
 
   /// 3 or 1.
   virtual int channels() const = 0;
 
-  /// Whether it was made of a cube of surroundings (images/linear_image.h): above its top there is the top still.
+  /// Whether the image was resampled from a cube map to longitude and latitude (images/linear_image.h), so that v is clamped.
   virtual bool from_cube() const { return false; }
 
   /// The largest of its numbers.
   virtual float largest() const = 0;
 
-  // Lookups write `channels` numbers. Where a coordinate is no number, all are 0.
+  // Lookups write `channels` numbers. If a coordinate is NaN, all are 0.
 
-  /// The texel.
+  /// The texel that contains the point.
   virtual void nearest(Point2 at, Wraps, float* out) const = 0;
-  /// Between the four nearest texels.
+  /// Bilinear interpolation of the four nearest texels.
   virtual void bilinear(Point2 at, Wraps, float* out) const = 0;
-  /// The mean over the footprint's ellipse, which is widened to no less than its length over `maximum_anisotropy`.
+  /// The mean over the footprint's ellipse, whose width is increased to at least its length over `maximum_anisotropy`.
   virtual void mean(Point2 at, const UvFootprint&, Wraps, float* out) const = 0;
-  /// How many texels the ellipse is long.
+  /// The length of the ellipse in texels.
   virtual float texels_along(const UvFootprint&) const = 0;
   static constexpr int maximum_anisotropy = 32;
 };

@@ -3,7 +3,7 @@
 namespace etendue {
 namespace {
 
-// One lane for each corner of a lattice cube: bits 0, 1 and 2 of its number are its place along x, y and z.
+// One lane for each corner of a lattice cube: bits 0, 1 and 2 of the lane's index are the corner's offsets along x, y and z.
 using Floats = float __attribute__((vector_size(32)));
 using Bits = std::uint32_t __attribute__((vector_size(32)));
 constexpr Bits corner_x{0, 1, 0, 1, 0, 1, 0, 1}, corner_y{0, 0, 1, 1, 0, 0, 1, 1}, corner_z{0, 0, 0, 0, 1, 1, 1, 1};
@@ -30,8 +30,8 @@ std::uint32_t lattice_hash(std::int32_t x, std::int32_t y, std::int32_t z, std::
   return mixed(std::uint32_t(x), std::uint32_t(y), std::uint32_t(z), seed);
 }
 
-// The gradients are the directions to the twelve edges of a cube, four of them twice, so that four bits choose; all have a
-// mean of 0. In place of Perlin's table of 256 permuted numbers the lattice point is hashed, which does not repeat.
+// The gradients are the directions to the twelve edges of a cube, four of them twice, so that four bits choose one; their mean
+// is 0. In place of Perlin's table of 256 permuted numbers the lattice point is hashed, so that the noise is not periodic.
 float perlin_noise(const Vector3& p, std::uint32_t seed) {
   constexpr float most = 1e9f;
   if (!(std::abs(p.x) < most && std::abs(p.y) < most && std::abs(p.z) < most)) return 0;

@@ -1,4 +1,4 @@
-// What all maps have in common: they have no members of their own.
+// The description of ObjectMap, the base class of all maps; it has no members.
 
 #include "etendue/object_map.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// RgbSource: maps that hold red, green and blue, for who needs the three numbers themselves and not a spectrum made of them.
+// RgbSource: interface of maps that hold RGB, for callers that need the three numbers and not a spectrum made from them.
 
 #include "etendue/object_map.h"
 
@@ -7,16 +7,16 @@ namespace etendue {
 
 class RgbSource {
  public:
-  /// Whether there are such numbers; of a map of another map, whether there are of that.
+  /// Whether the map holds RGB. A map that evaluates another map returns whether that map holds RGB.
   virtual bool has_rgb() const { return true; }
-  /// Writes the three numbers at a point, after the decoding the map is told of.
+  /// Writes the three numbers at a point, decoded by the map's transfer function.
   virtual void rgb(const SurfacePoint&, float out[3]) const = 0;
 
  protected:
   ~RgbSource() = default;
 };
 
-/// The map as one, or null when it has none.
+/// The map as an RgbSource, or null if it holds no RGB.
 inline const RgbSource* rgb_source(const ObjectMap& map) {
   const auto* source = dynamic_cast<const RgbSource*>(&map);
   return source && source->has_rgb() ? source : nullptr;

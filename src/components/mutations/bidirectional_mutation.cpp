@@ -33,7 +33,7 @@ class BidirectionalMutation final : public Mutation {
     const int more = v < 0.25 ? -1 : v < 0.5 ? 1 : 0;
     if (r + more < 1 || r + more > longest) return {};  // the way back would never be chosen
     space.begin(y, x, l);
-    const std::vector<PathVertex> rest(x.x.begin() + l + r, x.x.end());
+    const std::vector<ChainVertex> rest(x.x.begin() + l + r, x.x.end());
     if (!space.join(y, rest, r + more, choices)) return {};
     const double back = likely(y, l, r + more) / sum(y, k + more, [](int, int) { return false; });
     return back * PathSpace::pdf(x, l, r) / (likely(x, l, r) / all * PathSpace::pdf(y, l, r + more));

@@ -26,7 +26,7 @@ namespace {
 /// The way from b to a by specular lobes.
 class Chain {
  public:
-  Chain(const PathSpace& space, LightPath& y, const PathVertex& b, const PathVertex& a, std::span<const Lobe> lobes)
+  Chain(const PathSpace& space, LightPath& y, const ChainVertex& b, const ChainVertex& a, std::span<const Lobe> lobes)
       : space_(space), y_(y), a_(a), lobes_(lobes), plane_(a.point.normal), walk_{b} {}
 
   /// Where a chain comes to: its distance from a, along two axes of the plane there [m].
@@ -128,7 +128,7 @@ class Chain {
 
   const PathSpace& space_;
   LightPath& y_;
-  const PathVertex& a_;
+  const ChainVertex& a_;
   const std::span<const Lobe> lobes_;
   const Frame plane_;
   PathSpace::Walk walk_;
@@ -159,11 +159,11 @@ class ManifoldMutation final : public Mutation {
     if (!film) return {};
     space.begin(y, x, a + 1);
     const std::vector<Lobe> lobes = x.lobes(b - 1, a + 1);
-    const auto at = [](const LightPath& path, int i) -> const PathVertex& { return path.x[size_t(i)]; };
+    const auto at = [](const LightPath& path, int i) -> const ChainVertex& { return path.x[size_t(i)]; };
 
     PathSpace::Walk walk{x.x.back()};
     if (!space.follow_from_camera(walk, *film, x, y)) return {};
-    const PathVertex there = walk.back();
+    const ChainVertex there = walk.back();
     Chain proposed(space, y, there, at(x, a), lobes), back(space, y, at(x, b), at(x, a), lobes);
     const auto way = proposed.solve(normalize(at(x, b - 1).point.position - there.point.position));
     if (!way || !space.follow_lobes(walk, way->direction, lobes, Transport::radiance, y) || !arrives(space, walk, at(x, a), y))
@@ -181,9 +181,9 @@ class ManifoldMutation final : public Mutation {
 
  private:
   /// Whether nothing stands between the last vertex of a walk and a.
-  static bool arrives(const PathSpace& space, const PathSpace::Walk& walk, const PathVertex& a, LightPath& y) {
+  static bool arrives(const PathSpace& space, const PathSpace::Walk& walk, const ChainVertex& a, LightPath& y) {
     const Vector3 way = a.point.position - walk.back().point.position;
-    PathVertex met;
+    ChainVertex met;
     return space.follow(walk.back(), normalize(way), y, met) && met.point.object == a.point.object &&
            length(met.point.position - a.point.position) < 1e-3f * length(way);
   }

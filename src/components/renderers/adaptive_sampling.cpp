@@ -104,7 +104,7 @@ class AdaptiveProcess final : public RenderProcess {
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override { return inner_->radiance(ray, sample); }
   Wavelengths wavelengths(SampleKey key, float u) const override { return inner_->wavelengths(key, u); }
   float time(float u) const override { return inner_->time(u); }
-  CameraSample sample(int, int, std::uint32_t, Arena&, const PathRequest&) const override {
+  CameraSample sample(int, int, std::uint32_t, Arena&, const PathSink&) const override {
     renderer.fail({}, "how many samples a pixel has follows from all steps before, so that none can be replayed by itself");
   }
 
@@ -221,7 +221,8 @@ void AdaptiveProcess::step(Schedule& schedule, const Step& step) {
         film.begin(context.image, area);
         LightParts parts(context.image, groups);
         Features features;
-        const PathRequest request{{wants_features ? &features : nullptr, nullptr, parts.lengths()}, nullptr, schedule.abort};
+        const PathSink sink{
+            .features = wants_features ? &features : nullptr, .lengths = parts.lengths(), .abort = schedule.abort};
         for (int y = area.y0; y < area.y1; ++y)
           for (int x = area.x0; x < area.x1; ++x) {
             const std::uint32_t n = whole ? planned_[place(x, y)] : count, first = whole ? (step.number - first_step) * n : 0;
@@ -230,7 +231,7 @@ void AdaptiveProcess::step(Schedule& schedule, const Step& step) {
               if (schedule.aborted()) return;
               features = {};
               parts.clear();
-              const CameraSample s = path({x, y, x + 1, y + 1}, *renderer.sampler, key, arena, request);
+              const CameraSample s = path({x, y, x + 1, y + 1}, *renderer.sampler, key, arena, sink);
               film.count_path();
               film.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, float(count) / float(n), parts.all());
               if (wants_features) film.features(x, y, key.sample, features);

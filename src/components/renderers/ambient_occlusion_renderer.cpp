@@ -54,10 +54,10 @@ class AmbientOcclusionRenderer final : public Renderer {
       return grey(background, 1, sample);
     }
     const Vector3 out = -ray.direction;
-    sample.observe.surface(point, Spectrum(1.0f));
-    if (sample.observe.features) {
+    sample.sink.surface(point, Spectrum(1.0f));
+    if (sample.sink.features) {
       const Scatter* scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
-      sample.observe.first_surface(scene, point, hit, scatter, out, sample.wavelengths);
+      sample.sink.first_surface(scene, point, hit, scatter, out, sample.wavelengths);
     }
 
     // The side that is seen; directions under the true surface, which shading normals may lead to, are blocked.
@@ -74,7 +74,7 @@ class AmbientOcclusionRenderer final : public Renderer {
       seen += shadow_transmittance(scene, shadow, nullptr, sample.wavelengths, sample.numbers, sample.arena).average();
     }
     const Spectrum value = grey(open * seen / float(rays), 2, sample);
-    sample.observe.next_event(value, 2, 1);
+    sample.sink.next_event(value, 2, 1);
     return value;
   }
 
@@ -82,7 +82,7 @@ class AmbientOcclusionRenderer final : public Renderer {
   static Spectrum grey(float value, int length, SampleContext& sample) {
     const Spectrum spectrum = display_colors()({value, value, value});
     sample.wavelengths = display_colors().wavelengths;
-    sample.observe.light(length, spectrum);
+    sample.sink.light(length, spectrum);
     return spectrum;
   }
 };

@@ -96,16 +96,16 @@ class DirectRenderer final : public Renderer {
     if (!meet_surface(scene, branch.ray, branch.around(), hit, point)) {
       for (const SceneObject* far : scene.infinite_luminaires(branch.ray)) {
         far->surface_point(branch.ray, hit, point);
-        sample.observe.escape(*far, branch.ray, branch.throughput);
+        sample.sink.escape(*far, branch.ray, branch.throughput);
         add_emission(tree, branch, point, far);
       }
       return false;
     }
     const Vector3 out = -branch.ray.direction;
-    sample.observe.surface(point, branch.throughput);
+    sample.sink.surface(point, branch.throughput);
     if (point.object->luminaire()) add_emission(tree, branch, point, point.object);
     const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
-    sample.observe.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
+    sample.sink.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
     if (!scatter) return false;
 
     Spectrum direct;
@@ -116,7 +116,7 @@ class DirectRenderer final : public Renderer {
     };
     if (strategy != Strategy::shader && scatter->has(smooth_lobes)) by_luminaires(tree, branch, point, *scatter, add_direct);
     if (strategy != Strategy::light && scatter->has(direct_lobes())) by_shader(tree, branch, point, *scatter, add_direct);
-    sample.observe.next_event(direct, branch.depth + 1, 1);
+    sample.sink.next_event(direct, branch.depth + 1, 1);
     if (mirrors == Shown::surfaces && branch.depth < view_depth) follow_mirrors(tree, branch, point, *scatter);
 
     const auto straight = pass_straight(point, *scatter, branch.ray, branch.around());
@@ -128,7 +128,7 @@ class DirectRenderer final : public Renderer {
   static void add_emission(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const SceneObject* luminaire) {
     const Spectrum light = branch.throughput * luminaire->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
     tree.add(branch.depth, light, luminaire);
-    tree.sample.observe.emitter_hit(light, branch.depth, 1);
+    tree.sample.sink.emitter_hit(light, branch.depth, 1);
   }
 
   /// One branch goes on for each perfect mirror and refraction.
@@ -146,9 +146,9 @@ class DirectRenderer final : public Renderer {
       if (child.throughput.black() || !child.may_go_on(lobe)) continue;
       ++child.depth;
       go_on(point, *next, child.ray, child.around());
-      if (!first) sample.observe.surface(point, branch.throughput);  // each branch is told from its surface on
+      if (!first) sample.sink.surface(point, branch.throughput);  // each branch is told from its surface on
       first = false;
-      sample.observe.scattered(*next);
+      sample.sink.scattered(*next);
       follow(tree, child);
     }
   }

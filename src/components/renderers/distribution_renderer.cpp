@@ -108,7 +108,7 @@ class DistributionRenderer final : public Renderer {
     }
     light *= weight;
     tree.add(branch.depth, light, point.object);
-    tree.sample.observe.emitter_hit(light, branch.depth, weight);
+    tree.sample.sink.emitter_hit(light, branch.depth, weight);
   }
 
   void follow(RayTree& tree, Branch& branch) const {
@@ -122,23 +122,23 @@ class DistributionRenderer final : public Renderer {
       if (!meet_surface(scene, branch.ray, branch.around(), hit, point)) {
         for (const SceneObject* far : scene.infinite_luminaires(branch.ray)) {
           far->surface_point(branch.ray, hit, point);
-          sample.observe.escape(*far, branch.ray, branch.throughput);
+          sample.sink.escape(*far, branch.ray, branch.throughput);
           add_emission(tree, branch, point);
         }
         return;
       }
       const Vector3 out = -branch.ray.direction;
-      sample.observe.surface(point, branch.throughput);
+      sample.sink.surface(point, branch.throughput);
       if (point.object->luminaire()) add_emission(tree, branch, point);
       const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
-      sample.observe.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
+      sample.sink.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
       if (!scatter) return;
 
       const Place place{point, *scatter, out, branch.depth <= split_depth};
       const bool last = branch.depth >= max_depth;
       if (!last && scatter->has(smooth_lobes)) {
         const Spectrum direct = direct_light(tree, branch, place);
-        sample.observe.next_event(direct, branch.depth + 1, 1);
+        sample.sink.next_event(direct, branch.depth + 1, 1);
       }
       // What goes straight on is no longer for it, so the last segment may do that.
       const Lobes lobes = last ? Lobes(null_scattering) : followed();
@@ -195,9 +195,9 @@ class DistributionRenderer final : public Renderer {
         }
         step(sample, child, place, *next, pdf, kind.count + rivals);
         if (child.throughput.black() || !child.may_go_on(next->lobe)) continue;
-        if (!first) sample.observe.surface(place.point, branch.throughput);  // each branch from its surface on
+        if (!first) sample.sink.surface(place.point, branch.throughput);  // each branch from its surface on
         first = false;
-        sample.observe.scattered(*next);
+        sample.sink.scattered(*next);
         if (kind.lobes == null_scattering) {
           branch = child;
           goes_on = true;
@@ -214,7 +214,7 @@ class DistributionRenderer final : public Renderer {
     if (next.dispersive) branch.throughput *= branch.wavelengths.drop_secondary();
     branch.eta_squared *= next.eta * next.eta;
     go_on(place.point, next, branch.ray, branch.around());
-    if (!place.splits) sample.observe.scattered(next);
+    if (!place.splits) sample.sink.scattered(next);
     if (next.lobe == null_scattering) return;  // as if nothing had been there
     ++branch.depth;
     branch.share /= float(rays);

@@ -59,11 +59,11 @@ class FeatureProcess final : public RenderProcess {
     SurfacePoint point;
     if (!meet_surface(scene, ray, media_around(scene, ray, media), hit, point)) return {};
     const Vector3 out = -ray.direction;
-    sample.observe.surface(point, Spectrum(1.0f));
+    sample.sink.surface(point, Spectrum(1.0f));
     const Scatter* scatter = nullptr;
-    if (sample.observe.features || feature == Feature::albedo)
+    if (sample.sink.features || feature == Feature::albedo)
       scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
-    sample.observe.first_surface(scene, point, hit, scatter, out, sample.wavelengths);
+    sample.sink.first_surface(scene, point, hit, scatter, out, sample.wavelengths);
 
     Spectrum value;
     if (feature == Feature::albedo) {  // light after all: white light, scattered
@@ -73,8 +73,8 @@ class FeatureProcess final : public RenderProcess {
           color(scene, camera_ray, hit, point, distance(context.camera.lens_point(camera_ray), point.position)));
       sample.wavelengths = display_colors().wavelengths;
     }
-    sample.observe.light(1, value);
-    sample.observe.emitter_hit(value, 1, 1);
+    sample.sink.light(1, value);
+    sample.sink.emitter_hit(value, 1, 1);
     return value;
   }
 

@@ -18,7 +18,7 @@
 // paths go, most is left by paths that end (docs/decisions/028-guiding.md has the numbers).
 
 #include "etendue/guiding/guided_scattering.h"
-#include "etendue/render/learned_guide.h"
+#include "etendue/render/guided_process.h"
 #include "etendue/render/renderer.h"
 #include "etendue/transport/camera_walk.h"
 #include "etendue/transport/renderer_members.h"
@@ -98,7 +98,7 @@ class Trail {
       s.found = left_[i].found(all);
       if (!(s.found > 0)) continue;
       s.nearness = 1 / left_[i].distance;
-      sample.record(s);
+      sample.sink.records.add(s);
     }
   }
 
@@ -126,31 +126,18 @@ class Trail {
   bool waits_ = false;
 };
 
-class GuidedProcess final : public RenderProcess, public ShownInSpace {
+class GuidedPathProcess final : public GuidedProcess<ShownProcess> {
  public:
-  GuidedProcess(const GuidedPathTracer& r, const RenderContext& c)
-      : RenderProcess(r, c),
+  GuidedPathProcess(const GuidedPathTracer& r, const RenderContext& c)
+      : GuidedProcess(r, c, guide_settings(r), r.memory, Trail::longest),
         settings_(r),
-        clear_(!c.scene.has_interiors() && !c.scene.has_null_surfaces()),
-        guide_(guide_settings(r), size_t(r.memory) << 20) {}
+        clear_(!c.scene.has_interiors() && !c.scene.has_null_surfaces()) {}
 
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
     Trail* const trail = trail_of(sample);  // before the walk, which takes back what was made since it began
     return clear_ ? follow(CameraWalk<true>(context.scene, sample, ray, settings_.max_depth), trail)
                   : follow(CameraWalk<false>(context.scene, sample, ray, settings_.max_depth), trail);
   }
-
-  void step(Schedule& schedule, const Step& step) override {
-    guide_.begin_step(context.image.sampled_area(), step, Trail::longest);
-    guide_.learn(schedule, film_paths<GuideSample>(schedule, step));
-  }
-
-  std::optional<ShownLobes> lobes(const Point3& position, const Normal3& normal) const override {
-    return guide_.lobes(position, normal);
-  }
-
-  std::vector<std::byte> save_state() const override { return guide_.save(); }
-  void load_state(std::span<const std::byte> bytes) override { guide_.load(bytes); }
 
  private:
   static GuideSettings guide_settings(const GuidedPathTracer& r) {
@@ -162,7 +149,7 @@ class GuidedProcess final : public RenderProcess, public ShownInSpace {
   }
 
   /// Where the trail of a path is kept; null: nothing is learned from it.
-  Trail* trail_of(const SampleContext& sample) const { return guide_.teaches(sample) ? sample.arena.make<Trail>() : nullptr; }
+  Trail* trail_of(const SampleContext& sample) const { return guide()->teaches(sample) ? sample.arena.make<Trail>() : nullptr; }
 
   /// Russian roulette lets go on so many times as many walks.
   static constexpr float kept = 2;
@@ -182,7 +169,7 @@ class GuidedProcess final : public RenderProcess, public ShownInSpace {
     };
     while (next_vertex() && !walk.at_end()) {
       const NumberStream::Bounce u = walk.numbers.next_bounce();
-      const GuidedScattering guided(guide_.guide(), walk.vertex, walk.vertex.out);
+      const GuidedScattering guided(guide()->guide(), walk.vertex, walk.vertex.out);
       if (settings_.next_event) walk.add_direct(lights, u, settings_.heuristic, guided);
       const GuidedScattering::Choice choice =
           guided.sample(u.lobe_choice, u.direction, [&](float lobe) { return walk.sample_direction(lobe, u.direction); });
@@ -198,7 +185,7 @@ class GuidedProcess final : public RenderProcess, public ShownInSpace {
         trail->left(note, walk.throughput);
       }
       more *= choice.more;
-      if (walk.go_on(next) && !roulette.survives(walk, kept * walk.left() * more)) walk.end();
+      if (walk.go_on(next) && !roulette.survives(walk, kept * walk.roulette_weight() * more)) walk.end();
     }
     if (trail) trail->record(walk.radiance, walk.sample);
     return walk.radiance;
@@ -206,13 +193,12 @@ class GuidedProcess final : public RenderProcess, public ShownInSpace {
 
   const GuidedPathTracer& settings_;
   const bool clear_;
-  LearnedGuide guide_;
 };
 
 }  // namespace
 
 std::unique_ptr<RenderProcess> GuidedPathTracer::begin(const RenderContext& context) const {
-  return std::make_unique<GuidedProcess>(*this, context);
+  return std::make_unique<GuidedPathProcess>(*this, context);
 }
 
 static const Register<GuidedPathTracer> registered;

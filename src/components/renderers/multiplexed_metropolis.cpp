@@ -54,24 +54,25 @@ namespace {
 /// No roulette: how long walks are is chosen.
 SubpathLimits exactly(int segments) { return {segments, segments + 1}; }
 
-/// Takes what strategies find, if it is of the wanted one.
-struct Found final : LightListener {
+/// The sum of the contributions of one strategy.
+struct Sum {
   SampleContext& sample;
   const BidirectionalSubpaths& walks;
   const int s, t;      ///< the strategy; -1: any
   const float factor;  ///< number of strategies / P(k)
-  Spectrum radiance;
+  Spectrum radiance = {};
 
-  Found(SampleContext& at, const BidirectionalSubpaths& w, int s_, int t_, float f)
-      : sample(at), walks(w), s(s_), t(t_), factor(f) {}
-  void found(const PathContribution& light) override {
+  void add(const PathContribution& light) {
     if (t >= 0 && (light.s != s || light.t != t)) return;
     PathContribution one = light;
     one.light *= factor;
     add_contribution(sample, walks.light_wavelengths(), one, radiance);
   }
   void add(const std::optional<PathContribution>& light) {
-    if (light) found(*light);
+    if (light) add(*light);
+  }
+  void add(std::span<const PathContribution> all) {
+    for (const PathContribution& light : all) add(light);
   }
 };
 
@@ -105,10 +106,11 @@ class StrategyProcess final : public RenderProcess {
     const int s = std::min(int(sample.numbers.fork("strategy").next() * float(strategies)), strategies - 1), t = k + 1 - s;
 
     BidirectionalSubpaths walks(context, *settings_.light_sampler, sample, {settings_.heuristic});
-    Found found(sample, walks, s, t, float(strategies / P));
+    Sum sum{sample, walks, s, t, float(strategies / P)};
     if (t > 1) {
-      walks.from_camera(ray, exactly(t - 1), found);
-      if (walks.camera_vertices() < t) return found.radiance;
+      walks.from_camera(ray, exactly(t - 1));
+      sum.add(walks.segment_emission());
+      if (walks.camera_vertices() < t) return sum.radiance;
       if (s > 0 && !walks.camera_vertex(t).connectable()) return {};
     }
     if (s > 1) {
@@ -116,12 +118,12 @@ class StrategyProcess final : public RenderProcess {
       if (walks.light_vertices() < s || !walks.light_vertex(s).connectable()) return {};
     }
     if (s == 0)
-      walks.meet(t, found);
+      sum.add(walks.emitter_hits(t));
     else if (s == 1)
-      found.add(walks.sample_luminaire(t));
+      sum.add(walks.next_event(t));
     else
-      found.add(t == 1 ? walks.connect_to_lens(s) : walks.connect(s, t));
-    return found.radiance;
+      sum.add(t == 1 ? walks.connect_to_lens(s) : walks.connect(s, t));
+    return sum.radiance;
   }
 
  private:
@@ -146,15 +148,12 @@ class StrategyProcess final : public RenderProcess {
           sums.resize(told);
           std::vector<Spectrum> lengths(told);
           std::vector<Splat> splats;
-          PathRequest request;
-          request.observe.lengths = lengths;
-          request.splats = &splats;
-          request.abort = schedule.abort;
+          const PathSink sink{.lengths = lengths, .splats = &splats, .abort = schedule.abort};
           for (std::uint32_t i = 0; i < item_size && !schedule.aborted(); ++i) {
             splats.clear();
             std::ranges::fill(lengths, Spectrum());
             const SampleKey key(context.seed, -1, int(step.number), std::uint32_t(item) * item_size + i);
-            const CameraSample s = path(area, *settings_.sampler, key, arena, request);
+            const CameraSample s = path(area, *settings_.sampler, key, arena, sink);
             const auto add = [&](int length, const Spectrum& light, const Wavelengths& w) {
               const double y = to_xyz(light, w).y;
               if (length <= int(told) && std::isfinite(y)) sums[size_t(length - 1)] += y;
@@ -175,17 +174,18 @@ class DirectProcess final : public RenderProcess {
  public:
   DirectProcess(const MultiplexedMetropolis& r, const RenderContext& c) : RenderProcess(r, c), settings_(r) {}
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
-    if (sample.observe.features) note_first_surface(context.scene, ray, sample);
+    if (sample.sink.features) note_first_surface(context.scene, ray, sample);
     const int longest = std::min(settings_.max_depth, MutatedPaths::direct_length);
     BidirectionalSubpaths walks(context, *settings_.light_sampler, sample, {settings_.heuristic});
-    Found found(sample, walks, 0, -1, 1);
-    walks.from_camera(ray, exactly(longest), found);
-    for (int t = 2; t <= walks.camera_vertices(); ++t) walks.meet(t, found);
-    if (longest < 2) return found.radiance;
+    Sum sum{sample, walks, 0, -1, 1};
+    walks.from_camera(ray, exactly(longest));
+    sum.add(walks.segment_emission());
+    for (int t = 2; t <= walks.camera_vertices(); ++t) sum.add(walks.emitter_hits(t));
+    if (longest < 2) return sum.radiance;
     walks.from_luminaire(ray.time, exactly(1));
-    if (walks.camera_vertices() > 1 && walks.camera_vertex(2).connectable()) found.add(walks.sample_luminaire(2));
-    if (walks.light_vertices() > 1 && walks.light_vertex(2).connectable()) found.add(walks.connect_to_lens(2));
-    return found.radiance;
+    if (walks.camera_vertices() > 1 && walks.camera_vertex(2).connectable()) sum.add(walks.next_event(2));
+    if (walks.light_vertices() > 1 && walks.light_vertex(2).connectable()) sum.add(walks.connect_to_lens(2));
+    return sum.radiance;
   }
 
  private:

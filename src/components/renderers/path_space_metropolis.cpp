@@ -94,7 +94,7 @@ class PathSpaceProcess final : public RenderProcess, Chains {
                false);
   }
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override { return direct_->radiance(ray, sample); }
-  CameraSample sample(int, int, std::uint32_t, Arena&, const PathRequest&) const override {
+  CameraSample sample(int, int, std::uint32_t, Arena&, const PathSink&) const override {
     renderer.fail({}, "its samples are mutations of one another: none belongs to a pixel, and none can be replayed by itself");
   }
 

@@ -119,7 +119,7 @@ class PhotonMapperProcess final : public PhotonProcess {
       return walk.emitter_hit_weight(*settings_.light_sampler, settings_.heuristic, luminaire);
     };
     while (walk.next_vertex(met) && seeks != Seeks::luminaires && !walk.at_end()) {
-      const Vertex& v = walk.vertex;
+      const PathVertex& v = walk.vertex;
       const bool smooth = v.scatters_smoothly(), brought = v.in_medium() || !settings_.final_gather;
       if (smooth && seeks == Seeks::gathered && !brought && is_far(walk)) {
         add_all(walk);
@@ -144,7 +144,7 @@ class PhotonMapperProcess final : public PhotonProcess {
   /// Light of the nearest photons: of caustics, of what was scattered otherwise, or of all that came here.
   template <class Walk>
   void add_photons(Walk& walk, const Photons& photons, int nearest, float farthest, PhotonKinds kinds) const {
-    const Vertex& v = walk.vertex;
+    const PathVertex& v = walk.vertex;
     const Wavelengths& w = walk.sample.wavelengths;
     std::vector<PointTree::Near>& near = PointTree::near_on_this_thread();
     float radius = farthest * pixel_;
@@ -167,7 +167,7 @@ class PhotonMapperProcess final : public PhotonProcess {
   /// All light of a surface that is seen while gathering.
   template <class Walk>
   void add_all(Walk& walk) const {
-    const Vertex& v = walk.vertex;
+    const PathVertex& v = walk.vertex;
     const Spectrum* irradiance = settings_.irradiance ? irradiance_.at(v) : nullptr;
     if (!irradiance) return add_photons(walk, global_, settings_.nearest, settings_.farthest, PhotonKinds::all);
     // As if all came along the normal, which is the same for a matt surface.
@@ -178,7 +178,7 @@ class PhotonMapperProcess final : public PhotonProcess {
   /// Adds light straight from luminaires and chooses where the walk goes on, towards where photons came from if `guided`.
   template <class Walk>
   bool go_on(Walk& walk, bool guided) const {
-    const Vertex& v = walk.vertex;
+    const PathVertex& v = walk.vertex;
     const NumberStream::Bounce u = walk.next_bounce();
     const LightSampler& lights = *settings_.light_sampler;
     const float q = settings_.importance;

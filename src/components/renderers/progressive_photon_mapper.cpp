@@ -176,9 +176,9 @@ class ProgressivePhotonProcess final : public PhotonProcess {
   template <class Walk>
   void gather(Walk& walk) const {
     const Carrying to = carrying(walk);
-    const auto add = [&](const Photon& p, float pdf) {
+    const auto add = [&](const Photon& p, float area) {
       if (walk.length + int(p.vertices) > settings_.max_depth) return;
-      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, to) / pdf, p.from(context.scene));
+      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, to) / area, p.from(context.scene));
     };
     photons_.near(context.scene, walk.vertex, add);
     caustics_.near(context.scene, walk.vertex, add);
@@ -189,10 +189,10 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     const Carrying to = carrying(walk);
     NumberStream numbers = walk.numbers.fork("beam", std::uint32_t(walk.length));
     const Ray ray = walk.ray;
-    const auto add = [&](const Photon& p, float t, float pdf) {
+    const auto add = [&](const Photon& p, float t, float area) {
       if (walk.length + int(p.vertices) > settings_.max_depth) return;
       const float phase = medium.phase(ray(t), ray.time, -ray.direction, p.out);
-      walk.add_light(int(p.vertices), transmittance(medium, ray, t, to.wavelengths, numbers) * carried(p, to) * (phase / pdf),
+      walk.add_light(int(p.vertices), transmittance(medium, ray, t, to.wavelengths, numbers) * carried(p, to) * (phase / area),
                      p.from(context.scene));
     };
     photons_.along(context.scene, ray, reach, add);
@@ -202,10 +202,10 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     const Ray within = there.within(ray);
     // Of the step's wavelengths, as the beams': a walk may have dropped some.
     const VolumeCoefficients c = medium.coefficients(ray.origin, ray.time, wavelengths({}, 0));
-    const auto add_beam = [&](const PhotonBeam& b, float s, float t, float pdf) {
+    const auto add_beam = [&](const PhotonBeam& b, float s, float t, float width) {
       if (walk.length + int(b.vertices) > settings_.max_depth) return;
       const float phase = medium.phase(within(t), ray.time, -ray.direction, -b.direction);
-      walk.add_light(int(b.vertices), carried(b.light(s, t, c), b.single, to) * (phase / pdf), b.from(context.scene));
+      walk.add_light(int(b.vertices), carried(b.light(s, t, c), b.single, to) * (phase / width), b.from(context.scene));
     };
     beams_.along(context.scene, medium, within, there.length(), numbers, add_beam);
     caustic_beams_.along(context.scene, medium, within, there.length(), numbers, add_beam);

@@ -2,24 +2,28 @@
 // connection and merging"; Hachisuka, Pantaleoni & Jensen 2012, "A path space extension for robust light transport
 // simulation"; in media with photon points as Křivánek et al. 2014, "Unifying points, beams, and paths").
 //
-// Bidirectional path tracing joins a walk x_0, x_1, … from a luminaire and one z_0, z_1, … from the lens by a segment between
-// two of their vertices; photon mapping joins them where a vertex of the one lies within r of a vertex of the other. Both make
-// the same paths, so each sample adds, over all strategies,
-//     sum_{s,t} w_{s,t} alpha_s c_{s,t} alpha_t     connections (BidirectionalPathTracer)
-//   + sum_t sum_p w_{p,t} alpha_p f(z_{t-1}, w_p) alpha_t / (n pi r^2)     photons p near z_{t-1}, of n walks,
-// with weights among all of them (transport/bidirectional_weight.h). Merging finds what connecting cannot, caustics seen in
-// mirrors, and is better where connections pass almost specular vertices; where it is not, its weight is small, and the blur
-// with it. r shrinks from step to step, so that what blur there is goes away (transport/photons.h).
+// Bidirectional path tracing joins a subpath y_0, y_1, … from a luminaire and one z_0, z_1, … from the lens by a segment
+// between two of their vertices; photon mapping joins them where a vertex of the one lies within r of a vertex of the other.
+// Both make the same paths, so each sample is the sum over all strategies
+//     sum_{s,t} w_{s,t} alpha_s c_{s,t} alpha_t     vertex connection (bidirectional_path_tracer.cpp)
+//   + sum_t sum_p w_{p,t} alpha_p f(z_{t-1}, w_p) alpha_t / (n pi r^2)     vertex merging with photons p near z_{t-1}, of n
+//                                                                          light subpaths (Georgiev et al. 2012, eq. 11),
+// weighted among all of them (transport/bidirectional_weight.h). render/bidirectional.h has the sum. Merging finds caustics
+// seen in mirrors, which connections cannot find, and has less variance where connections pass almost specular vertices.
+// Elsewhere its weight is small, and the blur with it. r shrinks from step to step, so that the blur vanishes
+// (transport/photons.h).
 //
-// The n walks of a step have numbers of their own: they are independent of those that samples connect to.
+// The n light subpaths of a step have their own primary samples: they are independent of those that samples connect to.
 //
-// Where `guided`, the camera's walk learns where to go, as in bidirectional path tracing; weights of photons know of it, too.
+// Where `guided`, the camera subpath samples directions from a guide, as in bidirectional path tracing; the weights of photons
+// contain the guide's pdfs too.
 
 #include "etendue/guiding/guided_directions.h"
-#include "etendue/render/learned_guide.h"
+#include "etendue/render/bidirectional.h"
+#include "etendue/render/guided_process.h"
 #include "etendue/render/photon_process.h"
+#include "etendue/render/renderer.h"
 #include "etendue/render/shrinking_bias.h"
-#include "etendue/transport/bidirectional_subpaths.h"
 #include "etendue/transport/renderer_members.h"
 
 namespace etendue {
@@ -78,18 +82,23 @@ class VertexConnectionMerging final : public Renderer, public ShrinkingBias {
   std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;
 };
 
-class VertexConnectionMergingProcess final : public PhotonProcess {
+class VertexConnectionMergingProcess final : public GuidedProcess<PhotonProcess> {
  public:
   VertexConnectionMergingProcess(const VertexConnectionMerging& r, const RenderContext& c)
-      : PhotonProcess(r, c), settings_(r), first_radius_(double(r.radius) * double(seen_pixel_width(c))) {
-    if (r.guided) guide_.emplace(GuideSettings{}, size_t(r.memory) << 20);
-  }
+      : GuidedProcess(r, c, r.guided ? std::optional(GuideSettings{}) : std::nullopt, r.memory, r.max_depth),
+        settings_(r),
+        estimator_{.max_depth = r.max_depth,
+                   .roulette_depth = r.roulette_depth,
+                   .heuristic = r.heuristic,
+                   .weighted = r.connecting,
+                   .strategies = {.next_event = r.connecting, .connections = r.connecting, .lens = r.connecting}},
+        first_radius_(double(r.radius) * double(seen_pixel_width(c))) {}
 
   void prepare_step(Schedule& schedule, const Step& step) override {
     if (!settings_.merging) return;
     share(step);
-    std::optional<GuidedDirections> directions;  // of walks from luminaires nothing but densities is asked
-    if (guide_) directions.emplace(guide_->guide(), false);
+    std::optional<GuidedDirections> directions;  // light subpaths need the guide's pdfs alone, for their weights
+    if (guide()) directions.emplace(guide()->guide(), false);
     photons_ = make_photons(schedule, step,
                             {.walks = std::uint64_t(settings_.photon_walks),
                              .most = std::uint64_t(settings_.most_photons),
@@ -99,18 +108,9 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
                              .weighted = settings_.connecting ? &settings_.heuristic : nullptr});
   }
 
-  void step(Schedule& schedule, const Step& step) override {
-    if (!guide_) return PhotonProcess::step(schedule, step);
-    guide_->begin_step(context.image.sampled_area(), step, settings_.max_depth);
-    guide_->learn(schedule, film_paths<GuideSample>(schedule, step));
-  }
-  std::optional<ShownLobes> lobes(const Point3& position, const Normal3& normal) const override {
-    if (!guide_) return {};
-    return guide_->lobes(position, normal);
-  }
-  std::vector<std::byte> save_state() const override { return guide_ ? guide_->save() : PhotonProcess::save_state(); }
-  void load_state(std::span<const std::byte> bytes) override {
-    if (guide_) guide_->load(bytes);
+  Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
+    return bidirectional_radiance(context, *settings_.light_sampler, ray, sample, estimator_,
+                                  settings_.merging ? &photons_ : nullptr, guide());
   }
 
   std::optional<ShownPhotons> photons(size_t most) const override {
@@ -118,69 +118,11 @@ class VertexConnectionMergingProcess final : public PhotonProcess {
     return some_of({&photons_}, most);
   }
 
-  Spectrum radiance(const Ray& camera_ray, SampleContext& sample) const override {
-    const int max_depth = settings_.max_depth, roulette_depth = settings_.roulette_depth;
-    const bool connecting = settings_.connecting, merges = settings_.merging;
-    if (sample.observe.features) note_first_surface(context.scene, camera_ray, sample);
-    BidirectionalSubpaths walks(context, *settings_.light_sampler, sample,
-                                {settings_.heuristic, connecting, merges ? photons_.merging : Merging{}});
-    Found found{walks, sample, connecting};
-    const bool teaches = guide_ && guide_->teaches(sample);
-    std::optional<GuidedDirections> directions;
-    if (guide_) directions.emplace(guide_->guide(), teaches);
-    found.teaches = teaches;
-    walks.from_camera(camera_ray, {max_depth, roulette_depth, directions ? &*directions : nullptr}, found);
-    if (connecting) walks.from_luminaire(camera_ray.time, {max_depth - 1, roulette_depth});
-
-    for (int t = 2; t <= walks.camera_vertices() && !sample.aborted(); ++t) {
-      if (!connecting && !walks.has_specular_prefix(t)) break;
-      walks.meet(t, found);
-      const SubpathVertex& z = walks.camera_vertex(t);
-      if (!z.connectable()) continue;
-      if (merges)
-        photons_.near(context.scene, z, [&](const Photon& photon, float) {
-          if (int(photon.vertices) + t - 1 <= max_depth) found.add(walks.merge(photon, t));
-        });
-      if (!connecting) continue;
-      if (t <= max_depth) found.add(walks.sample_luminaire(t));
-      for (int s = 2; s <= walks.light_vertices() && s + t - 1 <= max_depth && !sample.aborted(); ++s)
-        if (walks.light_vertex(s).connectable()) found.add(walks.connect(s, t));
-    }
-    for (int s = 2; s <= walks.light_vertices() && s <= max_depth && !sample.aborted(); ++s)
-      if (walks.light_vertex(s).connectable()) found.add(walks.connect_to_lens(s));
-    if (teaches)
-      for (const GuideSample& each : directions->learned(walks.camera_subpath(), found.arrived)) sample.record(each);
-    walks.record();
-    return found.radiance;
-  }
-
  private:
-  /// What one sample found.
-  struct Found final : LightListener {
-    const BidirectionalSubpaths& walks;
-    SampleContext& sample;
-    const bool connecting;
-    bool teaches = false;
-    Spectrum radiance;
-    std::vector<Spectrum> arrived;  // by strategies of t vertices from the camera, if that teaches a guide
-
-    Found(const BidirectionalSubpaths& w, SampleContext& at, bool connects) : walks(w), sample(at), connecting(connects) {}
-    void found(const PathContribution& light) override {
-      if (!connecting && !walks.has_specular_prefix(light.t)) return;
-      add_contribution(sample, walks.light_wavelengths(), light, radiance);
-      if (!teaches || light.t < 2) return;
-      if (arrived.size() <= size_t(light.t)) arrived.resize(size_t(light.t) + 1);
-      arrived[size_t(light.t)] += light.light * light.weight;
-    }
-    void add(const std::optional<PathContribution>& light) {
-      if (light) found(*light);
-    }
-  };
-
   const VertexConnectionMerging& settings_;
+  const BidirectionalSettings estimator_;
   const double first_radius_;  // [m]
   Photons photons_;
-  std::optional<LearnedGuide> guide_;
 };
 
 std::unique_ptr<RenderProcess> VertexConnectionMerging::begin(const RenderContext& context) const {

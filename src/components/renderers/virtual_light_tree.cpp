@@ -52,7 +52,7 @@ void VirtualLightTree::build(std::uint32_t at, std::span<std::uint32_t> some, st
   build(node.parts + 1, some.subspan(size_t(middle)), all);
 }
 
-VirtualLightTree::Place VirtualLightTree::place(const Vertex& v, float nearest) {
+VirtualLightTree::Place VirtualLightTree::place(const PathVertex& v, float nearest) {
   Place z{v.point.position, {}, nearest};
   if (v.on_surface() && v.scatter && !v.scatter->has(transmission_lobes)) z.normal = on_side(Vector3(v.point.normal), v.out);
   return z;

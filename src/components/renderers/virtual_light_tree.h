@@ -24,7 +24,7 @@ class VirtualLightTree {
     Vector3 normal;     ///< lights behind it bring nothing; 0: there is no behind
     float nearest = 0;  ///< r [m]
   };
-  static Place place(const Vertex&, float nearest);
+  static Place place(const PathVertex&, float nearest);
 
   /// A light of a node of the cut, and its probability in that.
   struct Sample {

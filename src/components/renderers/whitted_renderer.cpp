@@ -62,25 +62,25 @@ class WhittedRenderer final : public Renderer {
         far->surface_point(branch.ray, hit, point);
         const Spectrum light = branch.throughput * far->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
         tree.add(branch.depth, light, far);
-        sample.observe.escape(*far, branch.ray, branch.throughput);
-        sample.observe.emitter_hit(light, branch.depth, 1);
+        sample.sink.escape(*far, branch.ray, branch.throughput);
+        sample.sink.emitter_hit(light, branch.depth, 1);
       }
       return false;
     }
     const Vector3 out = -branch.ray.direction;
-    sample.observe.surface(point, branch.throughput);
+    sample.sink.surface(point, branch.throughput);
     if (point.object->luminaire()) {
       const Spectrum light = branch.throughput * point.object->emission->radiance(point, out, branch.wavelengths);
       tree.add(branch.depth, light, point.object);
-      sample.observe.emitter_hit(light, branch.depth, 1);
+      sample.sink.emitter_hit(light, branch.depth, 1);
     }
     const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
-    sample.observe.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
+    sample.sink.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
     if (!scatter) return false;
     const bool last = branch.depth >= max_depth;
     if (!last && scatter->has(smooth_lobes)) {
       const Spectrum direct = direct_light(tree, branch, point, *scatter);
-      sample.observe.next_event(direct, branch.depth + 1, 1);
+      sample.sink.next_event(direct, branch.depth + 1, 1);
     }
 
     bool first = true, goes_on = false;
@@ -96,9 +96,9 @@ class WhittedRenderer final : public Renderer {
       if (child.throughput.black() || !child.may_go_on(lobe)) continue;
       if (lobe != null_scattering) ++child.depth;
       go_on(point, *next, child.ray, child.around());
-      if (!first) sample.observe.surface(point, branch.throughput);  // each branch is told from its surface on
+      if (!first) sample.sink.surface(point, branch.throughput);  // each branch is told from its surface on
       first = false;
-      sample.observe.scattered(*next);
+      sample.sink.scattered(*next);
       if (lobe == null_scattering) {
         branch = child;
         goes_on = true;

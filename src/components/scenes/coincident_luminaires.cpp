@@ -8,7 +8,7 @@
 
 #include "etendue/core/error.h"
 #include "etendue/transport/boundaries.h"
-#include "etendue/transport/observer.h"
+#include "etendue/transport/path_sink.h"
 
 namespace etendue {
 namespace {

@@ -5,10 +5,11 @@
 
 namespace etendue {
 
-/// Between two dielectrics. `cosine` >= 0 is that of the angle of incidence, `eta` the index behind the boundary over
-/// that in front (Born & Wolf 1999, section 1.5.2):
+/// The Fresnel reflectance of a boundary between two dielectrics, for unpolarized light. `cosine` >= 0 is that of the angle of
+/// incidence, `eta` the index behind the boundary over that in front (Born & Wolf 1999, section 1.5.2):
 /// R = (rs^2 + rp^2) / 2 with rs = (cos_i - eta cos_t) / (cos_i + eta cos_t), rp = (eta cos_i - cos_t) / (eta cos_i + cos_t)
-/// and Snell's law for cos_t, the cosine behind, which is returned as well (0 under total reflection).
+/// and cos_t by Snell's law: the cosine of the refracted direction, returned in `cosine_behind` (0 under total internal
+/// reflection).
 inline float fresnel_dielectric(float cosine, float eta, float& cosine_behind) {
   const float c = clamp(cosine, 0, 1);
   const float behind_squared = 1 - (1 - c * c) / (eta * eta);
@@ -17,7 +18,7 @@ inline float fresnel_dielectric(float cosine, float eta, float& cosine_behind) {
     return 1;
   }
   cosine_behind = std::sqrt(behind_squared);
-  if (c == 0) return 1;  // also where eta = 1 leaves 0/0
+  if (c == 0) return 1;  // grazing incidence; for eta = 1 the formula would be 0/0
   const float rs = (c - eta * cosine_behind) / (c + eta * cosine_behind);
   const float rp = (eta * c - cosine_behind) / (eta * c + cosine_behind);
   return 0.5f * (rs * rs + rp * rp);
@@ -27,7 +28,7 @@ inline float fresnel_dielectric(float cosine, float eta) {
   return fresnel_dielectric(cosine, eta, unused);
 }
 
-/// The fractions reflected of light polarized across (s) and in (p) the plane of incidence; see fresnel_dielectric.
+/// The reflectances of light polarized perpendicular to the plane of incidence (s) and in it (p); see fresnel_dielectric.
 struct PolarizedReflectance {
   float s, p;
 };
@@ -39,11 +40,12 @@ inline PolarizedReflectance fresnel_dielectric_polarized(float cosine, float eta
           square((eta * c - cosine_behind) / (eta * c + cosine_behind))};
 }
 
-/// From a dielectric to a conductor of relative complex index eta + i k (the conductor's over the dielectric's). With
-/// (a + i b)^2 = (eta + i k)^2 - sin^2 (Born & Wolf 1999, section 14.2):
+/// The Fresnel reflectance of a conductor in a dielectric, for unpolarized light; eta + i k is the conductor's complex index
+/// over the dielectric's. With (a + i b)^2 = (eta + i k)^2 - sin^2 (Born & Wolf 1999, section 14.2):
 /// Rs = (a^2 + b^2 + cos^2 - 2 a cos) / (a^2 + b^2 + cos^2 + 2 a cos),
 /// Rp = Rs ((a^2 + b^2) cos^2 + sin^4 - 2 a cos sin^2) / ((a^2 + b^2) cos^2 + sin^4 + 2 a cos sin^2).
-/// a^2 = (a^2 + b^2 + d) / 2 with d = eta^2 - k^2 - sin^2, which cancels for d < 0; a b = eta k then gives it.
+/// a^2 = (a^2 + b^2 + d) / 2 with d = eta^2 - k^2 - sin^2. For d < 0 this sum cancels, and a is computed from a b = eta k
+/// instead.
 inline float fresnel_conductor(float cosine, float eta, float k) {
   const float c = clamp(cosine, 0, 1), c2 = c * c, s2 = 1 - c2;
   const float d = eta * eta - k * k - s2, product = 2 * eta * k;
@@ -60,14 +62,15 @@ inline Spectrum fresnel_conductor(float cosine, Spectrum eta, Spectrum k) {
   return r;
 }
 
-/// The mean of fresnel_dielectric over diffuse illumination, the integral of 2 F(c) c dc over the cosine c. From the side
-/// of the lower index (eta > 1) it has a closed form (Walsh 1926, in Duncan & Duntley 1942). What crosses the boundary
-/// is the same from both sides, in units of n^2 (reciprocity), which gives the other side: 1 - F(1/n) = (1 - F(n)) / n^2.
+/// The mean of fresnel_dielectric over diffuse illumination, the integral of 2 F(c) c dc over the cosine c. From the side of
+/// the lower index (eta > 1) it has a closed form (Walsh 1926, in Duncan & Duntley 1942). The value for the other side follows
+/// from reciprocity: the transmittance times the squared index on the side of incidence is the same from both sides, so 1 -
+/// F(1/n) = (1 - F(n)) / n^2.
 inline float mean_fresnel_dielectric(float eta) {
   const double n = eta < 1 ? 1.0 / double(eta) : double(eta);
   double f = 0;
   if (n < 1 + 1e-4) {
-    f = (n - 1) / 3;  // the first term of the closed form's series, whose parts cancel here
+    f = (n - 1) / 3;  // first term of the series in n - 1: the closed form's terms cancel here
   } else {
     const double n2 = n * n, n4 = n2 * n2, p = n2 + 1, m = n4 - 1;
     f = 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +
@@ -77,7 +80,7 @@ inline float mean_fresnel_dielectric(float eta) {
   return float(eta < 1 ? 1 - (1 - f) / (n * n) : f);
 }
 
-/// The same of fresnel_conductor, by the Gauss rule of four points for the weight c: within 1e-3.
+/// The mean of fresnel_conductor over diffuse illumination, by 4-point Gauss quadrature with weight c; error within 1e-3.
 inline Spectrum mean_fresnel_conductor(Spectrum eta, Spectrum k) {
   constexpr float cosines[] = {0.13975986434f, 0.41640956763f, 0.72315698637f, 0.94289580388f};
   constexpr float weights[] = {0.06236194190f, 0.25969509522f, 0.40692913604f, 0.27101382684f};  // sum to 1

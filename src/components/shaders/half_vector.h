@@ -1,9 +1,10 @@
 #pragma once
-// Models that are written with the half-vector h of the two directions: what they have in common.
+// Tools for BRDF models that are functions of the half-vector h of the two directions.
 //
-// Notation of these models: v and v' are the cosines of the two directions with the normal, t that of h, and u that of
-// either direction with h. A direction `in` mirrored from `out` at an h of density p_h has density p_h / (4 u), all per solid
-// angle (Torrance & Sparrow 1967). Both directions are taken to lie above the surface: what is below is mirrored at it.
+// Notation of these models: v and v' are the cosines of the two directions with the normal, t that of h, and u that of either
+// direction with h. If h has pdf p_h, the direction `in` reflected from `out` about h has pdf p_h / (4 u), both per solid angle
+// (Torrance & Sparrow 1967). Both directions are taken to lie above the surface: directions below are mirrored at the surface
+// plane.
 
 #include <array>
 
@@ -21,14 +22,14 @@ struct HalfVector {
 
 inline Vector3 above(const Vector3& v) { return {v.x, v.y, std::abs(v.z)}; }
 
-/// Of two unit directions on the same side; |out + in| = 2 u.
+/// The half-vector of two unit directions on the same side; |out + in| = 2 u.
 inline HalfVector half_vector(const Vector3& out, const Vector3& in) {
   const Vector3 sum{out.x + in.x, out.y + in.y, std::abs(out.z) + std::abs(in.z)};
   const float twice_u = std::max(length(sum), 1e-15f);
   return {sum / twice_u, 0.5f * twice_u};
 }
 
-/// The unit direction v, mirrored at h.
+/// The unit direction v reflected about h.
 inline Vector3 mirrored_at(const Vector3& h, const Vector3& v) { return 2 * dot(h, v) * h - v; }
 
 /// (1 - c)^5: how Fresnel reflection grows towards grazing (Schlick 1994).
@@ -37,15 +38,15 @@ inline float schlick_growth(float c) {
   return x2 * x2 * x;
 }
 
-/// Parts of a lobe's albedo as functions of the cosine of `out` and of two numbers in [0, 1] that tell the lobe's shape,
-/// tabulated once and interpolated.
+/// A table of a lobe's directional albedo, split into `parts` components, by the cosine of `out` and two shape parameters in
+/// [0, 1]; interpolated linearly.
 template <size_t parts>
 class AlbedoTable {
  public:
   using Value = std::array<float, parts>;
 
-  /// sample(a, b, u) is a half-vector as the lobe is sampled, and weight(a, b, h, cosine) what the direction mirrored at it
-  /// contributes to the albedo, which is the mean.
+  /// sample(a, b, u) returns a half-vector sampled from the lobe of shape (a, b). weight(a, b, h, cosine) returns the
+  /// components of the sampling weight f cos / pdf of `out` reflected about h. The albedo is the mean of the weights.
   template <class Sample, class Weight>
   AlbedoTable(const Sample& sample, const Weight& weight) {
     for (int k = 0; k < shapes; ++k)
@@ -60,9 +61,10 @@ class AlbedoTable {
         }
       }
   }
-  /// For a table made with `out` in the azimuth of x, whose shapes are the roots of the lobe's widths along x and across: for
-  /// widths given by these roots along x and y. Near the normal x and y are as good as each other; at grazing angles what
-  /// counts are the extents of their ellipse along `out` and across it.
+  /// The albedo of an anisotropic lobe for `out` at any azimuth, from a table made with `out` in the azimuth of x whose shape
+  /// parameters are the square roots of the lobe's widths along x and y. Near the normal, interpolates by the squared cosine of
+  /// the azimuth between the values for `out` along x and along y; at grazing angles, uses the extents of the widths' ellipse
+  /// along `out` and across it.
   Value turned(const Vector3& out, float a, float b) const {
     if (a == b) return (*this)(out.z, a, b);
     const float s2 = out.x * out.x + out.y * out.y, x2 = s2 > 0 ? out.x * out.x / s2 : 1;
@@ -89,7 +91,7 @@ class AlbedoTable {
  private:
   static constexpr int cosines = 17, shapes = 9, steps = 12;
 
-  /// Between which two entries, and how near to each.
+  /// The two table entries around a coordinate, and their interpolation weights.
   struct Place {
     Place(float x, int size) {
       const float at = clamp(x, 0, 1) * float(size - 1);
@@ -103,7 +105,7 @@ class AlbedoTable {
   std::array<std::array<std::array<Value, shapes>, shapes>, cosines> value_{};
 };
 
-/// A direction of given cosine in the azimuth of x.
+/// The unit direction of given cosine in the azimuth of x.
 inline Vector3 towards_x(float cosine) { return {safe_sqrt(1 - cosine * cosine), 0, cosine}; }
 
 }  // namespace etendue

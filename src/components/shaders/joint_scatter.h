@@ -1,5 +1,5 @@
 #pragma once
-// JointScatter: for models whose value and density come from one computation.
+// JointScatter: base class of models that compute f and the pdf together, in local_value_and_pdf.
 
 #include "etendue/scatter_model.h"
 

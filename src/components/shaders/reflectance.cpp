@@ -7,7 +7,7 @@
 namespace etendue {
 namespace {
 
-/// Maps whose values are those of the maps they hold, at other places or mixed: none of these makes them larger.
+/// Whether a map only evaluates the maps it holds at other coordinates or mixes them, so that its values do not exceed theirs.
 bool passes_values_on(const ObjectMap& map) {
   static constexpr const char* names[] = {"UvTransformMap", "TransformedMap", "PlanarMap",  "CylindricalMap", "SphericalMap",
                                           "TriplanarMap",   "MixMap",         "CheckerMap", "BricksMap"};
@@ -41,7 +41,7 @@ void warn_of_sum(const Component& owner, const char* first_member, const Ref<Obj
                  const Ref<ObjectMap>& second) {
   const Color a = first->constant(), b = second->constant();
   if (!a || !b || !owner.location_of().known()) return;
-  // The mean where eyes see: smooth spectra of saturated colours may well exceed 1 together far out.
+  // The mean over the visible range: at its ends the smooth spectra of saturated colours may well exceed 1 in sum.
   double sum = 0;
   int count = 0;
   for (float wavelength = 400; wavelength <= 700; wavelength += 5, ++count)

@@ -1,5 +1,5 @@
 #pragma once
-// What shaders ask of a map of numbers (a roughness, an exponent, a rotation).
+// Evaluation and checks of scalar maps (a roughness, an exponent, a rotation), for shaders.
 
 #include <fmt/format.h>
 
@@ -7,13 +7,13 @@
 
 namespace etendue {
 
-/// A map's number at a point, kept within [low, high] whatever the map holds; what is not a number becomes `low`.
+/// A map's value at a point, clamped to [low, high]; not-a-number becomes `low`.
 inline float scalar_at(const ObjectMap& map, const SurfacePoint& p, float low = 0, float high = 1) {
   const float x = map.scalar(p);
   return x > low ? std::min(x, high) : low;
 }
 
-/// Throws at the member when the map is missing, or is the same everywhere and out of range.
+/// Throws Error at the member if the map is missing, or if it is constant and out of range.
 inline void require_scalar(const Component& owner, const char* member, const Ref<ObjectMap>& map, float low = 0,
                            float high = 1) {
   if (!map) owner.fail(member, "a map or a number is needed");

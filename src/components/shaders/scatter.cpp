@@ -1,4 +1,4 @@
-// Scatter's answers for models that have nothing but local functions.
+// Scatter's public calls for models that define the local functions only.
 
 #include "etendue/scatter_answers.h"
 

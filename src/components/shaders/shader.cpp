@@ -1,4 +1,4 @@
-// What all shaders have in common: they have no members of their own.
+// The base class Shader: it has no members of its own.
 
 #include "etendue/shader.h"
 

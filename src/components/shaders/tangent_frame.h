@@ -1,13 +1,13 @@
 #pragma once
-// Which way a surface's brush strokes, threads or grooves run: the frame of anisotropic models.
+// The tangent frame of anisotropic models: the direction of a surface's brush strokes, threads or grooves.
 
 #include "etendue/scene_object.h"
 
 namespace etendue {
 
-/// The frame whose z is the shading normal and whose x lies along dpdu, made orthogonal to the normal and turned about it
-/// by `rotation` [turns], counter-clockwise seen from the front. Where the surface has no coordinates to follow (dpdu zero,
-/// along the normal or not finite), x is any direction, the same wherever the normal is.
+/// The frame whose z is the shading normal and whose x lies along dpdu, orthogonalized against the normal and rotated about it
+/// by `rotation` [turns], counter-clockwise seen from the front. Where dpdu cannot be used (zero, along the normal or not
+/// finite), x is an arbitrary direction that depends on the normal alone.
 inline Frame tangent_frame(const SurfacePoint& p, float rotation = 0) {
   const Normal3 n = p.shading_normal;
   Vector3 dpdu = p.dpdu;

@@ -1,6 +1,6 @@
 #pragma once
-// BoundedMap: maps that know how large their values may become. Media whose coefficients are maps need it: light is followed
-// through them by a bound of the extinction.
+// BoundedMap: interface of maps that have an upper bound of their values. Media whose coefficients are maps need it for the
+// majorant of the extinction (delta tracking).
 
 #include <algorithm>
 
@@ -10,15 +10,15 @@ namespace etendue {
 
 class BoundedMap {
  public:
-  /// No number of the map, and no colour of it that is asked for as a coefficient, is larger anywhere, of either sign.
-  /// Infinite: nobody knows.
+  /// An upper bound of the absolute values of the map's numbers, and of its spectra as coefficients, at all points. Infinite:
+  /// not known.
   virtual float bound() const = 0;
 
  protected:
   ~BoundedMap() = default;
 };
 
-/// The bound of any map, infinite where it cannot tell.
+/// The upper bound of any map; infinite if it is not known.
 inline float bound_of(const ObjectMap& map) {
   if (const Color all = map.constant()) {
     const ValueRange range = range_of(*all, ColorUse::coefficient);

@@ -20,7 +20,7 @@ void ColoredVolume::prepare_colors() {
   check_phase();
 }
 
-/// Whether it is more than 0 anywhere; fails when it is negative.
+/// Whether the spectrum is more than 0 anywhere; calls fail() if it is negative or infinite.
 bool ColoredVolume::check(const char* member, const Color& color, ColorUse use) const {
   if (!color) fail(member, "a number, a colour or a spectrum is needed");
   if (color->imaginary()) fail(member, "must be real; this is a complex index of refraction");

@@ -1,6 +1,6 @@
 #pragma once
-// ColoredVolume: what media have in common whose colours are the same everywhere, however dense they are: how their
-// coefficients are said.
+// ColoredVolume: base class of media whose coefficients at density 1 are the same everywhere, given as colours; the density may
+// vary.
 
 #include "etendue/core/spectral_function.h"
 #include "phased_volume.h"
@@ -35,10 +35,10 @@ class ColoredVolume : public PhasedVolume {
     describe_phase(d);
   }
 
-  /// Checks all of that.
+  /// Checks all of these members.
   void prepare_colors();
 
-  /// At density 1.
+  /// The coefficients at density 1.
   VolumeCoefficients colors(const Wavelengths& w) const {
     VolumeCoefficients c;
     if (extinction) {

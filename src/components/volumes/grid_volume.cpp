@@ -10,10 +10,10 @@
 namespace etendue {
 namespace {
 
-// With d(p) what the grid says at p and c the coefficients, each is c d(p), and the bound of the extinction that tracking needs
-// is the largest value of the grid, as what is between is a mean. An albedo given on a grid takes the place of the colour.
-// Values of three channels are read as colours, for each point after interpolation: RGB that is a coefficient becomes a
-// spectrum that nowhere exceeds twice the largest component.
+// With d(p) the value of the grid at p and c the coefficients at density 1, the coefficients at p are c d(p). The majorant of
+// the extinction is c times the largest value of the grid, as interpolated values are means. An albedo given on a grid replaces
+// the colour `albedo`. Values of three channels are RGB, converted to a spectrum at each point after interpolation: as a
+// coefficient the spectrum nowhere exceeds twice the largest component, so the majorant is then twice as large.
 class GridVolume final : public ColoredVolume {
  public:
   static void describe(Description<GridVolume>& d) {
@@ -124,7 +124,7 @@ class GridVolume final : public ColoredVolume {
   }
   Spectrum albedo_at(const Point3& unit, const Wavelengths& w) const {
     float v[3];
-    // Where there is no density the albedo does not matter.
+    // Outside the grid there is no density with `empty` and `cut`, so the albedo there does not matter.
     albedo_grid_.look_up(unit, filter, outside == Beyond::empty || outside == Beyond::cut ? Beyond::clamp : outside, v);
     if (albedo_grid_.channels == 1) return Spectrum(std::min(v[0], 1.0f));
     if (albedo_as == AlbedoUse::reflectance) return rgb_spectrum(*space_, v[0], v[1], v[2], ColorUse::reflectance, w);
@@ -133,7 +133,7 @@ class GridVolume final : public ColoredVolume {
 
   const RgbSpace* space_ = nullptr;
   VolumeGrid grid_, albedo_grid_;
-  float largest_ = 1;  // of what the coefficients are multiplied by
+  float largest_ = 1;  // upper bound of the factor d(p)
 };
 
 const Register<GridVolume> registered;

@@ -9,14 +9,16 @@
 namespace etendue {
 namespace {
 
-// With the density d and the maps' coefficients a and s, the medium absorbs d a and scatters d s. What it emits per distance is
+// With the density d and the maps' coefficients a and s, the absorption coefficient is d a and the scattering coefficient d s.
+// The emission per distance is
 //     d e + d a B,
-// e the map `emission` and B the map `glow`. Matter of one temperature that only absorbs is then, through a thickness t, as
-// bright as B (1 - exp(-d a t)): B is what it shines with where it is so thick that nothing is seen through it (Kirchhoff's
-// law, when B is Planck's radiance).
+// with e the map `emission` and B the map `glow`. A purely absorbing medium of uniform temperature and thickness t then has the
+// radiance B (1 - exp(-d a t)): B is the radiance of the medium where it is opaque (Kirchhoff's law, when B is Planck's
+// radiance).
 //
-// Tracking needs a bound of the extinction. It is the product and the sum of the maps' own (bounded_map.h), or a number from
-// the description; matter that would be denser than that number is made as dense as it, so that no map makes a picture wrong.
+// Tracking needs a majorant of the extinction. It is computed from the upper bounds of the maps (bounded_map.h), as the product
+// for density and coefficient and the sum for absorption and scattering; or it is the member `bound`. An extinction above
+// `bound` is reduced to `bound`, so that the majorant holds for any map and the picture is not wrong.
 class MapVolume final : public PhasedVolume {
  public:
   static void describe(Description<MapVolume>& d) {
@@ -125,7 +127,7 @@ class MapVolume final : public PhasedVolume {
 
   Spectrum majorant(const Wavelengths& w) const override {
     Spectrum most = extinction ? most_of(*extinction, w) : most_of(*absorption, w) + most_of(*scattering, w);
-    // A product of 0 and infinity: nothing is there.
+    // 0 times infinity is 0 here: there is no matter.
     most = map(most, [this](float m) { return m > 0 && density_bound_ > 0 ? m * density_bound_ * 1.00001f : 0; });
     if (bound > 0) most = map(most, [this](float m) { return std::min(m, bound * 1.00001f); });
     return most;
@@ -161,7 +163,7 @@ class MapVolume final : public PhasedVolume {
       if (!((p[k] >= low[k] && p[k] <= high[k]) || (p[k] >= high[k] && p[k] <= low[k]))) return false;
     return true;
   }
-  /// As dense as the bound, where it would be denser.
+  /// Scales the coefficients down to an extinction of `bound` where it would be larger.
   void thin(VolumeCoefficients& c) const {
     const Spectrum left = map(c.extinction(), [this](float s) { return s > bound ? bound / s : 1.0f; });
     c.absorption *= left;

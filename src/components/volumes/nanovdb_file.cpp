@@ -15,9 +15,9 @@
 // and simulation"; version 32 of the format, as in OpenVDB 9 to 12). All numbers are little endian.
 //     header of a segment, 16 bytes:   "NanoVDB0" or "NanoVDB2"; version (uint32: 11 bits major, 11 minor, 10 patch); number of
 //                                      grids (uint16); compression (uint16: 0 none, 1 zip, 2 blosc)
-//     for each grid, 176 bytes:        bytes of the grid (uint64), of it in the file (uint64), ...; at 136 bytes of its name
-//     (uint32)                         with the 0 at its end; behind all that the name
-//     the grids' bytes, one after another; with zip, how many compressed bytes (uint64) and these.
+//     for each grid, 176 bytes:        size of the grid (uint64), its size in the file (uint64), ...; at 136 the length of its
+//                                      name (uint32) with the 0 at its end; after these 176 bytes the name
+//     the grids' bytes, one after another; with zip, the number of compressed bytes (uint64) and the compressed bytes.
 
 namespace etendue {
 namespace {
@@ -35,7 +35,7 @@ T number_at(const unsigned char* bytes, size_t offset) {
   return v;
 }
 
-/// What the file says of its grids.
+/// Reads the entries of all grids of the file.
 std::vector<Entry> list_grids(RegularFile& file) {
   constexpr size_t header_size = 16, entry_size = 176, longest_name = 4096;
   std::vector<Entry> all;
@@ -99,7 +99,7 @@ std::vector<unsigned char> bytes_of(RegularFile& file, const Entry& entry) {
   if (entry.codec != 1) throw Error(fmt::format("it is compressed in a way that is not known ({})", entry.codec));
   std::uint64_t size = 0;
   file.read(&size, sizeof size);
-  // Deflate makes nothing smaller than by 1032.
+  // Deflate's compression ratio is at most 1032.
   if (size > entry.bytes_in_file || entry.bytes / 1033 > size) throw Error("what is compressed in it has no possible length");
   require_memory(double(entry.bytes) + double(size), "its grid");
   std::vector<unsigned char> packed(size), bytes(entry.bytes);

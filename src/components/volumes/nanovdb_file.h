@@ -1,5 +1,5 @@
 #pragma once
-// Grids in files of NanoVDB (.nvdb), which OpenVDB's files are converted to by `nanovdb_convert`.
+// Reading of grids from NanoVDB files (.nvdb), to which `nanovdb_convert` converts OpenVDB files.
 
 #include <string>
 
@@ -7,14 +7,14 @@
 
 namespace etendue {
 
-/// Whether a file is named as one.
+/// Whether a file's name ends in .nvdb.
 bool named_nanovdb(const std::string& path);
 
-/// The names of its grids, in their order. Throws Error with the reason alone.
+/// The names of a file's grids, in their order. Throws Error whose message is the reason alone, without the file's name.
 std::vector<std::string> nanovdb_grids(const std::string& path);
 
-/// The grid of this name, or the first when it is empty: dense, over the box of its active values. Throws Error with the reason
-/// alone, whatever the file holds.
+/// The grid of this name, or the first grid if the name is empty, as a dense grid over the box of its active values. Throws
+/// Error whose message is the reason alone; files with any content are safe to read.
 VolumeGrid read_nanovdb(const std::string& path, const std::string& name);
 
 }  // namespace etendue

@@ -18,20 +18,21 @@
 //     root          0 box of the active values' indices (6 int32, the last included); 24 how many entries (uint32);
 //                   28 the value where there is no entry; then the entries, 32 bytes each:
 //                   0 key; 8 offset of the child (int64; 0: none, the value is that of all 4096^3); 20 value
-//     upper node    32 which of 32^3 entries are ..., 4128 ... have children (bits); then the entries: an offset or a value
-//     lower node    32 and 544, the same for 16^3
-//     leaf          its values; of the types that are rounded: 15 number of bits, 80 least, 84 step, and 512 whole numbers
+//     upper node    32 mask of the 32^3 entries that are active (bits), 4128 mask of the entries that have children; then the
+//                   entries: an offset or a value
+//     lower node    32 and 544, the same masks for 16^3 entries; then the entries
+//     leaf          its values; for the quantized types: 15 number of bits, 80 least value, 84 step, and 512 whole numbers
 
 namespace etendue {
 namespace {
 
 constexpr std::int64_t most_cells = std::int64_t(1) << 30;
 
-/// Where things lie for a type of values.
+/// Sizes and offsets in the grid's bytes for a type of values.
 struct Layout {
   int channels;
   size_t root_size, entry_stride, leaf_table, leaf_size;
-  int log_bits;  ///< of rounded values, the logarithm to 2 of how many bits they have; -1: floats; -2: each leaf says it
+  int log_bits;  ///< of quantized values, log2 of their number of bits; -1: floats; -2: stored in each leaf
 };
 Layout layout_of(std::uint32_t type) {
   switch (type) {
@@ -45,7 +46,7 @@ Layout layout_of(std::uint32_t type) {
   }
 }
 
-/// What may be read of a grid.
+/// Bounds-checked access to the bytes of a grid.
 class Bytes {
  public:
   explicit Bytes(const std::vector<unsigned char>& bytes) : bytes_(bytes) {}
@@ -55,7 +56,7 @@ class Bytes {
     std::memcpy(&v, range(offset, sizeof v), sizeof v);
     return v;
   }
-  /// All that many bytes are there.
+  /// Pointer to `size` bytes at an offset. Throws Error unless all of them lie within the grid.
   const unsigned char* range(std::int64_t offset, size_t size) const {
     if (offset < 0 || std::uint64_t(offset) > bytes_.size() || size > bytes_.size() - std::uint64_t(offset))
       throw Error("it points beyond its end");
@@ -126,7 +127,7 @@ class DenseGrid {
     return {origin, {origin[0] + side - 1, origin[1] + side - 1, origin[2] + side - 1}};
   }
 
-  /// The box and the place of the grid that is made, with the background everywhere.
+  /// Sets size, box and memory of the dense grid, and fills it with the background value.
   void make_room(std::int64_t background) {
     double cells = 1;
     for (size_t k = 0; k < 3; ++k) cells *= double(box_.last[k] - box_.first[k] + 1);
@@ -142,7 +143,7 @@ class DenseGrid {
       for (size_t j = 0; j < 3; ++j)
         if (j != k && !(std::abs(matrix[3 * k + j]) <= 1e-6 * std::abs(scale)))
           throw Error("its grid is turned or sheared against its axes, which is not read here");
-      // Cells reach half a cell beyond their values.
+      // Values are at the centres of cells, so the box extends half a cell beyond the outermost values.
       double low = scale * (double(box_.first[k]) - 0.5) + translation[k],
              high = scale * (double(box_.last[k]) + 0.5) + translation[k];
       mirrored_[k] = low > high;
@@ -166,7 +167,7 @@ class DenseGrid {
     return &grid_.values[place * size_t(layout_.channels)];
   }
 
-  /// One value in all cells of a box.
+  /// Sets all cells of a box to one value.
   void fill(const IndexBox& where, std::int64_t value) {
     const IndexBox box = where.within(box_);
     if (box.empty()) return;
@@ -177,8 +178,8 @@ class DenseGrid {
         for (std::int64_t i = box.first[0]; i <= box.last[0]; ++i) std::copy_n(v, layout_.channels, cell(i, j, k));
   }
 
-  /// A node of side^3 entries, each a cube of `step`^3 cells. Only entries that reach into the box are looked at, so that the
-  /// time this takes is bounded by what is made.
+  /// Copies a node of side^3 entries, each a cube of `step`^3 cells. Only entries that overlap the box are visited, so that the
+  /// time is bounded by the size of the dense grid.
   void node(std::int64_t at, const Index& origin, std::int64_t side, std::int64_t step) {
     const IndexBox box = cube(origin, side * step).within(box_);
     if (box.empty()) return;

@@ -1,5 +1,5 @@
 #pragma once
-// The tree of values of a grid of NanoVDB.
+// Conversion of the tree of a NanoVDB grid to a dense grid.
 
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace etendue {
 
-/// Its values over the box of the active ones, from a grid's bytes in memory. No offset in them is believed. Throws Error with
-/// the reason alone.
+/// The values of a grid, given by its bytes in memory, over the box of its active values. All offsets in the bytes are checked.
+/// Throws Error whose message is the reason alone.
 VolumeGrid dense_grid(const std::vector<unsigned char>& bytes);
 
 }  // namespace etendue

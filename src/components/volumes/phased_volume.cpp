@@ -5,9 +5,9 @@
 
 namespace etendue {
 
-// A phase function knows h = 1 - cos(theta) alone, theta the angle between the ways light travels before and after. It is found
-// from the difference d of the two unit vectors as |d|^2 / 2, so that nothing cancels in a narrow peak. A negative anisotropy
-// is the same function of the angle to the opposite way.
+// A phase function is a function of h = 1 - cos(theta) alone, theta the angle between the directions of propagation before and
+// after scattering. h is computed from the difference d of the two unit vectors as |d|^2 / 2, so that nothing cancels in a
+// narrow peak. A negative anisotropy gives the same function of the angle to the opposite direction.
 float PhasedVolume::phase(const Point3&, const Vector3& out, const Vector3& in) const {
   if (phase_function) return phase_function->value(length_squared(in + out) / 2);
   return henyey_greenstein::value(std::abs(anisotropy), length_squared(in - peak(out)) / 2);

@@ -1,12 +1,12 @@
 #pragma once
-// PhasedVolume: media in which light turns by one phase function, alike everywhere, and that may differ in density.
+// PhasedVolume: base class of media with one phase function that is the same everywhere; the density may vary.
 
 #include "etendue/phase_function.h"
 #include "etendue/volume_shader.h"
 
 namespace etendue {
 
-/// A walk through denser matter [1/m] would not come to an end.
+/// The largest extinction [1/m] that media may have: in denser matter walks would not come to an end.
 inline constexpr float most_extinction = 1e12f;
 inline constexpr char too_dense[] = "the extinction may become {:g} per metre, which light cannot be followed through";
 
@@ -32,7 +32,8 @@ class PhasedVolume : public VolumeShader {
   void check_phase() const;
 
  private:
-  /// Where most of the light goes that came from `out`: straight on, or back.
+  /// The direction of the phase function's peak, given the direction `out` back along the path: -out (forward) or out
+  /// (backward).
   Vector3 peak(const Vector3& out) const { return anisotropy < 0 ? out : -out; }
 };
 

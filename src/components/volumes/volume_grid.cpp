@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t most_cells = std::uint64_t(1) << 31;
 
-/// Where cell i lies along an axis of n cells; -1: nowhere.
+/// The cell in [0, n) that cell i of an axis of n cells continues; -1: none, the value is 0.
 int wrapped(int i, int n, Beyond beyond) {
   if (i >= 0 && i < n) return i;
   switch (beyond) {
@@ -109,7 +109,7 @@ void VolumeGrid::look_up(const Point3& p, VoxelFilter filter, Beyond beyond, flo
   for (int k = 0; k < 3; ++k) {
     const float n = float(size[size_t(k)]);
     if ((beyond == Beyond::empty || beyond == Beyond::cut) && !(p[k] >= 0 && p[k] <= 1)) return;
-    // Far outside nothing is known of a float's place in a cell; within an int's reach it stays.
+    // Clamped to the range of an int; so far outside, floats do not resolve positions within a cell anyway.
     const float at = std::clamp(p[k] * n, -1e9f, 1e9f) - (filter == VoxelFilter::trilinear ? 0.5f : 0);
     if (!std::isfinite(at)) return;
     const float floor = std::floor(at);
@@ -183,7 +183,7 @@ void cut_negatives(const Component& of, const char* member, VolumeGrid& grid) {
     most = std::max(most, v);
   }
   if (!(least < 0)) return;
-  // Filters that overshoot, and programs that cut at 0 in another precision, leave such behind.
+  // Such values are left by filters that overshoot, and by programs that clamp at 0 in another precision.
   constexpr float rounding = 0.01f;
   if (least < -rounding * most) of.fail(member, fmt::format("it holds {}, and must not be negative", least));
   warn(fmt::format("{}.{}: numbers below 0, down to {}, are 0: they are less than {} of the largest", of.class_info().name,

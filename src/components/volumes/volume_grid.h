@@ -12,7 +12,7 @@
 
 namespace etendue {
 
-/// What is between the middles of cells, and what lies outside the unit cube.
+/// The interpolation between the centres of cells, and the continuation outside the unit cube.
 enum class VoxelFilter : std::uint8_t { nearest, trilinear };
 enum class Beyond : std::uint8_t { clamp, repeat, mirror, empty, cut };
 
@@ -22,29 +22,30 @@ struct VolumeGrid {
   std::vector<float> values;           ///< channels, x, y, z: the first runs fastest
   Point3 low{0, 0, 0}, high{1, 1, 1};  ///< the box that the file names
 
-  float largest() const;  ///< of either sign
+  float largest() const;  ///< the largest absolute value
   /// Writes `channels` numbers at a point of the unit cube's coordinates.
   void look_up(const Point3&, VoxelFilter, Beyond, float* out) const;
 };
 
-/// Reads a volume in Mitsuba's format (.vol), a NumPy array (.npy) of shape (nz, ny, nx) or (nz, ny, nx, 3), or a grid of
-/// NanoVDB (.nvdb) by its name, the first when that is empty. Throws Error with the reason alone.
+/// Reads a volume in Mitsuba's format (.vol), a NumPy array (.npy) of shape (nz, ny, nx) or (nz, ny, nx, 3), or a NanoVDB grid
+/// (.nvdb) by its name, the first grid if the name is empty. Throws Error whose message is the reason alone.
 VolumeGrid read_volume_grid(const std::string& path, const std::string& name = {});
-/// What is said of such files.
+/// These formats, for the descriptions of members.
 inline constexpr const char* grid_files =
     "a volume as Mitsuba has them (.vol), a NumPy array (.npy) of shape (nz, ny, nx), or NanoVDB (.nvdb; of an OpenVDB file, "
     "nanovdb_convert makes one)";
 
-// What components have grids from. Errors are of their members.
+// Functions by which components get grids from their members. Errors name the member.
 
-/// Of a member that names a file.
+/// The grid of a file that a member names.
 VolumeGrid grid_of_file(const Component&, const char* member, const FilePath&, const std::string& name = {});
-/// Of a list of numbers in the member, one channel or three, and how many there are along x, y and z.
+/// The grid of a member's list of numbers, with one channel or three, and the number of cells along x, y and z.
 VolumeGrid grid_of_list(const Component&, const char* member, const std::vector<int>& resolution,
                         const std::vector<float>& values);
-/// Densities and albedos are not negative: what is a little below 0, as filters leave it, becomes 0, told.
+/// For densities and albedos, which must not be negative: values slightly below 0, as filters leave them, are set to 0 with a
+/// warning; lower values are an error.
 void cut_negatives(const Component&, const char* member, VolumeGrid&);
-/// The box that a file names must have a volume when it counts.
+/// Fails unless the box that a file names has a finite, positive volume.
 void require_box(const Component&, const char* member, const VolumeGrid&);
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// What all participating media have in common: they have no members of their own.
+// The description of VolumeShader, the base class of all participating media; it has no members.
 
 #include "etendue/volume_shader.h"
 

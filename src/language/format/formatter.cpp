@@ -1,4 +1,4 @@
-// The layout of a description.
+// Formatter: the layout of a description.
 
 #include "formatter.h"
 
@@ -14,14 +14,14 @@ namespace {
 
 constexpr int step = 4;
 constexpr size_t comment_gap = 2;
-constexpr size_t widest_aligned = 100;  // comments behind longer lines are not lined up
+constexpr size_t widest_aligned = 100;  // comments after longer lines are not aligned
 
 struct Line {
   int indent = 0;
   std::string code, comment;
   size_t width() const { return size_t(indent) + characters(code); }
 
-  /// Of UTF-8: bytes that go on with a character do not count.
+  /// The number of characters of a UTF-8 text: continuation bytes do not count.
   static size_t characters(const std::string& text) {
     return size_t(
         std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
@@ -49,7 +49,7 @@ class Formatter {
  private:
   struct Bracket {
     char symbol;
-    int indent;  // of the line it was opened in
+    int indent;  // indentation of the line where it was opened
   };
 
   static bool is_word(const Token& token) {
@@ -59,7 +59,7 @@ class Formatter {
   static bool opens(const Token& token) { return token.is('{') || token.is('[') || token.is('('); }
   static bool closes(const Token& token) { return token.is('}') || token.is(']') || token.is(')'); }
 
-  /// Comments and ends of lines before a token.
+  /// Adds the comments and line ends before a token.
   void between(size_t begin, const Token& token) {
     int ends = 0;
     const std::string& text = source_.text;
@@ -87,13 +87,13 @@ class Formatter {
     lines_.push_back({indent(&token), {}, {}});
   }
 
-  /// One empty line for any number of them, but none at the beginning or behind an opening bracket.
+  /// Keeps one of several empty lines, but none at the beginning or after an opening bracket.
   void leave_blank(int ends) {
     const bool first = lines_.empty() || (!brackets_.empty() && lines_.back().comment.empty() && opens(previous_));
     if (ends > 1 && !first) lines_.emplace_back();
   }
 
-  /// Of a line that begins with this token; null: with a comment.
+  /// The indentation of a line that begins with this token; null: with a comment.
   int indent(const Token* token) const {
     if (token && closes(*token) && !brackets_.empty()) return brackets_.back().indent;
     const int base = brackets_.empty() ? 0 : brackets_.back().indent + step;
@@ -135,12 +135,12 @@ class Formatter {
     return true;
   }
 
-  /// Whether a bracket is that of a place in a list: it is joined to what it is a place in.
+  /// Whether a '[' begins an index: it directly follows the list.
   bool place(const Token& token) const {
     return token.joined && !is_word(previous_) && (previous_.type == TokenType::name || closes(previous_));
   }
 
-  /// Comments behind lines that follow each other stand below each other.
+  /// Joins the lines; comments after consecutive lines are aligned.
   std::string joined() const {
     std::string text;
     for (size_t i = 0; i < lines_.size();) {

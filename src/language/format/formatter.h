@@ -1,6 +1,5 @@
 #pragma once
-// A render description in one layout, whatever layout it had: the lines and the comments are the author's, indentation and
-// blanks are not.
+// Formats a render description in the standard layout: lines and comments are kept, indentation and blanks are replaced.
 
 #include <string>
 
@@ -8,8 +7,8 @@
 
 namespace etendue::language {
 
-/// The text in the layout of docs/language.md. Throws Errors where it cannot be read. What comes out is read as what went in,
-/// has the same comments, and comes out again as it is: this is verified, and Error thrown if it is not so.
+/// The text in the layout of docs/language.md. Throws Errors if it cannot be parsed. The result has the same syntax and
+/// comments, and formatting it again changes nothing; this is verified, and Error is thrown otherwise.
 std::string formatted(const Source&);
 
 }  // namespace etendue::language

@@ -1,5 +1,5 @@
 #pragma once
-// Whether two texts were read as the same, wherever in them it stands.
+// Compares the syntax of two texts, regardless of locations.
 
 #include "language/syntax.h"
 

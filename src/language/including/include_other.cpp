@@ -1,4 +1,4 @@
-// include of another program's file: its names, its parameters, and its Job.
+// Loader: include of another program's file, with its names, its parameters, and its Job.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace etendue::language {
 
 namespace {
 
-/// In a file of another program: where it was included.
+/// The part of a trail that names the include, for errors in a file of another program.
 class OtherTrail : public Trail {
  public:
   explicit OtherTrail(const Label& file) : Trail(nullptr), file_(file) {}
@@ -24,7 +24,8 @@ class OtherTrail : public Trail {
   const Label& file_;
 };
 
-/// A value as a parameter of another program's file is written; nothing: there is no such thing as a colour or a part there.
+/// The text of a value as a parameter of another program's file; nothing: the value is of a type that cannot be one, such as a
+/// colour.
 std::optional<std::string> parameter_text(const Value& value) {
   const auto number = [](double x) { return number_text(x, 1, false, true); };
   if (const auto* text = value.as<std::string>()) return *text;
@@ -54,12 +55,12 @@ bool Loader::include_other(Inclusion& inclusion, const std::string& path, Space&
   return true;
 }
 
-// What `with` and -D give to it. Of -D those that are no params of descriptions.
+// The parameters of an included file, from `with` and from those -D options that are not params of descriptions.
 std::vector<std::pair<std::string, std::string>> Loader::parameters_of(Other& other) {
   std::vector<std::pair<std::string, std::string>> all;
   for (Definition& given : other.replaced) {
     const std::optional<Value> value = evaluator_.evaluate_in(*other.written_in, given.value);
-    if (!value) continue;  // told
+    if (!value) continue;  // already reported
     const std::optional<std::string> text = parameter_text(*value);
     if (text)
       all.emplace_back(given.name.text, *text);
@@ -80,7 +81,7 @@ std::vector<std::pair<std::string, std::string>> Loader::parameters_of(Other& ot
 
 void Loader::read_other(Other& other, bool stands_for_itself) {
   const auto parameters = parameters_of(other);
-  if (!diagnostics_.empty()) return evaluator_.set_incomplete();  // its names are not there, which is no news
+  if (!diagnostics_.empty()) return evaluator_.set_incomplete();  // its names are missing, but that is not another error
   const OtherTrail trail(other.file);
   const Trail* outer = std::exchange(diagnostics_.trail, &trail);
   const auto failed = [&](const Error& e) { diagnostics_.add(located(e, other.file.at)); };
@@ -90,7 +91,7 @@ void Loader::read_other(Other& other, bool stands_for_itself) {
     for (auto& [name, value] : other.read->names(other.named)) {
       const auto* part = value.as<Ref<Component>>();
       const Location at = part && *part ? (*part)->location_of() : Location{};
-      // Not where the include is: a name of that file that nothing uses needs no warning.
+      // The location is not the include: names of that file that nothing uses need no warning.
       const Label label{name, at.known() ? at : Location{intern(other.path), 0, 0}};
       if (const bool* used = evaluator_.define_part(label, std::move(value), *other.space)) other.used.push_back(used);
     }

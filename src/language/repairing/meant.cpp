@@ -1,4 +1,4 @@
-// What was probably meant by what other languages write, so that the first error says how it is written here.
+// Parser: hints for the syntax of other languages, so that the first error shows how it is written here.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ bool is_hexadecimal(std::string_view text) {
   return std::ranges::all_of(text, [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; });
 }
 
-/// "#ff0000" at the beginning of a text; "" when there is no such colour.
+/// A colour such as "#ff0000" at the beginning of a text; "" if there is none.
 std::string_view colour_at(std::string_view text) {
   constexpr size_t size = 7;
   if (text.size() < size || !is_hexadecimal(text.substr(1, size - 1))) return {};
@@ -38,7 +38,8 @@ std::string Parser::meant() const {
   return {};
 }
 
-// `let a = 1`, `def f(x) = …`: names and functions are defined without a word before them. Goes on with the definition.
+// `let a = 1`, `def f(x) = …`: definitions have no keyword before them. Reports the word; parsing continues with the
+// definition.
 bool Parser::skip_foreign_word(const Token& word) {
   if (token_.type != TokenType::name || token_.first_in_line || !lexer_.followed_by("=(:")) return false;
   constexpr const char* words[] = {"let", "def", "var",    "const", "function", "func",
@@ -49,7 +50,7 @@ bool Parser::skip_foreign_word(const Token& word) {
   return true;
 }
 
-// white: Lambertian { … } outside of all blocks. The value is read as if the '=' were there.
+// white: Lambertian { … } outside of all blocks. The value is parsed as if the '=' were there.
 void Parser::definition_by_colon(Document& document) {
   Token name = take();
   report(fmt::format("a name is defined by '=', not ':': write {} = …", name.text), token_.at);
@@ -58,7 +59,7 @@ void Parser::definition_by_colon(Document& document) {
   valued(document, std::move(name), false);
 }
 
-// Where a value must follow: a '#' that was meant as one hides it, and what follows in the next line is another member.
+// Called where a value is expected: if a '#' that was meant as a colour hides it, the next token belongs to the next member.
 void Parser::require_value_before_comment() {
   if (!token_.comment.known()) return;
   const bool another = token_.type == TokenType::name && (lexer_.followed_by(":") || lexer_.followed_by_assignment());

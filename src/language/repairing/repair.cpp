@@ -1,4 +1,4 @@
-// What was probably meant where a bracket is missing, so that one mistake gives one error.
+// Parser: guesses of the meaning where a bracket is missing, so that one mistake gives one error.
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@ const ClassInfo* class_of(const std::string& name) { return name.empty() ? nullp
 
 }  // namespace
 
-// Behind the name of a class without its '{': a member of it stands there. On a line of its own that may as well be a member of
-// the block outside, unless only the class knows it.
+// Whether a '{' is missing after the name of a class: one of its members follows. In a new line this could also be a member of
+// the enclosing block, so it must be a member of the class only.
 bool Parser::misses_brace(const std::string& class_name) {
   if (token_.is('}') && open_.empty()) return misses_both_braces_but_one(class_name);
   if (token_.type != TokenType::name || !lexer_.followed_by(":")) return false;
@@ -27,21 +27,20 @@ bool Parser::misses_brace(const std::string& class_name) {
   return !outside || !outside->find(token_.text);
 }
 
-// Before a '}' that may end the class, as in "Sphere }", or the block that it stands in. The member that follows, behind
-// further
-// '}', shows how many blocks have ended.
+// Before a '}' that may close either the class without a '{', as in "Sphere }", or the enclosing block. The member that
+// follows, after further '}', shows how many blocks were closed.
 bool Parser::misses_both_braces_but_one(const std::string& class_name) {
   if (blocks_.empty() || !class_of(class_name)) return false;
   int more = 0;
   const std::string next = lexer_.following_member(more);
   if (next.empty() || size_t(more) >= blocks_.size()) return false;
-  const size_t level = blocks_.size() - size_t(more);  // of blocks that are open if the first '}' ends the class
+  const size_t level = blocks_.size() - size_t(more);  // open blocks if the first '}' closes the class
   const ClassInfo* inside = class_of(blocks_[level - 1].class_name);
   const ClassInfo* outside = level < 2 ? nullptr : class_of(blocks_[level - 2].class_name);
   return inside && inside->find(next) && (!outside || !outside->find(next));
 }
 
-// Some programs have classes of two words, such as "Principled BSDF".
+// Some programs have two-word class names, such as "Principled BSDF".
 bool Parser::two_words(const Token& class_name) {
   if (token_.type != TokenType::name || token_.first_in_line || !lexer_.followed_by("{")) return false;
   const std::string both = class_name.text + " " + token_.text;
@@ -67,7 +66,7 @@ Node Parser::component_without_brace(const Token& class_name) {
   return node;
 }
 
-// Where a member's name should stand: what stands there goes on with the value before, as with a list that lacks its '['.
+// Where a member name is expected, but the current token continues the previous value, as for a list without its '['.
 bool Parser::misses_bracket(Node& component) {
   if (component.children.empty() || token_.is('}') || token_.is(';') || token_.type == TokenType::bad) return false;
   if (!meant().empty()) return false;
@@ -81,13 +80,13 @@ bool Parser::misses_bracket(Node& component) {
   value = {};
   value.type = NodeType::bad;
   take();
-  // To the ']' that closes the list, or the end of the line, or of the block.
+  // Skips to the ']' that closes the list, or the end of the line or of the block.
   skip({}, true, [&] { return token_.first_in_line || token_.is('}') || token_.is(']') || token_.is(')'); });
   if (token_.is(']') || token_.is(')')) skip_stray_bracket();
   return true;
 }
 
-// At a bracket that closes nothing: with the unit behind it, and what separates it from the next member.
+// Skips a superfluous closing bracket, the unit after it, and the separator before the next member.
 void Parser::skip_stray_bracket() {
   take();
   if (token_.type == TokenType::name && !token_.first_in_line && !lexer_.followed_by(":")) take();

@@ -1,5 +1,5 @@
-// Names, classes, members, units and functions in what may be evaluated often, or never: what there is not is told once,
-// whatever conditions and arguments turn out to be.
+// Evaluator: checks of names, classes, members, units and functions in expressions that may be evaluated many times, or never.
+// Each error is reported once, whatever the values of conditions and arguments.
 
 #include <fmt/format.h>
 
@@ -119,7 +119,7 @@ bool Evaluator::check_component(Node& node, const Bound* bound, const Context& c
   const ClassInfo* info = Registry::instance().find(node.text);
   bool good = info && !node.damaged;
   if (!info && !incomplete_)
-    reporting(node.at, [&] { return Value(Registry::instance().create(node.text)); });  // throws: there is none
+    reporting(node.at, [&] { return Value(Registry::instance().create(node.text)); });  // throws Error: there is no such class
   for (size_t i = 0; i < node.children.size(); ++i) {
     const Member* member = info ? info->find(node.labels[i].text) : nullptr;
     if (info && !member) {

@@ -1,4 +1,4 @@
-// Lists by comprehension, and how much may be made by them.
+// Evaluator: list comprehensions, and limits of the work in them.
 
 #include <fmt/format.h>
 
@@ -9,16 +9,16 @@
 
 namespace etendue::language {
 
-/// One run of a comprehension.
+/// The state of one evaluation of a comprehension.
 struct Evaluator::Loop {
   Node& node;
   const Context& context;
-  /// The lists of clauses that do not depend on the names before them; made once.
+  /// The lists of clauses that do not depend on loop variables; evaluated once.
   std::vector<std::optional<Value>> lists;
-  std::vector<int> heights;  // of what is in them
+  std::vector<int> heights;  // of the component trees in them
   Value::List entries = {};
-  size_t turns = 0;   // of the innermost loop
-  size_t values = 0;  // in the entries, with all lists within them
+  size_t turns = 0;   // iterations of the innermost loop
+  size_t values = 0;  // values in the entries, with nested lists
 
   size_t clauses() const { return node.labels.size(); }
   bool is_condition(size_t clause) const { return node.labels[clause].text.empty(); }
@@ -41,13 +41,13 @@ class Evaluator::LoopTrail : public Trail {
 
 namespace {
 
-/// Whether a name stands in an expression; `looked_at` grows by the nodes that were asked.
+/// Whether one of the names occurs in an expression; `looked_at` is increased by the number of visited nodes.
 bool mentions(const Node& node, const std::vector<std::string_view>& names, size_t& looked_at) {
   std::vector<const Node*> rest = {&node};
   for (; !rest.empty(); ++looked_at) {
     const Node& next = *rest.back();
     rest.pop_back();
-    // A text of JSON may be any expression.
+    // A JSON string may be any expression.
     if (next.type == NodeType::json_text && !names.empty()) return true;
     if (next.type == NodeType::name && std::find(names.begin(), names.end(), next.text) != names.end()) return true;
     for (const Node& child : next.children) rest.push_back(&child);
@@ -57,7 +57,7 @@ bool mentions(const Node& node, const std::vector<std::string_view>& names, size
 
 }  // namespace
 
-// What is given up here is given up as a whole: whatever was made until then is not used.
+// When a limit is exceeded, everything is given up: results so far are not used.
 void Evaluator::charge(size_t steps, Location at) {
   steps_ += std::min(steps, step_limit);
   if (steps_ <= step_limit) return;
@@ -85,11 +85,11 @@ std::optional<Value> Evaluator::comprehension(Node& node, const Context& context
   return reporting(node.at, [&] { return packed(std::move(loop.entries), node.at); });
 }
 
-// Makes the lists that can be made before, and refuses what would be too much before anything is made of them.
+// Evaluates the lists that do not depend on loop variables, and rejects too many iterations in advance.
 bool Evaluator::foresee(Loop& loop) {
   std::vector<std::string_view> names;
   double turns = 1;
-  bool known = true;  // so far every loop goes as often as its list is long
+  bool known = true;  // whether the number of iterations is known so far
   for (size_t i = 0; i < loop.clauses(); ++i) {
     size_t looked_at = 0;
     const bool condition = loop.is_condition(i), free = !condition && !mentions(loop.of(i), names, looked_at);
@@ -111,7 +111,7 @@ bool Evaluator::foresee(Loop& loop) {
   return false;
 }
 
-// False: something was wrong, in one turn at least; the others would mostly say the same.
+// Runs the clauses from `clause` on. Returns false after an error in one iteration, since others would mostly repeat it.
 bool Evaluator::run(Loop& loop, size_t clause) {
   if (clause == loop.clauses()) return take_entry(loop);
   if (loop.is_condition(clause)) {
@@ -154,7 +154,7 @@ bool Evaluator::take_entry(Loop& loop) {
   }
   std::optional<Value> entry = evaluate(loop.node.children[0], loop.context);
   if (!entry) return false;
-  if (!entry->as<Number>()) charge(8, loop.node.at);  // numbers are packed in the end, anything else takes memory
+  if (!entry->as<Number>()) charge(8, loop.node.at);  // numbers are packed at the end, other values take memory
   loop.values += value_count(*entry);
   if (loop.values > nested_limit) {
     diagnostics_.add(

@@ -1,4 +1,4 @@
-// Functions that a description defines.
+// Evaluator: functions defined in a description.
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ class Evaluator::CallTrail : public Trail {
 
 namespace {
 
-/// "height, radius = …"
+/// The signature for messages: "tree(height, radius = …)"
 std::string signature(const Definition& function) {
   std::string text;
   for (const Parameter& p : function.parameters) text += (text.empty() ? "" : ", ") + p.name.text + (p.standard ? " = …" : "");
@@ -44,14 +44,14 @@ void Evaluator::unknown_function(const Node& node) {
     if (e.definition.function) own.push_back(name_seen_from(e, *space_));
   const std::string near = suggestion(node.text, own);
   if (near.empty())
-    reporting(node.at, [&] { return call(node.text, {}, node.at, allow_files_); });  // says what else may be meant
+    reporting(node.at, [&] { return call(node.text, {}, node.at, allow_files_); });  // reports suggestions
   else
     diagnostics_.add(Error(fmt::format("there is no function '{}'{}", node.text, near), node.at));
 }
 
-// In the order of the parameters; null where the default stands.
+// The arguments in the order of the parameters; null for parameters with their default value.
 std::optional<std::vector<Node*>> Evaluator::arguments_of(const Entry& entry, Node& call) {
-  if (entry.definition.value.type == NodeType::bad) return std::nullopt;  // its parameters may not be known either
+  if (entry.definition.value.type == NodeType::bad) return std::nullopt;  // its parameters may be unknown, too
   const std::vector<Parameter>& parameters = entry.definition.parameters;
   std::vector<Node*> found(parameters.size());
   std::vector<std::string> known;
@@ -91,7 +91,7 @@ std::optional<std::vector<Node*>> Evaluator::arguments_of(const Entry& entry, No
   return good ? std::optional(found) : std::nullopt;
 }
 
-// A value, and how deep what it is made of is.
+// Evaluates a node; `height` is the height of the component tree in the value.
 std::optional<Value> Evaluator::measured(Node& node, const Context& context, int& height) {
   const int outer = std::exchange(reach_, depth_);
   std::optional<Value> value = evaluate(node, context);
@@ -133,7 +133,7 @@ std::optional<Value> Evaluator::call_own(Entry& entry, Node& node, const Context
   ++repeating_;
   ++calls_;
   diagnostics_.trail = &trail;
-  // Defaults may be made of the parameters before them.
+  // Defaults may depend on the parameters before them.
   for (size_t i = 0; good && i < locals.size(); ++i) {
     if (!(*given)[i]) {
       std::optional<Value> value = measured(*parameters[i].standard, {}, locals[i].height);
@@ -151,7 +151,7 @@ std::optional<Value> Evaluator::call_own(Entry& entry, Node& node, const Context
   return value;
 }
 
-// count(list): how many entries it has.
+// count(list): the number of its entries.
 std::optional<Value> Evaluator::count(Node& node, const Context& context) {
   if (node.children.size() != 1 || node.children[0].type == NodeType::argument) {
     diagnostics_.add(Error(fmt::format("expects count(list); {} arguments were given", node.children.size()), node.at));

@@ -1,4 +1,4 @@
-// Conditions, ranges and places in lists.
+// Evaluator: conditions, ranges and indices of lists.
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@ namespace etendue::language {
 
 namespace {
 
-/// Below, equal or above: -1, 0, 1.
+/// -1 for less, 0 for equal, 1 for greater.
 int order(double a, double b) { return a < b ? -1 : (a > b ? 1 : 0); }
 
 bool holds(const std::string& operation, int order) {
@@ -22,7 +22,7 @@ bool holds(const std::string& operation, int order) {
   return operation == ">" ? order > 0 : order >= 0;
 }
 
-/// A whole number that a double counts exactly; else none.
+/// The value as an integer, if it is one of at most 2^53; otherwise nothing.
 std::optional<std::int64_t> whole(const Value& value) {
   const auto* number = value.as<Number>();
   if (!number || number->dimension != Dimension::none || std::abs(number->value) > 0x1p53) return std::nullopt;
@@ -115,7 +115,7 @@ std::optional<bool> Evaluator::truth(Node& node, const Context& context, const c
   return std::nullopt;
 }
 
-// and, or, not. What decides is not looked behind; that there are the names behind it is asked all the same.
+// and, or, not. Evaluation stops at the operand that decides; the names in later operands are checked all the same.
 std::optional<Value> Evaluator::connection(Node& node, const Context& context) {
   if (repeating_ == 0 && !check(node, nullptr, context)) return std::nullopt;
   if (node.type == NodeType::inversion) {
@@ -148,7 +148,7 @@ std::optional<Value> Evaluator::index(Node& node, const Context& context) {
   }
   const std::optional<Value> place = evaluate(node.children[1], plain);
   if (!list || !place) return std::nullopt;
-  // The list may lie in a variable that is moved while the place is evaluated: it is asked for again.
+  // The evaluation of the index may move the stored list, so it is looked up again.
   if (!made) list = stored(node.children[0]);
   return reporting(node.at, [&] {
     const size_t size = list_size(*list, node.at);

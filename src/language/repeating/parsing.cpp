@@ -1,4 +1,5 @@
-// What makes a description scale: functions, files with parameters, lists by comprehension, values by a condition.
+// Parser: the constructs that make large descriptions possible: functions, files with parameters, list comprehensions,
+// conditionals.
 
 #include <fmt/format.h>
 
@@ -8,7 +9,7 @@
 
 namespace etendue::language {
 
-// tree(height, radius = 1 m) = …, from the bracket on.
+// Parses tree(height, radius = 1 m) = …, from the bracket on.
 void Parser::function(Document& document, const Token& name) {
   Definition made{{name.text, name.at}, false, {}, true};
   try {
@@ -19,7 +20,7 @@ void Parser::function(Document& document, const Token& name) {
     made.value = expression();
     if (!may_be_defined(name)) return;
   } catch (const Failed&) {
-    // The name is known all the same, or every use of it would be reported as well.
+    // The name is defined all the same, so that its uses are not reported as well.
     made.value.type = NodeType::bad;
     document.definitions.push_back(std::move(made));
     throw;
@@ -56,14 +57,14 @@ void Parser::parameters(Definition& made) {
   take();
 }
 
-// Behind the word: "file" with { param: value } as name.
+// Parses, after `include`: "file" with { param: value } as name.
 void Parser::inclusion(Document& document) {
   Inclusion made;
   made.path = path_statement("the file to include, in quotes");
   try {
     conditions(made);
   } catch (const Failed&) {
-    // Its names are known all the same, or every use of them would be reported as well.
+    // Its names are defined all the same, so that their uses are not reported as well.
     made.replaced.clear();
     document.includes.push_back(std::move(made));
     throw;
@@ -71,11 +72,12 @@ void Parser::inclusion(Document& document) {
   document.includes.push_back(std::move(made));
 }
 
-// with { param: value } as name
+// Parses: with { param: value } as name
 void Parser::conditions(Inclusion& made) {
   if (token_.is_word("with") && lexer_.followed_by("{")) {
     take();
-    // The block is read as that of a component is, and must be whole: half of the values would give wrong errors elsewhere.
+    // The block is parsed like that of a component. It must be complete: with some of the values only, wrong errors would
+    // follow.
     Node block = component(Token{TokenType::name, 0, false, false, 0, {}, token_.at, 0});
     if (block.damaged) throw Failed{};
     for (size_t i = 0; i < block.children.size(); ++i)
@@ -90,7 +92,7 @@ void Parser::conditions(Inclusion& made) {
   }
 }
 
-// if condition then value else value. Its words may begin lines.
+// Parses: if condition then value else value. `then` and `else` may begin new lines.
 Node Parser::conditional() {
   const Level level(*this, token_.at);
   Node node;
@@ -108,7 +110,7 @@ Node Parser::conditional() {
   return node;
 }
 
-// At the first `for`, behind the entry of a list.
+// Parses the clauses, from the first `for` after the entry of a list.
 void Parser::comprehension(Node& list) {
   if (list.children.size() > 1) fail("a list by 'for' has one entry before it: put them in brackets of their own", token_.at);
   list.type = NodeType::comprehension;
@@ -129,7 +131,7 @@ void Parser::comprehension(Node& list) {
       take();
     }
     list.labels.push_back(std::move(label));
-    // An "if … then" would be a value, and stands in brackets here.
+    // An "if … then" would be a conditional, and needs brackets here.
     list.children.push_back(loop ? expression() : disjunction());
     if (!loop && token_.is('=')) fail("values are compared by '==', not '='", token_.at);
   }

@@ -1,4 +1,4 @@
-// A document's text and the render that follows it.
+// Document: the text, and the render that is updated after each edit.
 
 #include "document.h"
 
@@ -12,7 +12,7 @@ namespace etendue::studio {
 
 namespace {
 
-/// What Render::edit says of a circle, which there may be between two edits of several.
+/// The message of Render::edit for a cyclic component graph, which may arise between several edits applied one by one.
 constexpr std::string_view a_part_cannot_hold_itself = "a part cannot hold itself";
 
 }  // namespace
@@ -52,7 +52,7 @@ void Document::require_allowed(const std::vector<NamedFile>& files) const {
   if (!errors.empty()) throw Errors(std::move(errors));
 }
 
-// ---- parts ------------------------------------------------------------------------------------------------------------------
+// ---- components ------------------------------------------------------------------------------------------------------------
 
 int Document::id_of(const Component& part) const {
   const auto found = ids_.find(&part);
@@ -75,7 +75,7 @@ const std::vector<Document::Use>& Document::uses(const Component& part) const {
   return found == uses_.end() ? none : found->second;
 }
 
-// Parts keep their numbers as long as they live; no number is given twice.
+// Components keep their ids for their lifetime; no id is used twice.
 void Document::number_parts() {
   components_ = components_of(job());
   std::unordered_map<const Component*, int> ids;
@@ -100,16 +100,17 @@ void Document::number_parts() {
     }
 }
 
-// ---- following the text -----------------------------------------------------------------------------------------------------
+// ---- updating the render ---------------------------------------------------------------------------------------------------
 
-/// A new render, of a job none of whose parts was rendered before.
+/// Replaces the render by one of a job none of whose components were rendered before.
 void Document::replace_render(Ref<Job> job) {
   auto made = std::make_shared<Render>(std::move(job), settings_);
   const std::lock_guard lock(render_guard_);
   render_ = std::move(made);
 }
 
-/// Errors have places in the new text, so parts know theirs before anything can fail.
+/// Applies the edits of a merge to the render. The components get their locations in the new text first, because errors refer
+/// to that text.
 void Document::edit_render(Merge& merge) {
   const auto exchange_origins = [&] {
     for (const auto& [now, old] : merge.old_of) std::swap(const_cast<Component*>(now)->origin, old->origin);
@@ -125,7 +126,7 @@ void Document::edit_render(Merge& merge) {
   for (const auto& [now, old] : merge.old_of) old_origins_.push_back(std::move(const_cast<Component*>(now)->origin));
 }
 
-/// Of the parts: those whose values differ, and those in whose text something was changed.
+/// The ids of components whose values were edited, or whose text was changed.
 std::vector<int> Document::concerned(const Merge& merge, const TextChange& change) const {
   std::vector<int> list;
   for (const Edit& edit : merge.edits) list.push_back(id_of(*edit.component));
@@ -151,7 +152,8 @@ Applied Document::follow(const std::string& text, const std::map<std::string, st
     return result;
   }
 
-  // Which old part a new one is, by where it stood before the change; those of other files stand where they did.
+  // Finds the old component that a new one corresponds to, by its location before the change; locations in other files are
+  // unchanged.
   const Outline& fresh = *next;
   std::unordered_map<size_t, Component*> by_begin;
   std::map<std::tuple<std::string_view, int, int>, Component*> elsewhere;
@@ -187,7 +189,7 @@ Applied Document::follow(const std::string& text, const std::map<std::string, st
   try {
     edit_render(merge);
   } catch (const Error& error) {
-    // Parts that change places with what holds them cannot be edited one by one: then all is made anew.
+    // Edits that exchange a component with its own holder cannot be applied one by one: then a new render is made.
     anew = std::string_view(error.what()).ends_with(a_part_cannot_hold_itself);
     if (!anew) throw;
   }
@@ -219,7 +221,7 @@ Applied Document::apply(const std::string& text, const EditNote& note) {
   const TextChange& change = applied.change;
   Step step{change, before.substr(change.begin, change.end - change.begin), note.label, note.merge};
   if (!note.merge.empty() && !undo_.empty() && undo_.back().merge == note.merge) {
-    // One change for both: what led from the text before the first to that after the last.
+    // Both edits become one step, from the text before the first to the text after the second.
     const Step& first = undo_.back();
     before = applied_to(before, backward(first));
     const TextChange whole = difference(before, text);
@@ -264,7 +266,7 @@ Applied Document::set_overrides(const std::map<std::string, std::string>& overri
   }
   const int revision = revision_;
   Applied applied = follow(text(), all);
-  revision_ = revision;  // the text is the same
+  revision_ = revision;  // the text has not changed
   overrides_ = std::move(all);
   return applied;
 }

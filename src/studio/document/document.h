@@ -1,6 +1,6 @@
 #pragma once
-// A description that is edited: its text, which is the truth, the job that was made of it, and the job's render. Every edit is
-// one of the text; the render follows by the edits that lead from its job to that of the new text (merge.h).
+// Document: a description that is edited, its job, and the job's render. Its text is the primary data: every edit is a change
+// of the text, and the render is updated by the edits that lead from its job to the job of the new text (merge.h).
 
 #include <array>
 #include <map>
@@ -21,50 +21,51 @@
 
 namespace etendue::studio {
 
-/// How an edit is to be remembered.
+/// How an edit is stored in the undo list.
 struct EditNote {
   std::string label;  ///< "edit radius"
-  std::string merge;  ///< edits that follow one another with the same text here, which is not empty, are one step of undo
+  std::string merge;  ///< consecutive edits with the same nonempty text here are merged into one undo step
 };
 
-/// What an edit came to.
+/// The effects of an edit.
 struct Applied {
-  TextChange change;            ///< of the text before, in bytes
-  bool structure = false;       ///< parts came, went or were put elsewhere
-  std::vector<int> components;  ///< otherwise: those whose members differ, or are written otherwise
+  TextChange change;            ///< relative to the text before, in bytes
+  bool structure = false;       ///< components were added, removed or moved
+  std::vector<int> components;  ///< otherwise: the components whose members or text changed
 };
 
-/// Used by one thread at a time; only `render` may be asked by any.
+/// Used by one thread at a time, except `render`, which any thread may call.
 class Document {
  public:
-  /// What edits bring into the text may name files of these folders alone, and those that it named when it was opened.
+  /// Texts brought in by edits may name files only in these folders; files named when the document was opened stay allowed.
   Document(RenderSettings settings, const Folders& folders) : settings_(std::move(settings)), folders_(&folders) {}
 
-  /// A file's text, as a document begins with it.
+  /// The initial text of a document, from a file.
   struct Source {
     std::string file, text;           ///< a .json is rewritten as an .etd, which is not saved yet
-    std::optional<std::string> disk;  ///< what the file holds; none for one that was rewritten
+    std::optional<std::string> disk;  ///< contents of the file; none for a .json that was rewritten
   };
-  /// Throws Error, or Errors for a .json, when it cannot be read.
+  /// Throws Error, or Errors for a .json, if the file cannot be read.
   static Source read(const std::string& file);
-  /// Reads what the text names, too, and prepares the render. What is wrong with it leaves a draft and no render.
+  /// Also reads the files that the text names, and prepares the render. If the text has errors, it becomes a draft without a
+  /// render.
   void open(Source);
   void open(const std::string& file) { open(read(file)); }
-  /// The smallest description that can be rendered, in a folder.
+  /// Starts with the smallest description that can be rendered, in a folder.
   void create(const std::string& folder);
-  /// Whether its file holds something else than was read or written there last, or is gone.
+  /// Whether the file no longer has the contents last read or written, or was deleted.
   bool changed_on_disk() const;
   void save(const std::string& file);
-  /// Writes the text, or what was typed last, beside its file under a name that is free; that name.
+  /// Writes the text, or the draft, to a new file next to its file; returns the path.
   std::string save_aside() const;
-  /// Reads all files that it names anew.
+  /// Loads all files that the description names again.
   void reload();
 
-  /// Whether it holds a document at all: not before it was opened or created.
+  /// Whether it has a document: false before `open` or `create`.
   bool begun() const { return bool(outline_); }
   const std::string& file() const { return file_; }
   const std::string& folder() const { return folder_; }
-  /// What messages call the text.
+  /// The name of the text in messages.
   const char* name() const { return name_; }
   bool valid() const { return bool(render()); }
   bool changed() const { return text() != saved_text_ || draft_.has_value(); }
@@ -77,7 +78,7 @@ class Document {
   std::shared_ptr<Render> render() const;
   const Job& job() const { return render()->job(); }
 
-  /// A text that was typed and is not valid.
+  /// A text that was typed and has errors.
   struct Draft {
     std::string text;
     std::vector<Error> errors;
@@ -86,14 +87,14 @@ class Document {
   void set_draft(std::string text, std::vector<Error> errors) { draft_ = Draft{std::move(text), std::move(errors)}; }
   void drop_draft();
 
-  // ---- parts ----------------------------------------------------------------------------------------------------------------
+  // ---- components ----------------------------------------------------------------------------------------------------------
 
   int id_of(const Component&) const;
-  /// Throws Error when there is none.
+  /// Throws Error if there is no such component.
   Ref<Component> component(int id) const;
-  /// All, holders before what they hold.
+  /// All components, holders before the components they hold.
   const std::vector<Ref<Component>>& components() const { return components_; }
-  /// What is written in this text for a part; null for what is not.
+  /// The syntax node of a component in this text; null if it is not written here.
   const language::Node* written(const Component&) const;
   struct Use {
     int holder = 0;
@@ -104,7 +105,7 @@ class Document {
 
   // ---- editing --------------------------------------------------------------------------------------------------------------
 
-  /// Makes the text another one. Throws Error or Errors, with all as it was, when it is not valid.
+  /// Replaces the text. Throws Error or Errors, with everything unchanged, if the new text has errors.
   Applied apply(const std::string& text, const EditNote&);
   Applied undo();
   Applied redo();
@@ -113,11 +114,11 @@ class Document {
   size_t undo_count() const { return undo_.size(); }
   size_t redo_count() const { return redo_.size(); }
 
-  /// Members that are set for this session only, by paths as of `--set`; an empty value takes one back. All or none.
+  /// Sets members for this session only, by paths as for `--set`; an empty value removes an override. All or none.
   Applied set_overrides(const std::map<std::string, std::string>& overrides);
   const std::map<std::string, std::string>& overrides() const { return overrides_; }
-  /// Becomes another document with other text and overrides, without steps to undo. Throws as `apply`. Whether anything is
-  /// different now.
+  /// Becomes a copy of another document with a different text and overrides, without undo steps. Throws as `apply`. Returns
+  /// whether anything changed.
   bool follow(const Document& leader, const std::string& text, const std::map<std::string, std::string>& overrides);
 
  private:
@@ -140,10 +141,10 @@ class Document {
 
   RenderSettings settings_;
   const Folders* folders_;
-  std::set<std::string> trusted_;  ///< files it named when it was opened
-  bool trusts_all_ = false;        ///< while it is opened
+  std::set<std::string> trusted_;  ///< files named in the text when it was opened
+  bool trusts_all_ = false;        ///< true while a file is being opened
   std::string file_, folder_, saved_text_, disk_text_;
-  mutable std::array<std::int64_t, 4> disk_state_{};  ///< device, number, size and time of the file when it held that text
+  mutable std::array<std::int64_t, 4> disk_state_{};  ///< device, inode, size, time of the file with `disk_text_`
   const char* name_ = "";
   int revision_ = 0, saved_revision_ = 0, next_id_ = 1;
   std::unique_ptr<Outline> outline_;
@@ -158,7 +159,7 @@ class Document {
   std::unordered_map<const Component*, int> ids_;
   std::unordered_map<const Component*, std::vector<Use>> uses_;
   std::vector<Step> undo_, redo_;
-  std::vector<std::unique_ptr<Component::Origin>> old_origins_;  // of the last edit: who renders may look at them
+  std::vector<std::unique_ptr<Component::Origin>> old_origins_;  // of the last edit: rendering threads may still read them
 };
 
 }  // namespace etendue::studio

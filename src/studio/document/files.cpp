@@ -1,4 +1,4 @@
-// A document from a file, and into one.
+// Document: reading from and writing to files.
 
 #include <fmt/format.h>
 
@@ -35,7 +35,7 @@ std::vector<Error> errors_at_hand() {
   }
 }
 
-/// What tells whether a file was written to; none when it is not there.
+/// The values by which a change of a file is detected; nothing if the file does not exist.
 std::optional<std::array<std::int64_t, 4>> state_of(const std::string& path) {
   struct stat s{};
   if (::stat(path.c_str(), &s) != 0) return {};
@@ -43,7 +43,7 @@ std::optional<std::array<std::int64_t, 4>> state_of(const std::string& path) {
                     std::int64_t(s.st_mtim.tv_sec) * 1'000'000'000 + s.st_mtim.tv_nsec};
 }
 
-/// The smallest description that can be rendered, as a person would begin it.
+/// The smallest description that can be rendered, in the usual style.
 constexpr const char* beginning = R"(# A new scene. Lengths are in metres unless a unit says otherwise.
 
 Job {
@@ -65,7 +65,7 @@ Document::Source Document::read(const std::string& file) {
     throw Error(fmt::format("cannot read '{}': {}", file, error.what()));
   }
   if (!language::is_json(file)) return {file, text, text};
-  // Its text is not ours to edit.
+  // A JSON text is not edited itself: it is rewritten as an .etd.
   return {fs::path(file).replace_extension(".etd").string(),
           write_description(*load_job(file), false, fs::path(file).parent_path().string()), std::nullopt};
 }
@@ -104,7 +104,7 @@ void Document::create(const std::string& folder) {
   next.folder_ = folder;
   next.name_ = intern("new.etd");
   next.follow(beginning, {});
-  next.saved_text_ = beginning;  // there is nothing to lose yet
+  next.saved_text_ = beginning;  // nothing can be lost yet
   take(std::move(next));
 }
 
@@ -146,7 +146,7 @@ bool Document::changed_on_disk() const {
   if (state && *state == disk_state_) return false;
   try {
     const bool other = read_regular_file(file_, largest_text) != disk_text_;
-    if (!other && state) disk_state_ = *state;  // it was only touched
+    if (!other && state) disk_state_ = *state;  // only the time has changed
     return other;
   } catch (const Error&) {
     return true;
@@ -163,7 +163,7 @@ void Document::save(const std::string& file) {
   note_disk(whole);
   saved_revision_ = revision_;
   if (!moved) return;
-  // Names of files in it count from another folder now: what they lead to is for its reader to see.
+  // Relative paths in the text now refer to another folder; `save` requests check beforehand that the description still loads.
   folder_ = folder;
 }
 

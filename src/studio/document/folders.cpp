@@ -34,7 +34,7 @@ bool Folders::contains(const std::string& path) const {
   } catch (const Error&) {
     return false;
   }
-  // A link that leads nowhere yet would be followed when it is written to.
+  // A symbolic link without a target is refused, since writing to it would create the target.
   std::error_code error;
   if (fs::is_symlink(fs::symlink_status(real, error))) return false;
   for (const std::string& folder : folders_)

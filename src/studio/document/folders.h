@@ -1,5 +1,5 @@
 #pragma once
-// Which files a studio may touch, and which of them a description names.
+// The files that a studio may access, and the files that a description names.
 
 #include <set>
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace etendue::studio {
 
-/// Folders outside of which nothing is read, written or listed. Links are followed before anything is decided.
+/// Folders outside of which nothing is read, written or listed. Symbolic links are resolved before the check.
 class Folders {
  public:
-  /// Throws Error when it is no folder.
+  /// Throws Error if the path is not a folder.
   void allow(const std::string& folder);
   const std::vector<std::string>& all() const { return folders_; }
-  /// The path without links and "..", as far as it exists. Throws Error when it is outside of all folders.
+  /// The path without links and "..", as far as it exists. Throws Error if it is outside of all folders.
   std::string inside(const std::string& path) const;
   bool contains(const std::string& path) const;
 
@@ -27,15 +27,15 @@ class Folders {
 /// A path without links, ".." and doubled slashes, as far as it exists.
 std::string canonical_path(const std::string& path);
 
-/// A file that a text names, and where.
+/// A file named in a text, and the location of the name.
 struct NamedFile {
   std::string path;
   Location at;
 };
-/// What a text names as a file to be read while it is loaded: files to include, plugins, and all texts that are paths of files
-/// which exist, spectra among them.
+/// The files that a text names to be read while it is loaded: included files, plugins, and all strings that are paths of
+/// existing files, such as spectra.
 std::vector<NamedFile> files_loaded_by(const Outline&, const std::string& folder);
-/// The files that members of a job name, those to be written among them.
+/// The files named by members of a job, including output files.
 std::vector<NamedFile> files_named_by(const Job&);
 
 }  // namespace etendue::studio

@@ -10,7 +10,7 @@ namespace {
 
 using Parts = std::vector<Component*>;
 
-/// The components in a member's value, in order; null where a list holds none.
+/// The components in a member's value, in order; null for empty entries of a list.
 Parts parts_in(const Value& value) {
   Parts parts;
   if (const auto* one = value.as<Ref<Component>>()) {
@@ -31,7 +31,8 @@ class Matcher {
 
   void match(Component& old, Component& now) {
     pair(old, now);
-    // First those whose places tell, in all of it: what only looks alike must not take their partners.
+    // Components with a known location are paired first, in the whole job; otherwise components that only look similar might
+    // take their partners.
     for (const Ref<Component>& part : components_of(static_cast<const Job&>(now)))
       if (Component* was = counterpart_(*part)) pair(*was, *part);
     std::vector<std::pair<Component*, Component*>> rest{{&old, &now}};
@@ -64,7 +65,7 @@ class Matcher {
   std::unordered_set<const Component*> taken_;
 };
 
-/// The value with the old parts for those that stand for them.
+/// The value with new components replaced by the old ones they are paired with.
 Value with_old_parts(const Value& value, const Merge& merge, bool& any) {
   Value result = value;
   const auto replace = [&](Ref<Component>& part) {
@@ -87,7 +88,7 @@ Value with_old_parts(const Value& value, const Merge& merge, bool& any) {
 std::vector<Ref<Component>> components_of(const Job& job) {
   std::vector<Ref<Component>> all;
   std::unordered_set<const Component*> seen;
-  std::vector<Component*> rest{const_cast<Job*>(&job)};  // who holds a job sees its parts as they are
+  std::vector<Component*> rest{const_cast<Job*>(&job)};  // components are const only through the job
   while (!rest.empty()) {
     Component& c = *rest.back();
     rest.pop_back();

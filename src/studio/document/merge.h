@@ -1,6 +1,6 @@
 #pragma once
-// A job that is rendered, and one that was read from the text as it is now: which edits make the one the other. Parts that stay
-// are the same objects, so that what the edits do not concern is kept (Render::edit).
+// Merge: finds the edits that turn a rendered job into one that was read from the present text. Components that remain are the
+// same objects, so that what the edits do not affect is kept (Render::edit).
 
 #include <functional>
 #include <unordered_map>
@@ -10,30 +10,31 @@
 
 namespace etendue::studio {
 
-/// All components that a job holds, each once, holders before what they hold.
+/// All components of a job, each once, holders before the components they hold.
 std::vector<Ref<Component>> components_of(const Job&);
 
-/// Parts of a new job that stand for old ones: those.
+/// The old component for each new one that is paired with one.
 using Pairs = std::unordered_map<const Component*, Component*>;
 
-/// What the merge found out.
+/// The result of a merge.
 struct Merge {
-  /// All parts of the new job: some are left by what holds them when that refers to old ones instead, and live on here.
+  /// All components of the new job. Some are no longer referenced when their holder refers to an old component instead; they
+  /// are kept alive here.
   std::vector<Ref<Component>> parts;
   std::vector<Edit> edits;
   Pairs old_of;
-  /// The new parts that stay what they are, in no order.
+  /// The new components without an old one, in no order.
   std::vector<Ref<Component>> fresh;
-  /// Whether what holds what has changed.
+  /// Whether the component graph has changed.
   bool structure = false;
 };
 
-/// `counterpart` gives the old part that a new one stands for by its place in the text, or null. Where places tell nothing,
-/// parts of one class that stand in the same member of parts that belong together do.
+/// `counterpart` returns the old component for a new one by its location in the text, or null. Without a location, components
+/// of the same class in the same member of paired components are paired.
 Pairs pairs_of(const Job& old, Job& now, const std::function<Component*(const Component&)>& counterpart);
 
-/// The same with the edits that follow. Members of the new job's parts that refer to parts which have an old one are set to
-/// those.
+/// Pairs the components and derives the edits. References in the new job to paired components are replaced by references to the
+/// old ones.
 Merge merge(const Job& old, Job& now, const std::function<Component*(const Component&)>& counterpart);
 
 }  // namespace etendue::studio

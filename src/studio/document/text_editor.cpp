@@ -1,4 +1,4 @@
-// Members and entries of lists in the text.
+// TextEditor: members and list entries in the text.
 
 #include "text_editor.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* stand_in = "x = ";
 
-/// The text of a component with one member set, as a text of its own.
+/// The text of a component with one member set, as a separate text.
 std::string component_with(const std::string& component, const std::string& member, const std::string& value) {
   const Outline outline(stand_in + component, intern("component"));
   const language::Definition* d = outline.definition("x");
@@ -37,7 +37,7 @@ std::string list_with_entry(const std::string& list, size_t index, const std::st
 
 Slot slot(const Ref<Component>& part, const std::string& member, std::optional<size_t> index) {
   const Member* found = part->class_info().find(member);
-  if (!found) static_cast<void>(get(*part, member));  // says what there is
+  if (!found) static_cast<void>(get(*part, member));  // throws Error with the list of members
   if (index && !found->list && found->kind != Kind::vector2 && found->kind != Kind::vector3 && found->kind != Kind::point3 &&
       found->kind != Kind::normal3)
     throw Error(fmt::format("{}.{} is no list: it has no entries", part->class_info().name, member));
@@ -68,7 +68,7 @@ void TextEditor::set_text(std::string text) {
   outline_ = std::make_unique<Outline>(std::move(text), document_.name());
 }
 
-/// The one place where a part is used that has no text of its own.
+/// The only use of a component that has no text of its own.
 Slot TextEditor::use_of(const Component& part) const {
   if (part.origin && part.origin->location.known() && part.origin->location.file != document_.name())
     throw Error(fmt::format("this {} is written in {}, which is included: it can be edited there", part.class_info().name,
@@ -132,7 +132,7 @@ void TextEditor::set_value(const Slot& s, const std::string& value) {
       throw Error(fmt::format("there is no entry {}: the list has {}", *s.index, all.items.size()));
     return set_text(with_span(*outline_, all.items[*s.index], value));
   }
-  // A part that is not written by itself: a plain value stands for it, or nothing does. It is written where it is used.
+  // The component has no text of its own: it is a default or given by a plain value. It is written out where it is used.
   const Slot use = use_of(*s.part);
   const std::string& literal = s.part->class_info().literal;
   const Value held = use.member->get(*use.part, *use.member);

@@ -1,5 +1,5 @@
 #pragma once
-// Edits of parts as edits of the text: several, one after the other, before the text is tried as a whole.
+// TextEditor: edits of components as edits of the text. Several edits may be made before the text is evaluated.
 
 #include <memory>
 #include <optional>
@@ -10,41 +10,42 @@
 
 namespace etendue::studio {
 
-/// Which value of a part: a member, or an entry of one that is a list.
+/// The location of a value: a member of a component, or an entry of a list member.
 struct Slot {
   Ref<Component> part;
   const Member* member = nullptr;
   std::optional<size_t> index;
 };
 
-/// Throws Error, with a suggestion, when the class has no such member.
+/// Throws Error, with a suggestion, if the class has no such member.
 Slot slot(const Ref<Component>& part, const std::string& member, std::optional<size_t> index = {});
 
-/// Works on a copy of a document's text; Document::apply then makes it true. All throw Error when the text does not allow it.
+/// Works on a copy of a document's text, which Document::apply then makes current. All functions throw Error if the text does
+/// not allow the edit.
 class TextEditor {
  public:
   explicit TextEditor(const Document&);
   const std::string& text() const { return outline_->text(); }
 
-  /// Writes a value, which must be an expression by itself.
+  /// Writes a value, which must be a complete expression.
   void set(const Slot&, const std::string& value);
-  /// No longer written: has its default.
+  /// Removes a member from the text, so that it has its default.
   void reset(const Slot&);
-  /// An entry of a list, before `index` or at its end.
+  /// Adds an entry to a list, before `index` or at its end.
   void add(const Slot& list, std::optional<size_t> index, const std::string& value);
   void remove(const Slot& entry);
-  /// The part as another class, with the members of the same name that fit.
+  /// Changes the class of a component, and keeps members with the same name whose values fit.
   void replace_class(const Ref<Component>& part, const ClassInfo& now);
-  /// A name for a part that has none, which it then goes by where it is used. The name it has.
+  /// Returns the name of a component. If it has none, it gets one, by which its use then refers to it.
   std::string name_of(const Ref<Component>& part);
-  /// With all its uses; empty: none, for a part that is used once.
+  /// Renames a component and its uses. Empty: removes the name, for a component that is used once.
   void rename(const std::string& old, const std::string& now);
 
-  /// What is written in a slot; what would be, when it is not.
+  /// The text in a slot; if there is none, the text that would be equivalent.
   std::string written(const Slot&) const;
-  /// A part written out in full, though it has a name.
+  /// The complete text of a component, even if it has a name.
   std::string written_out(const Component&) const;
-  /// The name that a slot is written as; empty when it is no name alone.
+  /// The name in a slot; empty if the slot contains anything else.
   std::string name_in(const Slot&) const;
 
  private:
@@ -58,10 +59,10 @@ class TextEditor {
 
   const Document& document_;
   std::unique_ptr<Outline> outline_;
-  std::unordered_map<const Component*, size_t> begins_;  // where the class name of each written part is now
+  std::unordered_map<const Component*, size_t> begins_;  // where the class name of each written component now begins
 };
 
-/// An instance of a class as text, with what must be written: values that are valid, where there are any.
+/// The text of an instance of a class with its required members; the values are valid if valid ones are found.
 std::string new_component_text(const ClassInfo&);
 
 }  // namespace etendue::studio

@@ -1,4 +1,4 @@
-// Classes and names of parts in the text.
+// TextEditor: classes and names of components in the text.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ using language::NodeType;
 
 namespace {
 
-/// Whether a member of a class takes a value that another class's member has.
+/// Whether the class has a member of this name that accepts the value.
 bool fits(const ClassInfo& now, const Member& member, const Value& value) {
   const Member* there = now.find(member.name);
   if (!there) return false;
@@ -43,7 +43,7 @@ Member one_of(const Member& list) {
   return one;
 }
 
-/// A value for a member that must be written.
+/// A value for a required member.
 std::string required_text(const Member& member) {
   if (!member.choices.empty()) return member.choices.front();
   switch (member.kind) {
@@ -52,7 +52,7 @@ std::string required_text(const Member& member) {
       const ClassInfo* wanted = Registry::instance().find(member.component_class);
       for (const ClassInfo* candidate : Registry::instance().subclasses(*wanted))
         if (!candidate->literal.empty()) return "0.5";
-      // The one that needs least.
+      // The class with the fewest required members.
       const ClassInfo* best = nullptr;
       size_t least = 0;
       for (const ClassInfo* candidate : Registry::instance().subclasses(*wanted)) {
@@ -80,8 +80,8 @@ std::string required_text(const Member& member) {
   }
 }
 
-/// What a list may hold that is empty by default, for those that must not be: a part, or the corners of a triangle. Empty:
-/// nothing is known.
+/// Entries for a list that is empty by default but may have to be nonempty: a component, or the vertices of a triangle. Empty:
+/// no suitable entries are known.
 std::string entries_text(const Member& member) {
   const auto* numbers = member.default_value.as<Numbers>();
   const auto* list = member.default_value.as<Value::List>();
@@ -117,7 +117,7 @@ std::string new_component_text(const ClassInfo& info) {
   if (can_be_prepared(text)) return text;
   for (const bool parts : {true, false}) {
     std::vector<std::string> more;
-    bool points = false;  // the first list of points is that of places; others would be of times, or of other places
+    bool points = false;  // only the first list of points is filled: others have times, or other positions
     for (const Member& member : info.members) {
       const std::string entries = entries_text(member);
       const bool again = member.kind == Kind::point3 && std::exchange(points, points || !entries.empty());
@@ -128,7 +128,7 @@ std::string new_component_text(const ClassInfo& info) {
     }
     if (const std::string filled = component_text(info, more); can_be_prepared(filled)) return filled;
   }
-  // A list that takes some parts of a kind only, such as the operands of a solid: the first that will do.
+  // A list that accepts only some classes, such as the operands of a solid: tries the first class that works.
   for (const Member& list : info.members) {
     if (list.kind != Kind::component || entries_text(list).empty()) continue;
     for (const ClassInfo* entry : Registry::instance().subclasses(*Registry::instance().find(list.component_class))) {
@@ -142,20 +142,20 @@ std::string new_component_text(const ClassInfo& info) {
       if (const std::string filled = component_text(info, more); can_be_prepared(filled)) return filled;
     }
   }
-  return text;  // whoever adds it says what is missing
+  return text;  // adding it reports what is missing
 }
 
 void TextEditor::replace_class(const Ref<Component>& part, const ClassInfo& now) {
   if (now.abstract()) throw Error(fmt::format("{} is abstract: there is nothing of this class alone", now.name));
   const Node* written = node(*part);
-  if (!written) {  // what it is by default, or by a plain value, is written where it is used
+  if (!written) {  // a default, or a plain value, is written out where it is used
     const Slot use = use_of(*part);
     set_value(use, written_out(*part));
     const Node* value = value_node(use);
     const Node* list = value && use.index ? outline_->resolve(*value) : nullptr;
     if (value) begins_[part.get()] = list ? outline_->entries(*list).items.at(*use.index).begin : value->begin;
     written = node(*part);
-    if (!written) {  // the plain value itself
+    if (!written) {  // it is still a plain value
       const Node* there = value_node(use);
       const std::string plain = there ? outline_->text({there->begin, there->end}) : "";
       const Member* literal = part->class_info().find(part->class_info().literal);
@@ -184,10 +184,10 @@ std::string TextEditor::name_of(const Ref<Component>& part) {
   const Node* written = node(*part);
   for (const language::Definition& d : outline_->syntax().definitions)
     if (written && outline_->resolve(d.value) == written) return d.name.text;
-  if (part->origin && !part->origin->name.empty() && !written) return part->origin->name;  // in a file that is included
+  if (part->origin && !part->origin->name.empty() && !written) return part->origin->name;  // it is in an included file
   const std::string name = free_name(snake_case(part->class_info().name));
   const std::string whole = written_out(*part);
-  std::unordered_map<const Component*, size_t> within;  // from where the part begins
+  std::unordered_map<const Component*, size_t> within;  // offsets from the beginning of the component
   size_t at = 0;
   if (written) {
     const Span gone{written->begin, written->end};
@@ -217,7 +217,7 @@ void TextEditor::rename(const std::string& old, const std::string& now) {
       throw Error(fmt::format("'{}' is used {} times: what has no name can be used once", old, uses.size()));
     const std::string value = outline_->text({d->value.begin, d->value.end});
     const std::string whole = outline_->text();
-    // The line of the definition goes; a comment behind it stays.
+    // The line of the definition is removed; a comment after it stays.
     size_t begin = whole.rfind('\n', d->name.begin);
     begin = begin == std::string::npos ? 0 : begin + 1;
     size_t end = d->value.end;

@@ -11,13 +11,13 @@ namespace etendue::studio {
 
 namespace {
 
-/// A power of two by which a picture's values are divided, so that usual ones lie around 1 and halves hold the others. The one
-/// before stays while it is good: with another one all tiles are sent again.
+/// A power of two by which a picture's values are divided, so that typical values are near 1 and half floats can hold the
+/// others. The previous scale is kept while it is suitable, since a new one requires that all tiles are sent again.
 float scale_for(const Image& image, size_t channel, float before) {
   const size_t stride = image.channels.size();
   double sum = 0;
   size_t count = 0;
-  for (size_t i = channel; i < image.values.size(); i += stride * 7) {  // every seventh pixel tells enough
+  for (size_t i = channel; i < image.values.size(); i += stride * 7) {  // every seventh pixel is a sufficient sample
     const double v = std::abs(image.values[i]);
     if (v > 0 && std::isfinite(v)) sum += std::log2(v), ++count;
   }
@@ -71,7 +71,7 @@ std::shared_ptr<const Frame> Frame::make(Kind kind, const Image& image, size_t f
     for (int y = t.y; y < t.y + t.height; ++y)
       for (int x = t.x; x < t.x + t.width; ++x) {
         const double* p = &image.values[(size_t(y) * size_t(image.width) + size_t(x)) * stride];
-        // A layer of one channel is shown grey.
+        // A layer with one channel is shown in grey.
         const double c[3] = {p[first], p[std::min(first + 1, last)], p[std::min(first + 2, last)]};
         for (int k = 0; k < 3; ++k) {
           const double v = xyz ? m[size_t(3 * k)] * c[0] + m[size_t(3 * k + 1)] * c[1] + m[size_t(3 * k + 2)] * c[2] : c[k];

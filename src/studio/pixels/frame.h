@@ -1,6 +1,6 @@
 #pragma once
-// A picture as it is sent to browsers: in tiles, each of which knows when it changed last. docs/studio-protocol.md describes
-// the bytes.
+// Frame: a picture as it is sent to browsers, in tiles that each store when they last changed. docs/studio-protocol.md
+// describes the bytes.
 
 #include <cstdint>
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace etendue::studio {
 
-/// Where a picture stands in the whole one, and what it is of.
+/// The position of a picture within the whole one, and the state of its render.
 struct FrameInfo {
   std::uint32_t generation = 0;
   std::uint32_t x0 = 0, y0 = 0, full_width = 0, full_height = 0;
@@ -19,22 +19,23 @@ struct FrameInfo {
   bool coarse = false, finished = false;
 };
 
-/// Never changes once it is made.
+/// Immutable after construction.
 class Frame {
  public:
   static constexpr int tile = 64;
   enum class Kind : std::uint8_t { linear = 1, toned = 2 };
 
-  /// Three channels of a picture, from `first` on: X Y Z, which become linear sRGB, when `xyz`; else they are what is shown.
-  /// Tiles that are the same as in the frame before keep their age. `number` is larger than that of the frame before.
+  /// Makes a frame of three channels from `first` on: if `xyz`, they are X Y Z and converted to linear sRGB; otherwise they are
+  /// display values. Tiles equal to those of the previous frame keep its age. `number` must be larger than that of the previous
+  /// frame.
   static std::shared_ptr<const Frame> make(Kind, const Image&, size_t first, bool xyz, const FrameInfo&, std::uint64_t number,
                                            const Frame* before);
 
   std::uint64_t number() const { return number_; }
-  /// Whether tiles sent of the other frame may stay on a screen when this one follows.
+  /// Whether tiles of the other frame may stay on the screen when this frame follows.
   bool continues(const Frame& other) const;
-  /// A message with the tiles that changed after a frame of this number; all when it is 0. `slot`: which of the pictures that
-  /// a page watches it is.
+  /// A message with the tiles that changed after the frame with this number; with all tiles for 0. `slot`: index of the picture
+  /// among those that the page watches.
   std::vector<std::uint8_t> message(std::uint64_t after, int slot) const;
   const FrameInfo& info() const { return info_; }
   int width() const { return width_; }

@@ -16,7 +16,7 @@ struct Group {
   std::array<double, 3> factors;
 };
 
-/// The light groups of a picture, which all of `factors` must be of.
+/// The light groups of a picture with their factors; all names in `factors` must be groups.
 std::vector<Group> groups_of(const Image& picture, const std::map<std::string, std::array<double, 3>>& factors) {
   constexpr std::string_view prefix = "light.", suffix = ".X";
   std::vector<Group> groups;

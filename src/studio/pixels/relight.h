@@ -1,5 +1,5 @@
 #pragma once
-// A picture with its light groups weighed.
+// Relighting: a picture with weighted light groups.
 
 #include <array>
 #include <map>
@@ -9,9 +9,9 @@
 
 namespace etendue::studio {
 
-/// The picture, X Y Z and layers, as it would be were the light of each group (layers light.NAME) multiplied by factors of
-/// linear sRGB; groups that are not named stay. Layers that say how noisy the picture was, or hold its light by path length,
-/// would be of another picture and are left out. Throws Error when there are no groups, or a name is of none.
+/// The picture, X Y Z and layers, with the light of each group (layers light.NAME) multiplied by factors in linear sRGB; groups
+/// without factors stay unchanged. Layers of the noise, and of the light by path length, would not match and are left out.
+/// Throws Error if there are no groups, or a name is not a group.
 Image relit(const Image&, const std::map<std::string, std::array<double, 3>>& factors);
 
 }  // namespace etendue::studio

@@ -18,7 +18,7 @@ Runner::~Runner() {
 void Runner::set(std::shared_ptr<Render> render) {
   std::unique_lock lock(guard_);
   const bool wanted = std::exchange(wanted_, false);
-  // Whatever it waits for, it hears of it: one that begins just now would forget an earlier word.
+  // Abort is repeated until the run ends, since a run that is just beginning may clear an earlier request.
   while (running_) {
     render_->abort();
     changed_.wait_for(lock, std::chrono::milliseconds(20));
@@ -48,7 +48,7 @@ void Runner::rest(void (Render::*word)()) {
   if (running_) {
     (render_.get()->*word)();
   } else if (was_to_begin) {
-    // It has more to do than when it came to its end, and was about to: nobody else would say that it waits now.
+    // The runner was about to start again after a change, so no run is there to report the new state.
     status_ = {State::paused, {}, {}, status_.changes + 1};
   }
 }
@@ -78,7 +78,7 @@ void Runner::hurry() {
   turns_.hurry(seat_);
 }
 
-/// In turns with others, until it has come to its end or is not wanted any more.
+/// Runs the render, in turns with others, until it ends or is no longer wanted.
 Ended Runner::run(const std::shared_ptr<Render>& render) {
   const auto wanted = [&] {
     const std::lock_guard lock(guard_);
@@ -125,7 +125,7 @@ void Runner::work() {
     lock.lock();
     running_ = false;
     const bool given_up = next.ended == Ended::interrupted || next.ended == Ended::aborted;
-    if (given_up && wanted_) ++turn_;  // the word was for an earlier run
+    if (given_up && wanted_) ++turn_;  // the request to stop was for an earlier run
     next.state = !next.errors.empty() ? State::failed : (given_up ? State::paused : State::finished);
     if (next.state == State::failed) wanted_ = false;
     next.changes = status_.changes + 1;

@@ -1,5 +1,5 @@
 #pragma once
-// The thread in which a render goes on, taking turns with others.
+// Runner: the thread that runs a render, taking turns with other renders.
 
 #include <condition_variable>
 #include <memory>
@@ -20,16 +20,15 @@ class Runner {
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
-  /// Another render, or none, is what goes on from now; the one before is given up. Returns when nothing is done with it any
-  /// more.
+  /// Replaces the render, possibly by none; the old one is aborted. Returns when the old one is no longer used.
   void set(std::shared_ptr<Render>);
   void start();
-  /// After the step at hand (`pause`), or now.
+  /// After the current step (`pause`), or immediately (`stop`).
   void pause();
   void stop();
-  /// The render was edited, or replaced: what had come to its end may have to go on.
+  /// Called when the render was edited or replaced: a finished render may have to continue.
   void follow(const std::shared_ptr<Render>&);
-  /// Somebody waits for what it shows: other renders leave it their turns.
+  /// Called when a user waits for the picture: other renders give up their turns.
   void hurry();
 
   enum class State : std::uint8_t { empty, rendering, paused, finished, failed };
@@ -37,7 +36,7 @@ class Runner {
     State state = State::empty;
     std::optional<Ended> ended;
     std::vector<Error> errors;
-    std::uint64_t changes = 0;  ///< grows with every beginning and end
+    std::uint64_t changes = 0;  ///< incremented at each start and end
   };
   Status status() const;
 
@@ -53,7 +52,7 @@ class Runner {
   std::condition_variable changed_;
   std::shared_ptr<Render> render_;
   bool wanted_ = false, running_ = false, ending_ = false;
-  std::uint64_t turn_ = 0, done_turn_ = 0;  // what was looked at last
+  std::uint64_t turn_ = 0, done_turn_ = 0;  // counters of requested and handled changes
   Status status_;
   std::thread thread_;
 };

@@ -7,14 +7,14 @@ namespace etendue::studio {
 
 namespace {
 
-/// A turn is this long, or as long as a step of the render when that takes longer [s].
+/// The length of a turn, unless one step of the render takes longer [s].
 constexpr double slice = 0.25;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
 
-/// Who was hurried, else who has had least.
+/// The seat with the next turn: one that was hurried, otherwise the one with the least used time.
 Turns::Seat* Turns::next() const {
   const auto before = [](const Seat* a, const Seat* b) { return a->first != b->first ? a->first : a->used < b->used; };
   const auto found = std::min_element(waiting_.begin(), waiting_.end(), before);
@@ -23,7 +23,7 @@ Turns::Seat* Turns::next() const {
 
 bool Turns::take(Seat& seat, bool away, const std::function<bool()>& wanted) {
   std::unique_lock lock(guard_);
-  if (away) {  // it begins with as much as whoever is there has had least of
+  if (away) {  // starts with the least used time of the others
     std::list<Seat*> others = waiting_;
     if (at_work_) others.push_back(at_work_);
     const auto least = [](const Seat* a, const Seat* b) { return a->used < b->used; };

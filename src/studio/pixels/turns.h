@@ -1,6 +1,6 @@
 #pragma once
-// Renders that go on side by side take turns, each with all threads: so the time that each has spent can be compared, and
-// several need no more threads than one.
+// Turns: renders that run side by side take turns, each with all threads. So their times can be compared, and several renders
+// need no more threads than one.
 
 #include <condition_variable>
 #include <functional>
@@ -11,18 +11,19 @@ namespace etendue::studio {
 
 class Turns {
  public:
-  /// One who takes turns. `stop` asks it to end its turn soon, `abort` at once; they are called from other threads.
+  /// A participant. `stop` requests the end of its turn soon, `abort` at once; both are called from other threads.
   struct Seat {
     std::function<void()> stop, abort;
-    double used = 0;       ///< [s] of turns, counted from when it sat down among those who were there
+    double used = 0;       ///< [s] used in turns, relative to the other participants since it joined
     bool waiting = false;  ///< for its turn
-    bool first = false;    ///< it has been hurried: its turn is next
+    bool first = false;    ///< hurried: it gets the next turn
   };
 
-  /// Waits for a turn. False: `wanted`, asked now and then, said no before it came. Who was `away` does not make up for it.
+  /// Waits for a turn. False: `wanted`, which is called repeatedly, returned false first. A seat that was `away` does not get
+  /// extra time for it.
   bool take(Seat&, bool away, const std::function<bool()>& wanted);
   void give_back(Seat&);
-  /// Somebody looks at what this seat is about to do: whoever else has the turn gives it up at once.
+  /// Gives this seat the next turn: the current turn of another seat is aborted.
   void hurry(Seat&);
 
  private:

@@ -25,7 +25,7 @@ std::string random_token() {
 }
 
 bool equal_in_constant_time(const std::string& a, const std::string& b) {
-  // The length is no secret.
+  // The length is not secret.
   if (a.size() != b.size()) return false;
   unsigned char differs = 0;
   for (size_t i = 0; i < a.size(); ++i) differs |= static_cast<unsigned char>(a[i] ^ b[i]);

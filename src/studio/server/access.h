@@ -1,21 +1,22 @@
 #pragma once
-// Who may come in: what a request says of itself, and whether that is good enough.
+// Access control: authentication data in requests, and their checks.
 
 #include <string>
 #include <string_view>
 
 namespace etendue::studio {
 
-/// The path of a request's target, without what follows a '?'.
+/// The path of a request target, without the query after '?'.
 std::string path_of(std::string_view target);
-/// A value of what follows the '?', as "token" in "/?token=x"; empty when it is not there.
+/// A value in the query, such as "token" in "/?token=x"; empty if it is missing.
 std::string query_value(std::string_view target, std::string_view key);
 /// A value of a Cookie header.
 std::string cookie_value(std::string_view cookies, std::string_view key);
-/// Whether a Host header names this server: a page elsewhere could have its own name lead to this machine, and would then be of
-/// the same origin. Addresses in numbers, localhost and this machine's name cannot be had by others.
+/// Whether a Host header names this server. This prevents DNS rebinding: a foreign page could let its own host name resolve to
+/// this machine and would then be of the same origin. Numeric addresses, localhost and this machine's name cannot be claimed by
+/// others.
 bool own_host(std::string_view host, unsigned short port, bool loopback_only);
-/// Whether an Origin header, which browsers send along, is of a page from this server.
+/// Whether an Origin header, which browsers send, belongs to a page of this server.
 bool own_origin(std::string_view origin, std::string_view host);
 
 }  // namespace etendue::studio

@@ -1,5 +1,5 @@
 #pragma once
-// Connections of browsers.
+// Connections to browsers.
 
 #include <boost/asio.hpp>
 #include <boost/beast.hpp>
@@ -20,7 +20,7 @@ using tcp = asio::ip::tcp;
 class Visitor;
 class Page;
 
-/// What connections share. Of the server's thread alone, but for what says otherwise.
+/// The state that connections share. Used only by the server's thread, except where noted.
 struct Server::Members {
   Members(Studio& s, ServerSettings wanted) : studio(s), settings(std::move(wanted)) {}
 
@@ -31,11 +31,11 @@ struct Server::Members {
   tcp::acceptor acceptor{context};
   unsigned short port = 0;
   bool loopback = true;
-  std::list<std::weak_ptr<Visitor>> visitors;  ///< who has not shown a token yet or only fetches the page, oldest first
+  std::list<std::weak_ptr<Visitor>> visitors;  ///< without a token so far, or only fetching the page; oldest first
   std::set<std::shared_ptr<Page>> pages;
   std::chrono::steady_clock::time_point next_login{};
   bool ending = false;
-  asio::steady_timer farewell{context};  ///< runs while pages are told what they have not heard yet
+  asio::steady_timer farewell{context};  ///< limits the time for sending the remaining messages to pages at the end
 
   void end();
   void accept();
@@ -43,18 +43,18 @@ struct Server::Members {
   http::response<http::string_body> answer(const http::request<http::string_body>&);
 };
 
-/// How much is taken from strangers and from browsers.
+/// Limits for unauthenticated clients and for browsers.
 namespace limits {
 inline constexpr size_t visitors = 64, pages = 32;
-inline constexpr auto patience = std::chrono::seconds(10);  ///< until a request is there
+inline constexpr auto patience = std::chrono::seconds(10);  ///< time until a request must arrive
 inline constexpr size_t header = 8 << 10, body = 4 << 10;   ///< [bytes]
-inline constexpr size_t message = 32 << 20;                 ///< of a page: a text may be large [bytes]
-inline constexpr size_t unsent = 64 << 20;                  ///< words for a page that does not read them [bytes]
-inline constexpr int unanswered = 64;                       ///< requests of a page
-inline constexpr auto farewell = std::chrono::seconds(2);   ///< for what pages are still to hear at the end
+inline constexpr size_t message = 32 << 20;                 ///< of a message from a page: a text may be large [bytes]
+inline constexpr size_t unsent = 64 << 20;                  ///< messages queued for a page that does not read them [bytes]
+inline constexpr int unanswered = 64;                       ///< pending requests of a page
+inline constexpr auto farewell = std::chrono::seconds(2);   ///< time for sending the remaining messages at the end
 }  // namespace limits
 
-/// A connection before it is a page's: one request at a time.
+/// A connection before it becomes a Page: one request at a time.
 class Visitor : public std::enable_shared_from_this<Visitor> {
  public:
   Visitor(tcp::socket socket, Server::Members& server) : stream_(std::move(socket)), server_(server) {}
@@ -69,16 +69,16 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
   std::optional<http::request_parser<http::string_body>> parser_;
 };
 
-/// A page's WebSocket.
+/// The WebSocket of a page.
 class Page : public Browser, public std::enable_shared_from_this<Page> {
  public:
   Page(beast::tcp_stream stream, Server::Members& server) : socket_(std::move(stream)), server_(server) {}
   void begin(http::request<http::string_body>);
-  /// Says goodbye when all words are sent.
+  /// Closes the connection when all messages are sent.
   void finish();
   void end();
 
-  // Of the studio's threads.
+  // Called from the studio's threads.
   void send(std::shared_ptr<const std::string> words) override;
   void frame_ready() override;
   void answered() override;
@@ -93,7 +93,7 @@ class Page : public Browser, public std::enable_shared_from_this<Page> {
   std::deque<std::shared_ptr<const std::string>> words_;
   size_t unsent_ = 0;
   std::vector<std::uint8_t> pixels_;
-  std::map<int, std::shared_ptr<const Frame>> shown_;  // the frames that were sent last, by slots
+  std::map<int, std::shared_ptr<const Frame>> shown_;  // the last frames that were sent, by slot
   int last_slot_ = 0;
   int unanswered_ = 0;
   bool writing_ = false, reading_ = false, lost_ = false, finishing_ = false, closing_ = false;

@@ -1,4 +1,4 @@
-// A page's WebSocket: words in order, pixels as there is room for them.
+// Page: a page's WebSocket. Messages are sent in order, pixels when there is capacity.
 
 #include "connection.h"
 
@@ -7,7 +7,7 @@ namespace etendue::studio {
 namespace websocket = beast::websocket;
 
 void Page::begin(http::request<http::string_body> request) {
-  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own
+  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timeout
   websocket::stream_base::timeout times{};
   times.handshake_timeout = limits::patience;
   times.idle_timeout = std::chrono::seconds(60);
@@ -48,7 +48,7 @@ void Page::read() {
   socket_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, size_t) {
     self->reading_ = false;
     if (error) return self->lost();
-    if (!self->socket_.got_text() || self->finishing_) {  // pages send words only, and at the end too late
+    if (!self->socket_.got_text() || self->finishing_) {  // pages send text only; requests at the end are ignored
       self->buffer_.consume(self->buffer_.size());
       return self->read();
     }
@@ -73,7 +73,7 @@ void Page::send(std::shared_ptr<const std::string> words) {
     if (self->lost_) return;
     self->unsent_ += words->size();
     self->words_.push_back(std::move(words));
-    // A page that does not read loses its connection; it comes again when it can.
+    // A page that does not read is disconnected; it reconnects when it can.
     if (self->unsent_ > limits::unsent && self->words_.size() > 1) return self->lost();
     self->write();
   });
@@ -83,7 +83,8 @@ void Page::frame_ready() {
   asio::post(socket_.get_executor(), [self = shared_from_this()] { self->write(); });
 }
 
-/// One write at a time: words first; between them the newest frame, of which only what the page has not got.
+/// Starts the next write, one at a time: messages first, then the newest frame, with only the tiles that the page does not
+/// have.
 void Page::write() {
   if (writing_ || lost_) return;
   asio::const_buffer next;
@@ -95,7 +96,7 @@ void Page::write() {
       socket_.async_close(websocket::close_code::going_away, [self = shared_from_this()](beast::error_code) { self->lost(); });
     return;
   } else {
-    // Slots in turns, so that one which always has something new does not hold up the others.
+    // Slots take turns, so that one with constant changes does not block the others.
     const auto frames = server_.studio.frames(*this);
     auto next_slot = frames.upper_bound(last_slot_);
     size_t tried = 0;

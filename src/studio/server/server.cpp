@@ -1,4 +1,4 @@
-// Strangers at the door, the page, and the way to its WebSocket.
+// Server: authentication, the page, and the upgrade to its WebSocket.
 
 #include "server.h"
 
@@ -18,7 +18,7 @@ constexpr const char* login_form = R"(<!doctype html><html lang="en"><meta chars
 <style>body{font:16px sans-serif;display:grid;place-items:center;height:90vh;color-scheme:light dark}</style>
 <form method="post" action="/login"><label>Password <input type="password" name="password" autofocus></label> <button>Enter</button></form>)";
 
-/// A value of a form that a browser sent.
+/// A value of a submitted form.
 std::string form_value(const std::string& body, const std::string& key) {
   const std::string coded = query_value("?" + body, key);
   std::string text;
@@ -35,7 +35,7 @@ std::string form_value(const std::string& body, const std::string& key) {
 
 }  // namespace
 
-// ---- who may come in --------------------------------------------------------------------------------------------------------
+// ---- access control ---------------------------------------------------------------------------------------------------------
 
 bool Server::Members::knows(const http::request<http::string_body>& request) const {
   if (equal_in_constant_time(query_value({request.target().data(), request.target().size()}, "token"), token)) return true;
@@ -114,20 +114,20 @@ void Server::Members::accept() {
     if (error == asio::error::operation_aborted || ending) return;
     if (!error) {
       visitors.remove_if([](const auto& v) { return v.expired(); });
-      if (visitors.size() >= limits::visitors) {  // whoever stood there longest without a word goes
+      if (visitors.size() >= limits::visitors) {  // the oldest connection without a complete request is closed
         if (const auto oldest = visitors.front().lock()) oldest->close();
         visitors.pop_front();
       }
       beast::error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
-      // What waits in the system's buffer is shown late.
+      // A small send buffer: data that wait in it are shown late.
       socket.set_option(asio::socket_base::send_buffer_size(1 << 20), ignored);
       const auto visitor = std::make_shared<Visitor>(std::move(socket), *this);
       visitors.push_back(visitor);
       visitor->read();
       return accept();
     }
-    // The system has no more files, perhaps: not at once again.
+    // Perhaps the process has run out of file descriptors: retries after a delay.
     auto timer = std::make_shared<asio::steady_timer>(context, std::chrono::milliseconds(100));
     timer->async_wait([this, timer](beast::error_code stopped) {
       if (!stopped && !ending) accept();
@@ -141,10 +141,10 @@ void Server::Members::end() {
   acceptor.close(ignored);
   for (const auto& v : visitors)
     if (const auto visitor = v.lock()) visitor->close();
-  // Whoever does not take what it is told is left.
+  // Pages that do not receive their messages in time are disconnected.
   farewell.expires_after(limits::farewell);
   farewell.async_wait([this](beast::error_code) { context.stop(); });
-  const auto all = pages;  // `finish` may take one out
+  const auto all = pages;  // `finish` may remove an element
   for (const auto& page : all) page->finish();
   if (pages.empty()) farewell.cancel();
 }
@@ -168,7 +168,7 @@ void Visitor::have(beast::error_code error) {
     *response = server_.answer(request);
     const bool socket =
         beast::websocket::is_upgrade(request) && path_of({request.target().data(), request.target().size()}) == "/socket";
-    // `answer` finds nothing at that address, when all else is in order.
+    // `answer` returns "not found" for this path if all other checks have passed.
     if (socket && response->result() == http::status::not_found) {
       if (server_.pages.size() < limits::pages) {
         std::make_shared<Page>(std::move(stream_), server_)->begin(std::move(request));
@@ -224,7 +224,7 @@ void Server::run() {
     try {
       m->context.run();
       break;
-    } catch (const std::exception&) {  // of one connection: no reason to end
+    } catch (const std::exception&) {  // an error of one connection does not end the server
     }
   }
   while (!m->pages.empty()) {

@@ -1,5 +1,5 @@
 #pragma once
-// The studio on the network: one page and one WebSocket. All of it happens in one thread.
+// Server: the studio on the network, with one page and one WebSocket, in a single thread.
 
 #include <memory>
 #include <string>
@@ -10,15 +10,15 @@ namespace etendue::studio {
 
 struct ServerSettings {
   std::string address = "127.0.0.1";
-  unsigned short port = 0;  ///< 0: any that is free
-  std::string password;     ///< empty: none, and only the token lets in
-  std::string page;         ///< the file of the page
-  std::string token;        ///< that lets in; empty: a new one
+  unsigned short port = 0;  ///< 0: any free port
+  std::string password;     ///< empty: no password, access by token only
+  std::string page;         ///< path of the page's file
+  std::string token;        ///< access token; empty: a random one
 };
 
 class Server {
  public:
-  /// Listens; throws Error when it cannot.
+  /// Listens; throws Error if it cannot.
   Server(Studio&, ServerSettings);
   ~Server();
   Server(const Server&) = delete;
@@ -26,11 +26,11 @@ class Server {
 
   /// "http://127.0.0.1:7007/?token=…"
   std::string address() const;
-  /// "7007 TOKEN": what a server needs to be found where this one was.
+  /// "7007 TOKEN": the data with which a new server can be reached at the same address.
   std::string port_and_token() const;
-  /// Serves until `stop`; before it returns, pages hear what they have been told, for a moment at most.
+  /// Serves until `stop`. Before it returns, pending messages are sent to pages for a short time.
   void run();
-  /// From any thread, or a signal handler's thread.
+  /// Called from any thread, or a signal handler's thread.
   void stop();
 
   struct Members;
@@ -39,9 +39,9 @@ class Server {
   std::unique_ptr<Members> m;
 };
 
-/// A text that cannot be guessed: 128 bits of the system's randomness, in hexadecimal.
+/// A text that cannot be guessed: 128 random bits from the system, in hexadecimal.
 std::string random_token();
-/// Whether two texts are equal, in a time that does not tell where they differ.
+/// Compares two texts in a time that does not depend on where they differ.
 bool equal_in_constant_time(const std::string& a, const std::string& b);
 
 }  // namespace etendue::studio

@@ -19,21 +19,21 @@ namespace {
 
 bool word_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
-/// What brackets stand open at a place, and what was written there last.
+/// The open brackets at a position, and the last tokens before it.
 struct Context {
   struct Block {
     char bracket = 0;
     std::string name;    ///< the class before a '{', the function before a '('
-    std::string member;  ///< whose value is being written; "" when a member's name is expected
+    std::string member;  ///< the member whose value is being written; "" if a member name is expected
     std::set<std::string> written;
   };
   std::vector<Block> open;
   Token last, before_last;
-  bool line_begins = true;  ///< nothing stands before the place in its line
+  bool line_begins = true;  ///< only blanks precede the position in its line
   std::vector<std::string> names;
 };
 
-/// Reads the tokens before a place, whatever they amount to.
+/// Analyses the tokens before a position, whether the text is valid or not.
 Context context_at(const std::string& text, size_t at) {
   Context context;
   const language::Source source{intern("typed text"), {}, text.substr(0, at)};
@@ -74,7 +74,7 @@ const language::Function* find_function(const std::string& name) {
   return nullptr;
 }
 
-/// The class and the member whose value is written at the innermost block that is a component's.
+/// The member of the innermost component block whose value is being written; null: none.
 const Member* member_at(const Context& context) {
   for (auto block = context.open.rbegin(); block != context.open.rend(); ++block) {
     if (block->bracket == '(') return nullptr;

@@ -1,6 +1,6 @@
 #pragma once
-// What an editor of texts offers: words that may stand at a place, and what a word means. All of it comes from the registry and
-// from the text, which need not be valid.
+// Editor assistance: completions at a position, and explanations of a word. Both use the registry and the text, which need not
+// be valid.
 
 #include <optional>
 #include <string>
@@ -12,7 +12,7 @@ namespace etendue::studio {
 
 struct Completion {
   std::string label, kind, detail, insert;
-  size_t begin = 0;  ///< of the word that it replaces
+  size_t begin = 0;  ///< beginning of the replaced word
 };
 std::vector<Completion> completions(const std::string& text, size_t at);
 
@@ -22,7 +22,7 @@ struct Explanation {
 };
 std::optional<Explanation> explanation(const std::string& text, size_t at);
 
-/// The word around a place; empty when there is none.
+/// The word around a position; empty if there is none.
 Span word_at(const std::string& text, size_t at);
 
 }  // namespace etendue::studio

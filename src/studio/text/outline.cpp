@@ -21,7 +21,7 @@ Outline::Outline(std::string text, const char* name) : source_{name, {}, std::mo
   language::Diagnostics unheard;
   try {
     if (!language::invalid_utf8(source_.text)) syntax_ = language::parse_document(source_, unheard);
-  } catch (const language::TooManyErrors&) {  // then there is nothing to be found in it
+  } catch (const language::TooManyErrors&) {  // nothing can be found in this text
   }
   for (const language::Definition& d : syntax_.definitions) {
     definitions_.emplace(d.name.text, &d);
@@ -30,7 +30,7 @@ Outline::Outline(std::string text, const char* name) : source_{name, {}, std::mo
   for (const Node& c : syntax_.components) note(c);
 }
 
-// A stack of its own: lists and chains may be long, and brackets nest.
+// Uses an explicit stack, since lists, chains and brackets may be long.
 void Outline::note(const Node& root) {
   std::vector<const Node*> rest{&root};
   while (!rest.empty()) {
@@ -45,7 +45,7 @@ void Outline::note(const Node& root) {
     for (size_t i = 0; i < node.children.size(); ++i) {
       const Node& child = node.children[i];
       const Member* member = info && i < node.labels.size() ? info->find(node.labels[i].text) : nullptr;
-      // The word of a choice is no use of a name, even if there is one.
+      // A choice is not a use of a name, even if a name equal to it is defined.
       const bool choice = member && member->kind == Kind::choice && child.type == NodeType::name &&
                           std::find(member->choices.begin(), member->choices.end(), child.text) != member->choices.end();
       if (!choice) rest.push_back(&child);
@@ -96,9 +96,9 @@ Sequence Outline::members(const Node& component) const {
 }
 
 Sequence Outline::entries(const Node& written) const {
-  // [1, 2] mm: the unit is that of all entries.
+  // In [1, 2] mm the unit applies to all entries.
   const Node& list = written.type == NodeType::unit ? written.children.front() : written;
-  // Around a list there may be brackets and behind it a unit: only what is a list by itself has entries of its own.
+  // The list may be in brackets or have a unit: only a plain list has entries that can be edited.
   const bool plain = list.end > list.begin + 1 && source_.text[list.begin] == '[' && source_.text[list.end - 1] == ']';
   if (!plain || (list.type != NodeType::list && list.type != NodeType::numbers))
     throw Error("what is written there is no list whose entries could be edited: edit the whole value");
@@ -107,7 +107,7 @@ Sequence Outline::entries(const Node& written) const {
     for (const Node& child : list.children) all.items.push_back({child.begin, child.end});
     return all;
   }
-  // Numbers were packed: their places are found again.
+  // Packed numbers have no nodes: their positions are found with the lexer.
   language::Diagnostics unheard;
   language::Lexer lexer(source_, unheard, all.inside.begin);
   int depth = 0;

@@ -1,5 +1,6 @@
 #pragma once
-// A description's text, and where its parts stand in it. Places are bytes; src/studio/text/places.h counts as browsers do.
+// Outline: a description's text, and the positions of its components. Positions are in bytes; src/studio/text/places.h converts
+// to the units of browsers.
 
 #include <map>
 #include <string>
@@ -17,41 +18,41 @@ struct Span {
   bool contains(size_t at) const { return at >= begin && at < end; }
 };
 
-/// What stands between brackets and is separated by commas or new lines: members of a component, entries of a list.
+/// The contents of brackets, separated by commas or new lines: members of a component, entries of a list.
 struct Sequence {
   Span inside;  ///< between the brackets
   std::vector<Span> items;
 };
 
-/// A text with its syntax. What cannot be read is left out, so that an outline of a wrong text serves as far as it goes.
+/// A text with its syntax. Parts that cannot be parsed are left out, so that a text with errors still has an outline.
 class Outline {
  public:
-  /// `name` stands for the text in the places of its parts; interned.
+  /// `name` is the name of the text in locations; interned.
   Outline(std::string text, const char* name);
 
   const std::string& text() const { return source_.text; }
   const char* name() const { return source_.name; }
   const language::Document& syntax() const { return syntax_; }
 
-  /// The component whose class name stands at a place; null when there is none in this text.
+  /// The component whose class name is at a location; null if there is none in this text.
   const language::Node* component(const Location&) const;
-  /// All components, by where they begin.
+  /// All components, by the position where they begin.
   const std::map<size_t, const language::Node*>& components() const { return by_begin_; }
-  /// The byte where a component's class name stands.
+  /// The byte position of a component's class name.
   static size_t begin(const language::Node& component) { return component.begin; }
 
-  /// The value of a member as it is written; null when it is not.
+  /// The written value of a member; null if it is not written.
   static const language::Node* member(const language::Node& component, const std::string& name);
-  /// Where "member: value" stands.
+  /// The position of "member: value".
   static Span member_span(const language::Node& component, size_t index);
   const language::Definition* definition(const std::string& name) const;
-  /// The value itself when it is a name, however often that leads to another; null when it leads out of this text.
+  /// The value itself; names are followed through all definitions. Null if a name is not defined in this text.
   const language::Node* resolve(const language::Node&) const;
-  /// All places where a name is used, its definition aside.
+  /// All uses of a name, except its definition.
   std::vector<Span> uses(const std::string& name) const;
 
   Sequence members(const language::Node& component) const;
-  /// Of a list. Throws Error when it is none.
+  /// The entries of a list. Throws Error if the value is not a plain list.
   Sequence entries(const language::Node& list) const;
   std::string text(Span s) const { return source_.text.substr(s.begin, s.size()); }
 

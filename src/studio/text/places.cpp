@@ -6,7 +6,7 @@ namespace etendue::studio {
 
 namespace {
 
-/// UTF-16 units of the character that begins with a byte; 0 within one.
+/// The UTF-16 units of the character that begins with a byte; 0 for continuation bytes.
 size_t units_of(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return (byte & 0xC0) == 0x80 ? 0 : (byte >= 0xF0 ? 2 : 1);

@@ -1,5 +1,5 @@
 #pragma once
-// Places in a text as browsers count them: in units of UTF-16, where characters beyond the basic plane count two.
+// Places: positions in a text as browsers count them, in UTF-16 units: characters outside of the basic plane count two.
 
 #include <string>
 #include <vector>
@@ -11,11 +11,11 @@ namespace etendue::studio {
 class Places {
  public:
   explicit Places(const std::string& text);
-  /// UTF-16 units before a byte.
+  /// The number of UTF-16 units before a byte.
   size_t units(size_t byte) const;
-  /// The byte at which a unit begins; npos when the text has none of this number, or it lies within a character.
+  /// The byte where a UTF-16 unit begins; npos if there is no such unit, or it is within a character.
   size_t byte(size_t unit) const;
-  /// The byte of a line and a column in characters, both from 1; the nearest when there is none.
+  /// The byte at a line and a column in characters, both from 1; the nearest one if the location does not exist.
   size_t byte(const Location&) const;
   size_t size() const { return units_; }
 
@@ -23,7 +23,7 @@ class Places {
   static constexpr size_t step = 1024;
   const std::string text_;
   std::vector<size_t> marks_;  // units before each multiple of `step` bytes; empty for ASCII
-  std::vector<size_t> lines_;  // where each line begins
+  std::vector<size_t> lines_;  // byte position of each line's beginning
   size_t units_ = 0;
 };
 

@@ -18,7 +18,7 @@ bool blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 size_t line_begin(const std::string& text, size_t at) { return at == 0 ? 0 : text.rfind('\n', at - 1) + 1; }
 
-/// The blanks before the first word of the line in which a byte stands.
+/// The indentation of the line that contains a byte.
 std::string indent_of(const std::string& text, size_t at) {
   const size_t begin = line_begin(text, at);
   size_t end = begin;
@@ -32,18 +32,18 @@ bool first_in_line(const std::string& text, size_t at) {
   return i == at;
 }
 
-/// How lines end around a place.
+/// The line ending used near a position.
 std::string line_end(const std::string& text, size_t at) {
   const size_t next = std::min(text.find('\n', at), text.rfind('\n', at));
   return next != std::string::npos && next > 0 && text[next - 1] == '\r' ? "\r\n" : "\n";
 }
 
-/// What follows a place in its line: blanks, perhaps a comma, perhaps a comment, the end of the line.
+/// What follows a position in its line: blanks, possibly a comma and a comment, the end of the line.
 struct Rest {
   size_t comma = std::string::npos;
   bool comment = false;
   size_t end_of_line = std::string::npos;  ///< npos: something else follows in the line
-  size_t behind = 0;                       ///< the first byte of what follows blanks and the comma
+  size_t behind = 0;                       ///< first byte after the blanks and the comma
 };
 
 Rest rest_of_line(const std::string& text, size_t at) {
@@ -74,7 +74,7 @@ std::string with_first_item(const std::string& text, const Sequence& all, const 
   if (std::all_of(inside.begin(), inside.end(), [](char c) { return c == ' ' || c == '\t'; }))
     return replaced(text, all.inside.begin, all.inside.end, list ? item : " " + item + " ");
   const std::string end = line_end(text, all.inside.begin), margin = indent_of(text, all.inside.begin);
-  // A comment may stand in there, and has to end before the closing bracket: it stays in front.
+  // There may be a comment inside, which must end before the closing bracket: the new item comes after it.
   const size_t last = text.find_last_not_of(" \t\r\n", all.inside.end - 1) + 1;
   if (last <= all.inside.begin) return replaced(text, all.inside.begin, all.inside.begin, end + margin + indentation + item);
   const bool closes_alone = first_in_line(text, all.inside.end);
@@ -149,7 +149,7 @@ std::string without_item(const Outline& outline, const Sequence& all, size_t ind
   const Rest rest = rest_of_line(text, gone.end);
   const bool comma = rest.comma < all.inside.end;
   if (first_in_line(text, gone.begin) && rest.end_of_line < all.inside.end) {
-    // Alone in its lines: they go as a whole, but for a comment.
+    // The item is alone in its lines: they are removed completely, except for a comment.
     if (rest.comment) return replaced(text, gone.begin, rest.behind, "");
     const size_t next = text.find('\n', rest.end_of_line);
     return replaced(text, line_begin(text, gone.begin), next == std::string::npos ? text.size() : next + 1, "");
@@ -158,7 +158,7 @@ std::string without_item(const Outline& outline, const Sequence& all, size_t ind
     gone.end = rest.behind;
     if (rest.end_of_line != std::string::npos && !rest.comment) gone.end = rest.comma + 1;
   } else if (index > 0 && text.find('\n', all.items[index - 1].end) >= gone.begin) {
-    gone.begin = all.items[index - 1].end;  // with the comma before it; in one line there is no comment in between
+    gone.begin = all.items[index - 1].end;  // includes the preceding comma; within one line there is no comment between
   }
   return replaced(text, gone.begin, gone.end, "");
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Checks of what must hold of every part of an interface. Whoever defines an interface, in a plugin too, says here how its
-// parts are tested; `etendue conform` does it.
+// Conformance checks: tests that every implementation of an interface must pass. `etendue conform` runs them. The author of a
+// new interface, also in a plugin, registers its checks with RegisterCheck.
 
 #include <functional>
 #include <map>
@@ -21,18 +21,18 @@ class Fixtures;
 
 enum class Effort { quick, standard, thorough };  ///< a quarter of the samples, CI's setting, ten times the samples
 
-/// What became of one check of one part.
+/// The result of one check of one component.
 enum class Result : std::uint8_t { passed, failed, not_tried };
 struct Outcome {
   std::string class_name;
   std::string check;   ///< such as "samples follow the density"
-  std::string part;    ///< the part as in a render description, so that it can be made again
-  std::string detail;  ///< of a failure: what was found and what was expected; of what was not tried: why
+  std::string part;    ///< the component as in a render description, so that it can be made again
+  std::string detail;  ///< for a failure the actual and the expected value; for a check that was not tried the reason
   Result result = Result::passed;
 };
 
-/// A part on trial: the part, prepared, random numbers, and where outcomes go. Checks are told apart by name; of one
-/// part a check that fails several times is reported once, with its first failure.
+/// The context of testing one component: the prepared component, random numbers, and the list of outcomes. Checks are
+/// identified by name; a check that fails several times for one component is reported once, with its first failure.
 class Trial {
  public:
   Trial(Component& part, std::string text, bool by_default, const Fixtures& fixtures, Effort effort, std::uint64_t seed)
@@ -51,24 +51,24 @@ class Trial {
   const std::string& text() const { return text_; }
   const Fixtures& fixtures() const { return *fixtures_; }
   Effort effort() const { return effort_; }
-  /// Whether all members that need not be written have their defaults.
+  /// Whether all members that are not required have their default values.
   bool by_default() const { return by_default_; }
-  /// How many samples to take where CI's setting takes `standard`.
+  /// The number of samples to take, if the standard effort (that of CI) takes `standard`.
   int samples(int standard) const {
     return effort_ == Effort::quick ? std::max(1, standard / 4) : effort_ == Effort::thorough ? 10 * standard : standard;
   }
-  /// The chance by which one statistical test of a right part may fail. There are tens of thousands of tests in a run, with
-  /// fixed seeds: together they have a chance of about one in a hundred.
+  /// The significance level: the probability that one statistical test of a correct component fails. There are tens of
+  /// thousands of tests in a run, with fixed seeds: together they fail with a probability of about one in a hundred.
   static constexpr double significance = 1e-7;
-  /// As many standard errors, two-sided.
+  /// The same as a number of standard errors, two-sided.
   static constexpr double significant_errors = 5.33;
 
-  /// Says whether a check holds; `detail` is only asked when it is needed. Returns `holds`.
+  /// Records whether a check holds; `detail` is called only if it does not. Returns `holds`.
   bool expect(bool holds, const std::string& check, const std::function<std::string()>& detail = {});
-  /// Says that a check could not be made.
+  /// Records that a check could not be made.
   void not_tried(const std::string& check, const std::string& why);
 
-  /// A folder for files of this trial alone, made when first asked for and removed with what is in it at the end of the run.
+  /// A temporary folder for this trial, created at the first call and deleted with its content at the end of the run.
   std::string folder() const;
 
   /// Uniform in [0, 1).
@@ -99,7 +99,7 @@ class Trial {
   std::map<std::string, size_t> places_;
 };
 
-/// A check in the list of all; it leaves the list when its library is closed.
+/// A node in the linked list of all checks; it is removed from the list when its library is unloaded.
 struct CheckNode {
   const std::type_info& interface;
   void (*check)(Trial&);
@@ -108,8 +108,8 @@ struct CheckNode {
 void enlist(CheckNode&) noexcept;
 void delist(CheckNode&) noexcept;
 
-/// `static const RegisterCheck<Shader> registered(check_shader);` has every shader tried by check_shader; an interface may have
-/// several checks. It only links a node into a list.
+/// `static const RegisterCheck<Shader> registered(check_shader);` lets check_shader be called for every shader; an interface
+/// may have several checks. The constructor only links a node into a list.
 template <class Interface>
 class RegisterCheck {
  public:

@@ -1,4 +1,4 @@
-// Transparent bodies, and those of Principled: what glTF has for each of their members, and a note of each that it has not.
+// Dielectrics and Principled: writes the members that glTF can express, and warns of the others.
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ void Writer::glass(Json& m, const Component& s, bool thin) {
   if (thin) exporting.inexact("light between the two faces of a pane is as glTF's thin walls have it", &s);
   if (!thin) extend(m, "KHR_materials_volume", {{"thicknessFactor", 1}});
   if (!thin && ior->varies()) {
-    // KHR_materials_dispersion: 20 over the Abbe number (n_d - 1) / (n_F - n_C).
+    // KHR_materials_dispersion: 20 / Abbe number, which is (n_d - 1) / (n_F - n_C).
     const double spread = double(ior->at(486.1f, ColorUse::coefficient)) - double(ior->at(656.3f, ColorUse::coefficient));
     if (spread > 0 && index > 1) extend(m, "KHR_materials_dispersion", {{"dispersion", 20 * spread / (index - 1)}});
   }
@@ -45,7 +45,7 @@ void Writer::note_left_out(const Component& s, std::initializer_list<const char*
   }
 }
 
-// Blue of one texture multiplies what is metal, and green the roughness.
+// The blue channel of a single texture multiplies the metalness, and its green channel the roughness.
 void Writer::metal_and_roughness(Json& m, const Component& s) {
   const auto metalness = textured_amount(s, "base_metalness", "B"), roughness = textured_amount(s, "specular_roughness", "G");
   std::optional<Json> first = metalness ? texture(*metalness->image, false) : std::nullopt,
@@ -55,7 +55,7 @@ void Writer::metal_and_roughness(Json& m, const Component& s) {
     const Color c = map ? constant_of(*map) : nullptr;
     return c && c->at(at_d_line, ColorUse::coefficient) == 0;
   };
-  // A texture of one of them alone multiplies the other too, unless that is 0; of two textures there can be but one.
+  // A texture of only one of them also multiplies the other, unless that is 0; two different textures are not possible.
   const bool both = first && second && *first == *second;
   const bool only_first = first && !second && nothing("specular_roughness");
   const bool only_second = second && !first && nothing("base_metalness");
@@ -66,7 +66,7 @@ void Writer::metal_and_roughness(Json& m, const Component& s) {
   if (first || second) metal(m)["metallicRoughnessTexture"] = first ? *first : *second;
 }
 
-// Light that goes through has the base's colour in glTF; of what is nothing but clear that is transmission_color.
+// In glTF transmitted light is tinted by the base colour; for a fully transmissive surface transmission_color is written there.
 void Writer::principled_base(Json& m, const Component& s, double clear) {
   const Ref<Component> metalness = part_of(s, "base_metalness");
   const Color same = metalness ? constant_of(*metalness) : nullptr;
@@ -89,7 +89,7 @@ void Writer::principled(Json& m, const Component& s) {
   principled_base(m, s, clear);
   const double coat = number(s, "coat_weight", 0, "R", clearcoat, "clearcoatTexture");
   double ior = number_of(s, "specular_ior");
-  if (coat > 0 && !(clear > 0)) {  // in glTF coats leave the index of what they cover alone
+  if (coat > 0 && !(clear > 0)) {  // in glTF a coat does not change the relative index of what it covers
     ior *= 1 - coat + coat / number_of(s, "coat_ior");
     ior = std::max(ior, 1 / ior);
   }
@@ -106,7 +106,7 @@ void Writer::principled(Json& m, const Component& s) {
     transmission["transmissionFactor"] = clear;
     extend(m, "KHR_materials_transmission", std::move(transmission));
     if (!thin) extend(m, "KHR_materials_volume", {{"thicknessFactor", 1}});
-    // KHR_materials_dispersion: 20 over the Abbe number.
+    // KHR_materials_dispersion: 20 / Abbe number.
     if (const double amount = number_of(s, "transmission_dispersion_scale"); amount > 0 && !thin)
       extend(m, "KHR_materials_dispersion",
              {{"dispersion", 20 * amount / number_of(s, "transmission_dispersion_abbe_number")}});
@@ -124,7 +124,7 @@ void Writer::principled(Json& m, const Component& s) {
     for (double& x : fuzz.factor) x *= weight;
     Json sheen{{"sheenColorFactor", clamped(fuzz.factor)},
                {"sheenRoughnessFactor", std::sqrt(std::max(0.0, scalar(s, "fuzz_roughness", 0.5)))}};
-    // What fibres hide is told by the strongest of their colours there.
+    // In glTF the base below the fibres is scaled down by the largest component of their colour.
     if (fuzz.texture || std::ranges::max(fuzz.factor) < 0.999 * weight)
       exporting.inexact("fibres hide as much below them as their strongest colour says in glTF", &s);
     if (fuzz.texture) sheen["sheenColorTexture"] = *fuzz.texture;

@@ -1,4 +1,4 @@
-// GltfExporter: geometry, simple materials, camera and lights for viewers and modellers.
+// GltfExporter: exports geometry, simple materials, camera and lights for viewers and modelling programs.
 
 #include <cstring>
 

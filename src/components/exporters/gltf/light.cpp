@@ -1,4 +1,4 @@
-// What surfaces send out, and where they are not there.
+// Emission of surfaces, and their opacity.
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace etendue::gltf_export {
 
 namespace {
 
-/// The opacity of a surface; null: it is there everywhere.
+/// The opacity map of a surface; null: opaque.
 Ref<Component> opacity_of(const Component& shader) {
   const std::string& type = class_of(shader);
   if (type == "MaskShader") return part_of(shader, "opacity");
@@ -26,7 +26,7 @@ bool is_same(const Ref<Component>& a, const Ref<Component>& b) {
   return a == b || (a && b && write_description(*a) == write_description(*b));
 }
 
-/// Of a step from 0 to 1 the map below it and where it is; null: the map is none.
+/// If the map is a step from 0 to 1: the map that is compared, and the cutoff; null: the map is no step.
 Ref<Component> before_step(const Component& map, double& cutoff) {
   if (class_of(map) != "RemapMap" || numbers_of(map, "to") != std::vector<double>{0, 1} || !truth_of(map, "clamped"))
     return nullptr;
@@ -38,7 +38,7 @@ Ref<Component> before_step(const Component& map, double& cutoff) {
 
 }  // namespace
 
-// In glTF the alpha of the base colour's texture is how much of the surface there is, or what is compared with a cutoff.
+// In glTF the alpha of the base colour is the surface's coverage, or is compared with a cutoff.
 void Writer::holes(Json& m, const Component& of, const char* member) {
   Json& factor = metal(m)["baseColorFactor"];
   if (factor.is_null()) factor = with_alpha({1, 1, 1});
@@ -64,7 +64,7 @@ void Writer::holes(Json& m, const Component& of, const char* member) {
   m["alphaMode"] = "BLEND";
 }
 
-// The power that an emission has over that of an even one of 1, wavelength by wavelength.
+// The ratio of the emission's power to that of a constant radiance of 1, for each wavelength.
 Color Writer::mean_radiance(const SceneObject& o, const Component& e) {
   try {
     const Ref<Component> given = copy(o), even = copy(o);
@@ -106,7 +106,7 @@ void Writer::emission(Json& m, const SceneObject& o, const Component& e) {
     const Ref<Component> opacity = shader ? opacity_of(*shader) : nullptr;
     const Color same = opacity ? constant_of(*opacity) : nullptr;
     strength = strength_of(o, e);
-    // Surfaces of which a part is there shine with that part in glTF; here with what is said.
+    // In glTF the emission of a surface is multiplied by its opacity; here it is not.
     if (same) {
       const double part = double(same->at(at_d_line, ColorUse::coefficient));
       if (part > 0) strength /= part;
@@ -131,7 +131,7 @@ void Writer::emission(Json& m, const SceneObject& o, const Component& e) {
   }
   double most = 0;
   for (double& x : light.factor) most = std::max(most, x = std::max(0.0, x * strength));
-  // The importer takes it for a lamp, not for a bright screen, by the extension, however weak it is.
+  // Because of this extension the importer treats the surface as a lamp and not as a bright screen, however weak it is.
   if (most > 0) {
     for (double& x : light.factor) x /= most;
     extend(m, "KHR_materials_emissive_strength", {{"emissiveStrength", most}});

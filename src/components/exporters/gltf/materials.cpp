@@ -1,4 +1,4 @@
-// Surfaces as metallic and rough materials with their extensions: the inverse of what the importer makes of those.
+// Writes surfaces as metallic-roughness materials with their extensions: the inverse of the importer.
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace etendue::gltf_export {
 
 namespace {
 
-/// What a metal reflects of light straight on.
+/// The reflectance of a metal at normal incidence.
 std::array<double, 3> reflected(const Color& ior) {
   std::vector<float> wavelengths, values;
   const Color absorbed = ior->imaginary();
@@ -55,7 +55,8 @@ void Writer::extend(Json& m, const char* extension, Json content) {
 std::optional<size_t> Writer::material(const SceneObject& o) {
   const Ref<Component> shader = part_of(o, "shader"), light = part_of(o, "emission"), inside = part_of(o, "interior");
   const std::string sides = word_of(o, "sides"), light_sides = light ? word_of(*light, "sides") : "";
-  // A luminaire of a given amount shines by its own area.
+  // The radiance of an emission given as an amount depends on the object's area, so that the material is specific to the
+  // object.
   const Component* amount = light && has_amount(*light) ? static_cast<const Component*>(&o) : nullptr;
   size_t& known =
       materials_[{shader.get(), light.get(), inside.get(), sides + (amount ? fmt::format("{}", fmt::ptr(amount)) : "")}];
@@ -80,7 +81,8 @@ std::optional<size_t> Writer::material(const SceneObject& o) {
   return known - 1;
 }
 
-// After the distance d so much of light is left: exp(-d absorption). The distance is where the strongest leaves 1 / e.
+// The transmittance after the distance d is exp(-d sigma_a). The attenuation distance is chosen such that the strongest
+// absorption leaves 1 / e.
 void Writer::absorption(Json& m, const Component& v) {
   if (class_of(v) != "HomogeneousVolume" || color_of(v, "extinction")) {
     exporting.inexact(fmt::format("a medium like {} is left out", class_of(v)), &v);

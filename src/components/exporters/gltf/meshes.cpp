@@ -1,4 +1,4 @@
-// Triangles into buffers.
+// Writes triangles into buffers.
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@ namespace etendue::gltf_export {
 
 namespace {
 
-// Of glTF's accessors and buffer views (specification, sections 5.1.3 and 5.11.5).
+// Constants of glTF's accessors and buffer views (specification, sections 5.1.3 and 5.11.5).
 constexpr int float_type = 5126, unsigned_int_type = 5125;
 constexpr int array_buffer = 34962, element_buffer = 34963;
 
@@ -18,7 +18,7 @@ constexpr int array_buffer = 34962, element_buffer = 34963;
 size_t Writer::accessor(const void* data, size_t bytes, size_t count, int component_type, const char* type, int target) {
   Json& views = document_["bufferViews"];
   views.push_back({{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes}, {"target", target}});
-  buffer_.append(static_cast<const char*>(data), bytes);  // of four-byte numbers: what follows stays aligned
+  buffer_.append(static_cast<const char*>(data), bytes);  // four-byte numbers, so that the following data stays aligned
   Json& accessors = document_["accessors"];
   accessors.push_back({{"bufferView", views.size() - 1}, {"componentType", component_type}, {"count", count}, {"type", type}});
   return accessors.size() - 1;

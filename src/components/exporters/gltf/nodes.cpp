@@ -1,4 +1,4 @@
-// What stands where: objects, instances, lights, the camera.
+// Writes the nodes: objects, instances, lights, the camera.
 
 #include <cmath>
 #include <numbers>
@@ -9,14 +9,14 @@ namespace etendue::gltf_export {
 
 namespace {
 
-constexpr size_t most_nodes = 1'000'000;  // an instance is written out with all that is in it
+constexpr size_t most_nodes = 1'000'000;  // instances are written out with all objects inside
 
 Json matrix(const Transform& t) {
   const auto& m = t.exact();
   return {m[0], m[4], m[8], 0, m[1], m[5], m[9], 0, m[2], m[6], m[10], 0, m[3], m[7], m[11], 1};
 }
 
-/// A turn that brings -z, along which cameras and lights of glTF look, to a direction.
+/// A rotation from -z, the viewing direction of glTF's cameras and lights, to a direction.
 Transform looking(const DoublePoint3& from, const DoubleVector3& direction) {
   const double l = length(direction);
   const DoubleVector3 d{direction.x / l, direction.y / l, direction.z / l};
@@ -25,7 +25,7 @@ Transform looking(const DoublePoint3& from, const DoubleVector3& direction) {
          Transform::rotate(std::numbers::pi, {0, 1, 0});
 }
 
-/// Whether a transform keeps right angles right: glTF has no others.
+/// Whether a transform shears, that is, does not preserve right angles, which glTF does not allow.
 bool sheared(const Transform& t) {
   const auto& m = t.exact();
   for (size_t a = 0; a < 3; ++a) {
@@ -95,7 +95,7 @@ std::optional<size_t> Writer::node_of(const SceneObject& o) {
   return node(std::move(n));
 }
 
-// KHR_lights_punctual, in the units that the importer reads: a luminance of Y = 1 is what viewers show as white.
+// KHR_lights_punctual, in the units that the importer uses: viewers show a luminance of Y = 1 as white.
 std::optional<size_t> Writer::light_node(const SceneObject& o, bool& is_light) {
   const std::string& type = class_of(o);
   is_light = type == "Point" || type == "Distant" || type == "Environment";
@@ -147,8 +147,8 @@ size_t Writer::camera_node() {
   const std::string& type = class_of(c);
   const double width = number_of(*job.image, "width"), height = number_of(*job.image, "height");
   const bool parallel = type == "OrthographicCamera";
-  // glTF asks for a near plane of a pinhole and for both of parallel rays: where nothing is clipped, so near and so far that
-  // nothing is there.
+  // glTF requires a near plane for perspective cameras and both planes for orthographic ones: if nothing is clipped, they are
+  // placed so near and so far that they cut nothing.
   const double near_clip = number_of(c, "near_clip"), far_clip = number_of(c, "far_clip");
   const double nearest = near_clip > 0 || parallel ? near_clip : (far_clip > 0 ? std::min(1e-4, far_clip / 2) : 1e-4);
   Json view;

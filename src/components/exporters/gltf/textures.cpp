@@ -1,4 +1,4 @@
-// Images of the scene as textures, and maps as what glTF has for them: a factor, a texture, colours of vertices.
+// Writes images as textures, and maps as the elements that glTF supports: a factor, a texture, vertex colours.
 
 #include <algorithm>
 #include <cmath>
@@ -22,12 +22,12 @@ Json Writer::image_entry(const std::string& file, const std::string& ending) {
   }
   document_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes.size()}});
   buffer_ += bytes;
-  buffer_.resize((buffer_.size() + 3) / 4 * 4);  // the numbers that follow stay aligned
+  buffer_.resize((buffer_.size() + 3) / 4 * 4);  // the following numbers stay aligned
   return {{"bufferView", document_["bufferViews"].size() - 1}, {"mimeType", ending == ".png" ? "image/png" : "image/jpeg"}};
 }
 
-// Our coordinates of a texel are shift + R(angle) (scale * uv), glTF's the same of coordinates that count v downwards, where a
-// turn has the other sense; what the two shifts differ by follows.
+// Here the lookup coordinates are shift + R(angle) (scale * uv); glTF uses the same formula with v downwards, where a rotation
+// has the opposite sense; the difference of the two shifts follows from that.
 std::optional<Json> Writer::texture(const Placed& placed, bool colors) {
   const Component& image = *placed.image;
   const std::string file = word_of(image, "file");
@@ -41,7 +41,7 @@ std::optional<Json> Writer::texture(const Placed& placed, bool colors) {
     exporting.inexact("an image in several files is a grey of 0.5", &image);
     return std::nullopt;
   }
-  const bool map = class_of(image) == "ImageMap";  // an image of normals has no ways to lie of its own
+  const bool map = class_of(image) == "ImageMap";  // the image of a NormalMapShader has no wrap and interpolation modes
   const std::string transfer = word_of(image, "transfer");
   if (map && colors && !word_of(image, "channel").empty())
     exporting.inexact("the choice of an image's channels is left out", &image);
@@ -66,7 +66,7 @@ std::optional<Json> Writer::texture(const Placed& placed, bool colors) {
   }
   Json used{{"index", known - 1}};
   const std::vector<double> repeat = numbers_of(image, "repeat");
-  // The image's own repetition comes behind the turn: an even one, or none, is the same before it.
+  // The image's own repeat factors apply after the rotation; equal ones, or none, commute with it.
   if (placed.angle != 0 && repeat[0] != repeat[1])
     exporting.inexact("an image that is turned is laid along u and v equally often", &image);
   const double angle = placed.angle, c = std::cos(angle), s = std::sin(angle);
@@ -95,7 +95,7 @@ std::optional<Writer::Amount> Writer::amount_of(const Component& map) {
     Amount made{1, placed, word_of(*placed->image, "channel")};
     try {
       made.grey = image_channels(word_of(*placed->image, "file")).size() < 3;
-    } catch (const Error&) {  // whoever opens the image tells
+    } catch (const Error&) {  // reported when the image is opened
     }
     return made;
   }

@@ -1,4 +1,4 @@
-// Colours and alpha of vertices as COLOR_0.
+// Writes vertex colours and alpha as COLOR_0.
 
 #include <algorithm>
 
@@ -7,8 +7,8 @@
 
 namespace etendue::gltf_export {
 
-// A mesh that has none is of the colour that its shader has then. Materials that do not ask for them get none, as COLOR_0
-// multiplies the base colour of any.
+// A mesh without vertex colours gets the colour that its shader uses in that case. For materials that do not read vertex
+// colours none are written, as COLOR_0 multiplies the base colour of any material.
 std::optional<std::vector<float>> Writer::vertex_colors(const SceneObject& o, size_t vertices, size_t material) {
   const auto found = from_vertices_.find(material);
   if (found == from_vertices_.end()) return std::nullopt;

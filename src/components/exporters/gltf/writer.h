@@ -1,5 +1,5 @@
 #pragma once
-// A job on its way into a file of glTF 2.0.
+// Writes a job as a glTF 2.0 file.
 
 #include <fmt/format.h>
 
@@ -21,29 +21,29 @@ namespace etendue::gltf_export {
 
 using Json = nlohmann::ordered_json;
 
-/// A file's name as a URI reference: all but letters, digits and what never means anything in one as percents (RFC 3986).
+/// A file name as a URI reference: percent-encodes all but letters, digits and unreserved marks (RFC 3986).
 std::string as_uri(const std::string& name);
 
-constexpr float at_d_line = 587.6f;  // [nm] where indices are told
+constexpr float at_d_line = 587.6f;  // [nm] wavelength at which indices of refraction are stated
 
-/// An object in another one, made if it is not there; of a material that of metal and roughness.
+/// Return a nested object, created if it is missing; `metal`: the object pbrMetallicRoughness of a material.
 Json& child(Json& of, const char* name);
 Json& metal(Json& material);
 std::array<double, 3> clamped(std::array<double, 3> rgb);
 Json with_alpha(const std::array<double, 3>& rgb);
-/// Whether a map colours what it is multiplied with.
+/// Whether a member has a map that is not white, so that it changes what it multiplies.
 bool colored(const Component& of, const char* member);
 
 class Writer {
  public:
   Writer(const Job& j, Exporting& e) : job(j), exporting(e) {}
-  /// The JSON and its buffer in one file, or the JSON alone with the buffer beside it.
+  /// The complete .glb file, or the JSON alone with the buffer in a file beside it.
   std::string write(bool binary);
 
  private:
-  // nodes.cpp: each gives the node's index.
+  // nodes.cpp: each returns the node's index.
   size_t node(Json);
-  /// A node that moves what stands in it; `children` are indices.
+  /// A node that transforms its children; `children` are indices.
   size_t group(const Transform&, Json children);
   Json nodes_of(const Scene&);
   /// Nothing: the object is left out.
@@ -53,9 +53,9 @@ class Writer {
   Transform still(const AnimatedTransform&, const Component& of);
 
   // meshes.cpp
-  /// The index of the mesh of an object; `placed`: with the object's transform done. Nothing: it has no triangles.
+  /// The index of an object's mesh; `placed`: vertices include the object's transform. Nothing: it has no triangles.
   std::optional<size_t> mesh(const SceneObject&, bool& placed);
-  /// COLOR_0 of an object's vertices; see vertex_colors.cpp.
+  /// The attribute COLOR_0 of an object's vertices; see vertex_colors.cpp.
   std::optional<std::vector<float>> vertex_colors(const SceneObject&, size_t vertices, size_t material);
   size_t accessor(const void* data, size_t bytes, size_t count, int component_type, const char* type, int target);
 
@@ -66,7 +66,7 @@ class Writer {
   void note_left_out(const Component& shader, std::initializer_list<const char*> members);
 
   // materials.cpp
-  /// The index of what an object's shader, emission, sides and interior are in one.
+  /// The index of the material that combines an object's shader, emission, sides and interior.
   std::optional<size_t> material(const SceneObject&);
   void surface(Json& m, const Component& shader);
   void metal_and_roughness(Json& m, const Component& principled);
@@ -76,45 +76,45 @@ class Writer {
   // light.cpp
   void holes(Json& m, const Component& of, const char* member);
   void emission(Json& m, const SceneObject&, const Component& emission);
-  /// What an emission sends out, as if it did so alike in all directions; nothing and a note: it cannot be told.
+  /// The radiance of a diffuse emission of the same power; nothing, with a warning: the power cannot be computed.
   Color mean_radiance(const SceneObject&, const Component& emission);
 
   // textures.cpp
-  /// An image as it lies on a surface: coordinates are scaled, turned, shifted.
+  /// An image and its texture coordinate transform: scale, then rotation, then shift.
   struct Placed {
     const Component* image = nullptr;
     std::array<double, 2> scale{1, 1}, shift{0, 0};
     double angle = 0;  ///< [rad]
   };
   static std::optional<Placed> placed_of(const Component& map);
-  /// A number, times a channel of an image, times what vertices have.
+  /// A number, times a channel of an image, times a vertex attribute.
   struct Amount {
     double factor = 1;
     std::optional<Placed> image = {};
     std::string channel = {}, of_vertices = {};
-    bool grey = false;  ///< the image: its red, green and blue are the same
+    bool grey = false;  ///< red, green and blue of the image are equal
   };
-  /// Nothing: the map is more than that.
+  /// Nothing: the map cannot be expressed in this form.
   static std::optional<Amount> amount_of(const Component& map);
-  /// Of a member, where it is an image of which glTF reads this channel.
+  /// The amount of a member if it is an image whose channel glTF reads.
   std::optional<Amount> textured_amount(const Component& of, const char* member, const char* channel);
-  /// A factor, and the texture it multiplies under `key`.
+  /// Returns the factor, and writes the texture that it multiplies to `to` under `key`.
   double number(const Component& of, const char* member, double otherwise, const char* channel, Json& to, const char* key);
-  /// The mean over wavelengths as a number; what is no constant is noted, and `otherwise`.
+  /// A number from a member, at the d line if it is a spectrum; if it is not constant, warns and returns `otherwise`.
   double scalar(const Component& of, const char* member, double otherwise);
-  /// A colour as factor, texture, and colours of vertices (which are such where a mesh has none).
+  /// A colour as a factor, a texture, and vertex colours (`by_vertex`: the colour of meshes that have none).
   struct Look {
     std::array<double, 3> factor{1, 1, 1};
     std::optional<Json> texture = {};
     std::optional<std::array<double, 3>> by_vertex = {};
   };
-  /// `base`: vertices may have colours of it.
+  /// `base`: the member is the base colour, which may have vertex colours.
   Look look(const Component& of, const char* member, ColorUse, bool base = false);
   Look look_of(const Component& map, ColorUse);
   void base_color(Json& m, const Look&);
-  /// An image's entry: in a .glb its bytes are in the buffer, otherwise its file is named.
+  /// The JSON entry of an image: in a .glb its bytes are in the buffer, otherwise it names the file.
   Json image_entry(const std::string& file, const std::string& ending);
-  /// `colors`: the image is of colours, not of numbers.
+  /// `colors`: the image contains colours, not numbers.
   std::optional<Json> texture(const Placed&, bool colors);
   void extend(Json& m, const char* extension, Json content);
 
@@ -127,13 +127,13 @@ class Writer {
   std::map<const SceneObject*, std::pair<std::optional<size_t>, bool>> meshes_;
   std::map<std::tuple<const Component*, const Component*, const Component*, std::string>, size_t> materials_;
   std::map<std::pair<std::string, std::string>, size_t> textures_;
-  /// What a material takes from vertices.
+  /// Vertex attributes that a material uses.
   struct FromVertices {
-    std::optional<std::array<double, 3>> color;  ///< where there is none
+    std::optional<std::array<double, 3>> color;  ///< the colour of meshes without vertex colours
     bool alpha = false;
   };
-  std::map<size_t, FromVertices> from_vertices_;  // of materials
-  FromVertices of_this_;                          // of the one that is being written
+  std::map<size_t, FromVertices> from_vertices_;  // by material index
+  FromVertices of_this_;                          // of the material being written
 };
 
 }  // namespace etendue::gltf_export

@@ -1,4 +1,4 @@
-// Lights that are no surfaces.
+// Writes light sources that are not surfaces.
 
 #include <cmath>
 #include <numbers>
@@ -8,7 +8,7 @@
 
 namespace etendue::mitsuba_export {
 
-/// The radiance of an EnvironmentEmission that is the same from everywhere, before its scale; null: it is not.
+/// The radiance of an EnvironmentEmission that is the same in all directions, before its scale; null: it is not.
 static Color constant_environment(const Component& emission) {
   const Ref<Component> map = part_of(emission, "radiance");
   return map ? constant_of(*map) : nullptr;
@@ -35,7 +35,7 @@ bool Writer::light_source(const SceneObject& o, const Transform& placed) {
   } else if (kind == "EnvironmentEmission" && !word_of(*e, "file").empty()) {
     note_illuminance();
     Node n = plugin(scene_, "emitter", "envmap");
-    // The transfer function is not asked for as what is written, or nobody would tell that it is left out.
+    // Read by get(), which does not record it as read, so that AskedMembers warns that the transfer function is left out.
     const std::string file = word_of(*e, "file"),
                       laid_out = baked_cube(exporting, file, *get(*e, "transfer").as<std::string>());
     text(n, "filename", laid_out.empty() ? exporting.copy_beside(file) : laid_out);
@@ -73,7 +73,7 @@ void Writer::spot(const SceneObject& o, const Component& e, const Transform& pla
   light(n, "intensity", o, e, Uv::as_is);
   number(n, "cutoff_angle", number_of(e, "outer_angle"));
   number(n, "beam_width", number_of(e, "inner_angle"));
-  const bool along_z = a[0] == 0 && a[1] == 0 && a[2] > 0;  // as in Mitsuba, with the picture upright
+  const bool along_z = a[0] == 0 && a[1] == 0 && a[2] > 0;  // as in Mitsuba, with the image upright
   const DoubleVector3 up = std::abs(a[1]) < 0.9 ? DoubleVector3{0, 1, 0} : DoubleVector3{1, 0, 0};
   transform(n, "to_world",
             placed * (along_z ? Transform::translate({p[0], p[1], p[2]})
@@ -95,7 +95,7 @@ void Writer::projector(const SceneObject& o, const Component& e, const Transform
     texture(n, "irradiance", *image, ColorUse::radiance, {}, Uv::from_top);
   } else if (const Ref<Component> picture = part_of(e, "picture")) {
     map(n, "irradiance", e, "picture", ColorUse::radiance, Uv::from_top);
-    // It is as wide there as its file.
+    // In Mitsuba the projected image has the aspect ratio of its file.
     const Component* inner = picture.get();
     Ref<Component> held;
     while (inner->class_info().find("map")) {
@@ -107,7 +107,7 @@ void Writer::projector(const SceneObject& o, const Component& e, const Transform
     if (class_of(*inner) != "ImageMap" && number_of(e, "aspect") != 1)
       exporting.inexact("a picture that is no image is projected over a square in Mitsuba", &e);
   }
-  // White is 1/pi of that there.
+  // Mitsuba's scale is 1/pi of ours for the same light.
   number(n, "scale", number_of(e, "scale") * strength_of(o, e) / std::numbers::pi);
   const std::string axis = word_of(e, "fov_axis");
   number(n, "fov", number_of(e, "fov"));

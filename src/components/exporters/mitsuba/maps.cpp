@@ -1,4 +1,4 @@
-// Colours and textures.
+// Writes colours and textures.
 
 #include <algorithm>
 #include <cctype>
@@ -21,12 +21,13 @@ std::string ending_of(const std::string& file) {
   return ending;
 }
 
-/// Whether Mitsuba decodes an ImageMap's file as is done here: integers are sRGB's for it, floats and what is `raw` are linear.
+/// Whether Mitsuba decodes an ImageMap's file as this program does: it decodes integers from sRGB, and treats floats and `raw`
+/// as linear.
 bool decoded_alike(const Component& image, Texels texels) {
   const std::string transfer = word_of(image, "transfer"), ending = ending_of(word_of(image, "file"));
   const bool floats = ending == ".exr" || ending == ".hdr" || ending == ".pfm",
              integers = ending == ".png" || ending == ".jpg" || ending == ".jpeg" || ending == ".bmp" || ending == ".tga";
-  // Its spectral variants take no other colours than raw ones for numbers, and as colours they take no raw ones.
+  // Its spectral variants accept only raw images of colours for numbers, and no raw images for colours.
   if (texels == Texels::normals || (texels == Texels::numbers && image_channels(word_of(image, "file")).size() >= 3))
     return transfer == "linear" || (transfer == "auto" && floats);
   return transfer == "auto" || (transfer == "linear" && (floats || texels == Texels::numbers)) ||
@@ -89,12 +90,12 @@ void Writer::texture(Node parent, const char* name, const Component& m, ColorUse
     if (const std::string above = word_of(m, "wrap_v"); above != "same" && above != wrap)
       exporting.inexact("a picture is continued along v as it is along u in Mitsuba", &m);
     if (read_as_ != Texels::colors && decoded_alike(m, Texels::normals)) truth(n, "raw", true);
-    if (read_as_ != Texels::numbers) AskedMembers::note(m, "as_number");  // of which nothing else depends
+    if (read_as_ != Texels::numbers) AskedMembers::note(m, "as_number");  // nothing else depends on it
     const std::vector<double> repeat = numbers_of(m, "repeat");
     transform(n, "to_uv", turn_over * Transform::scale({repeat[0], repeat[1], 1}) * own);
   } else if (type == "CheckerMap" && word_of(m, "space") == "uv") {
     const bool exchanged = read_as_ == Texels::numbers;
-    Node n = node("checkerboard");  // whose two values are exchanged in Mitsuba where they are numbers
+    Node n = node("checkerboard");  // Mitsuba exchanges the two values of a checkerboard of numbers
     map(n, exchanged ? "color1" : "color0", m, "first", use, uv);
     map(n, exchanged ? "color0" : "color1", m, "second", use, uv);
     const std::vector<double> repeat = numbers_of(m, "repeat");

@@ -1,4 +1,4 @@
-// Media.
+// Writes participating media.
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ void Writer::medium(Node of, const Component& v, const char* name, const Transfo
   Node n = plugin(of, "medium", "homogeneous");
   n.append_attribute("name") = name;
   if (const Color extinction = color_of(v, "extinction")) {
-    // Components of more than 1 are refused there.
+    // Mitsuba refuses components above 1.
     const auto rgb = written_rgb(extinction);
     const double largest = rgb ? std::max(1.0, *std::ranges::max_element(*rgb)) : 1;
     if (largest > 1) number(n, "scale", largest);
@@ -38,7 +38,7 @@ void Writer::medium(Node of, const Component& v, const char* name, const Transfo
       albedo += fmt::format("{}{}:{:.7g}", nm > 360 ? ", " : "", nm, sum > 0 ? scattered / sum : 0);
     }
     value(n, "spectrum", "sigma_t", total);
-    value(n, "spectrum", "albedo", scatters ? albedo : "0");  // a table of nothing but zeros is refused there
+    value(n, "spectrum", "albedo", scatters ? albedo : "0");  // Mitsuba refuses a table of zeros
   }
   phase_of(n, v);
 }
@@ -79,7 +79,7 @@ void Writer::phase_function(Node parent, const Component& p) {
 
 namespace {
 
-/// A grid in Mitsuba's format: floats, x fastest.
+/// A grid in Mitsuba's volume format: floats, x fastest.
 std::string vol_of(const VolumeGrid& grid) {
   std::string bytes = "VOL\3";
   const auto put = [&](auto number) {
@@ -96,7 +96,7 @@ std::string vol_of(const VolumeGrid& grid) {
   return bytes;
 }
 
-/// The one value of a coefficient at all wavelengths; below 0: it has several.
+/// The value of a coefficient that is constant over wavelengths; negative: it is not.
 double same_everywhere(const Color& c) {
   const double first = double(c->at(550, ColorUse::coefficient));
   for (float nm = 360; nm <= 830; nm += 10)
@@ -104,7 +104,7 @@ double same_everywhere(const Color& c) {
   return first;
 }
 
-/// Of a GridVolume or a GridMap, whose numbers written out have another name.
+/// The densities of a GridVolume or a GridMap; `written`: the name of the member with inline values.
 VolumeGrid densities_of(const Component& v, const char* written = "density") {
   if (const std::string file = word_of(v, "file"); !file.empty()) return read_volume_grid(file, word_of(v, "grid_name"));
   VolumeGrid grid;
@@ -126,7 +126,7 @@ bool along_axes(const Transform& t) {
   return true;
 }
 
-/// The grid whose numbers, times a number, a map is; null: it is no such map.
+/// The grid, if a map is a grid times a number; null: it is not.
 Ref<Component> grid_of_product(const Component& map, double& factor) {
   factor = 1;
   if (class_of(map) != "MultiplyMap" || part_of(map, "third")) return nullptr;
@@ -151,14 +151,14 @@ void Writer::grid(Node medium, const char* name, const VolumeGrid& grid, bool by
   transform(n, "to_world", placed * still(transform_of(v, "placement"), v));
 }
 
-// There a medium ends with the box of its densities along the world's axes.
+// In Mitsuba a medium ends with the world-space axis-aligned bounding box of its densities.
 void Writer::grid_medium(Node of, const Component& v, const char* name, const Transform& placed) {
   const Color given = color_of(v, "extinction"), a = color_of(v, "absorption"), s = color_of(v, "scattering");
   const double scattered = given ? 0 : same_everywhere(s), absorbed = given ? 0 : same_everywhere(a),
                whole = given ? same_everywhere(given) : scattered + absorbed;
   const auto leave_out = [&](const char* why) {
     exporting.inexact(fmt::format("a medium on a grid is left out {}", why), &v);
-    for (const Member& m : v.class_info().members) AskedMembers::note(v, m.name);  // told once is enough
+    for (const Member& m : v.class_info().members) AskedMembers::note(v, m.name);  // one warning is enough
   };
   if (whole < 0 || scattered < 0 || absorbed < 0) return leave_out("whose extinction differs from wavelength to wavelength");
   VolumeGrid densities, albedos;
@@ -191,7 +191,8 @@ void Writer::grid_medium(Node of, const Component& v, const char* name, const Tr
     exporting.inexact("a grid that is turned fills a box along the world's axes in Mitsuba, with what is at its border", &v);
 }
 
-// What a medium of Mitsuba becomes whose grid is turned, or whose albedo lies elsewhere.
+// Writes a MapVolume of the form that the importer makes from a Mitsuba medium whose grid is rotated, or whose albedo has
+// another placement.
 bool Writer::map_medium(Node of, const Component& v, const char* name, const Transform& outer) {
   const Ref<Component> extinction = part_of(v, "extinction"), density = part_of(v, "density"), albedo = part_of(v, "albedo");
   double scale = 1;

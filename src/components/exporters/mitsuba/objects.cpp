@@ -1,4 +1,4 @@
-// Shapes and instances.
+// Writes shapes and instances.
 
 #include <cmath>
 
@@ -14,7 +14,7 @@ void Writer::objects(Node parent, const Scene& scene, const Transform& outer) {
 void Writer::object(Node parent, const SceneObject& o, const Transform& outer) {
   const Transform placed = outer * still(transform_of(o, "transform"), o);
   const std::string& type = class_of(o);
-  if (o.surrounds()) return;  // see camera
+  if (o.surrounds()) return;  // see view.cpp, `camera`
   if (const auto* inner = dynamic_cast<const Scene*>(&o)) return objects(parent, *inner, placed);
   if (type == "Instance") return instance(parent, o, placed);
   if (light_source(o, placed)) return;
@@ -35,7 +35,7 @@ void Writer::object(Node parent, const SceneObject& o, const Transform& outer) {
   if (inside) medium(n, *inside, "interior", placed);
   if (around_ && enterable_once_prepared(o)) medium(n, *around_, "exterior", {});
   if (sides == "back") truth(n, "flip_normals", true);
-  // Its emitters shine from the front, which `flip_normals` makes the back.
+  // Mitsuba's emitters emit from the front, which `flip_normals` turns into the back.
   if (const std::string shines = light ? word_of(*light, "sides") : ""; light && shines != (sides == "back" ? "back" : "front"))
     exporting.inexact(fmt::format("light from {} comes from the {} alone in Mitsuba",
                                   shines == "both" ? "both sides" : "the " + shines, sides == "back" ? "back" : "front"),
@@ -53,7 +53,7 @@ Node Writer::shape(Node parent, const SceneObject& o, const Transform& placed, U
     number(n, "radius", number_of(o, "radius"));
     transform(n, "to_world", placed);
   } else if (type == "Rectangle") {
-    // From [-1, 1] x [-1, 1] to the corner and the edges.
+    // Maps [-1, 1] x [-1, 1] to the corner and the edges.
     n = plugin(parent, "shape", "rectangle");
     const std::vector<double> p = numbers_of(o, "corner"), u = numbers_of(o, "edge_u"), v = numbers_of(o, "edge_v");
     const DoubleVector3 across = cross(DoubleVector3{u[0], u[1], u[2]}, DoubleVector3{v[0], v[1], v[2]});
@@ -91,7 +91,7 @@ Node Writer::mesh(Node parent, const SceneObject& o, const Transform& placed, co
   const std::optional<ExportedMesh> triangles = mesh_of(o, done);
   if (!triangles) return {};
   flat = flat || triangles->normals.empty();
-  // A file that Mitsuba reads stays as it is, with whatever else it tells of vertices and faces.
+  // A file that Mitsuba can read is used unchanged, including its other vertex and face attributes.
   name = name.ends_with(".ply") ? exporting.copy_beside(name) : exporting.write_beside("mesh", "ply", ply_of(*triangles));
   Node n = plugin(parent, "shape", "ply");
   text(n, "filename", name);

@@ -1,4 +1,4 @@
-// Surfaces.
+// Writes surfaces as bsdfs.
 
 #include "etendue/describe/registry.h"
 #include "writer.h"
@@ -7,7 +7,7 @@ namespace etendue::mitsuba_export {
 
 namespace {
 
-/// What Mitsuba's bsdfs of this kind do on both sides by themselves.
+/// Whether Mitsuba's bsdf for this shader handles both sides by itself.
 bool through(const Component& shader) {
   const std::string& type = class_of(shader);
   if (type == "MaskShader" || type == "BumpShader" || type == "NormalMapShader") {
@@ -97,7 +97,7 @@ void Writer::conductor(Node parent, const Component& s, Uv uv) {
 
 Node Writer::tilted(Node parent, const Component& s, Uv uv) {
   const bool bumps = class_of(s) == "BumpShader";
-  if (bumps && class_of(*part_of(s, "height")) == "ConstantMap") return parent;  // which is flat
+  if (bumps && class_of(*part_of(s, "height")) == "ConstantMap") return parent;  // a constant height: the surface stays flat
   Node n = plugin(parent, bumps ? "bumpmap" : "normalmap");
   truth(n, "use_shadowing_function", truth_of(s, "shadowing"));
   truth(n, "flip_invalid_normals", truth_of(s, "opposite_slopes"));
@@ -167,7 +167,7 @@ void Writer::bsdf(Node parent, const Component& s, bool both_sides, Uv uv) {
     scalar_map(n, "weight", s, "amount", uv);
     inner(n, "first");
     inner(n, "second");
-  } else if (type == "TwoSidedShader") {  // `parent` is a "twosided" already, unless the front alone is seen
+  } else if (type == "TwoSidedShader") {  // `parent` is a "twosided" already, unless only the front is visible
     inner(parent, "front");
     if (both_sides) inner(parent, "back");
   } else if (type == "BumpShader" || type == "NormalMapShader") {

@@ -1,4 +1,4 @@
-// Numbers, spectra and transforms as Mitsuba writes them.
+// Writes numbers, spectra and transforms in Mitsuba's syntax.
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ void Writer::value(Node parent, const char* tag, const char* name, const std::st
 
 void Writer::spectrum(Node parent, const char* name, const Color& c, ColorUse use) {
   if (auto rgb = written_rgb(c)) {
-    // Here what is more than 1 is cut, there it is refused.
+    // This program clamps reflectances to 1, Mitsuba refuses larger ones.
     if (use == ColorUse::reflectance)
       for (double& component : *rgb) component = std::clamp(component, 0.0, 1.0);
     value(parent, "rgb", name, fmt::format("{} {} {}", (*rgb)[0], (*rgb)[1], (*rgb)[2]));

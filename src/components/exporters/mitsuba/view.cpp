@@ -1,4 +1,4 @@
-// The sensor, its film, and the integrator.
+// Writes the sensor, its film, and the integrator.
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,7 @@ void Writer::camera(Node n) {
     text(n, "fov_axis", axis == "width" ? "x" : (axis == "height" ? "y" : axis));
     const std::vector<double> middle = numbers_of(c, "principal_point");
     const double distance = number_of(c, "focus_distance"), radius = number_of(c, "lens_radius");
-    if (radius > 0 && (middle[0] != 0 || middle[1] != 0)) {  // it refuses to load one
+    if (radius > 0 && (middle[0] != 0 || middle[1] != 0)) {  // Mitsuba refuses to load such a sensor
       exporting.inexact("the middle of a picture through a lens is in its axis in Mitsuba", &c, "principal_point");
     } else {
       if (middle[0] != 0) number(n, "principal_point_offset_x", -middle[0]);
@@ -46,7 +46,7 @@ void Writer::camera(Node n) {
   } else {
     exporting.inexact(fmt::format("Mitsuba has no sensor like {}: a perspective one stands for it", class_of(c)), &c);
   }
-  // It asks for both: where nothing is clipped here, so near and so far that nothing is there.
+  // Mitsuba has a default for both: if nothing is clipped here, they are set so near and so far that they cut nothing.
   const double near_clip = number_of(c, "near_clip"), far_clip = number_of(c, "far_clip");
   number(n, "near_clip", near_clip > 0 ? near_clip : (far_clip > 0 ? std::min(1e-4, far_clip / 2) : 1e-4));
   number(n, "far_clip", far_clip > 0 ? far_clip : std::max(1e7, 2 * near_clip));
@@ -94,7 +94,7 @@ void Writer::film(Node sensor) {
   }
 }
 
-// Mitsuba's camera passes by all emitters or by none.
+// In Mitsuba the camera sees all emitters or none.
 void Writer::hide_emitters(Node integrator) {
   std::vector<const SceneObject*> seen, unseen;
   const auto sort = [&](const Scene& scene, const auto& again) -> void {

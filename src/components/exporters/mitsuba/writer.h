@@ -1,5 +1,5 @@
 #pragma once
-// A job on its way into an XML file of Mitsuba 3.
+// Writes a job as an XML file of Mitsuba 3.
 
 #include <fmt/format.h>
 
@@ -28,10 +28,10 @@ inline Node plugin(Node parent, const char* tag, const char* type) {
   return n;
 }
 
-/// Whether v of an object's surface coordinates is 1 - that of Mitsuba's shape.
+/// Whether v of an object's texture coordinates is 1 - v of Mitsuba's shape.
 enum class Uv : std::uint8_t { as_is, from_top };
 
-/// What the texels of an image stand for.
+/// The meaning of an image's texels.
 enum class Texels : std::uint8_t { colors, numbers, normals };
 
 class Writer {
@@ -50,21 +50,21 @@ class Writer {
   void transform(Node, const char* name, const Transform&);
   Transform still(const AnimatedTransform&, const Component& of);
 
-  // maps.cpp: a property that is a colour or a texture.
+  // maps.cpp: properties that are a colour or a texture.
   void map(Node, const char* name, const Component& of, const char* member, ColorUse, Uv);
   void texture(Node, const char* name, const Component& map, ColorUse, const Transform& coordinates, Uv);
-  /// A number; of what is a texture it is noted, and 0.5.
+  /// A number; for a texture warns and returns 0.5.
   double scalar(const Component& of, const char* member);
   void scalar_map(Node, const char* name, const Component& of, const char* member, Uv);
   void normals(Node, const char* name, const Component& image, Uv);
-  /// The ImageMap, or one in its place whose file Mitsuba reads as it is read here.
+  /// The ImageMap, or a replacement whose file Mitsuba reads as this program reads the original.
   Ref<Component> readable(const Component& image);
 
   // shaders.cpp
   void surface(Node shape, const Component* shader, bool both_sides, Uv);
-  /// `both_sides`: what Mitsuba has on the front alone is made two-sided, inside of what lets light through.
-  /// A bump or normal map as a node, into which what is tilted is written.
+  /// Writes a bump or normal map and returns its node, into which the bsdf that it modifies is written.
   Node tilted(Node parent, const Component& shader, Uv);
+  /// `both_sides`: Mitsuba's one-sided bsdfs are made two-sided, inside of those that transmit light.
   void bsdf(Node parent, const Component& shader, bool both_sides, Uv);
   void dielectric(Node, const Component&, Uv);
   void conductor(Node, const Component&, Uv);
@@ -73,7 +73,7 @@ class Writer {
   // objects.cpp
   void objects(Node parent, const Scene&, const Transform& outer);
   void object(Node parent, const SceneObject&, const Transform& outer);
-  /// The shape's node; none: Mitsuba has no such shape.
+  /// The shape's node; empty: Mitsuba has no such shape.
   Node shape(Node parent, const SceneObject&, const Transform& placed, Uv&);
   Node mesh(Node parent, const SceneObject&, const Transform& placed, const Transform& outer);
   void instance(Node parent, const Component& instance, const Transform& placed);
@@ -86,10 +86,10 @@ class Writer {
   void projector(const SceneObject&, const Component& emission, const Transform& placed);
 
   // media.cpp
-  /// What fills a shape that stands in the world so.
+  /// Writes the interior of a shape with this transform to world space.
   void medium(Node of, const Component& volume, const char* name, const Transform& placed);
   void grid_medium(Node of, const Component& volume, const char* name, const Transform& placed);
-  /// Whether Mitsuba has such a medium.
+  /// Returns whether Mitsuba has such a medium.
   bool map_medium(Node of, const Component& volume, const char* name, const Transform& placed);
   void grid(Node medium, const char* name, const VolumeGrid&, bool by_file, const Component& volume, const Transform& placed);
   void phase_of(Node medium, const Component& volume);
@@ -107,12 +107,11 @@ class Writer {
   Exporting& exporting;
   pugi::xml_document document_;
   Node scene_;
-  Ref<Component> around_;            // the medium around everything
-  Texels read_as_ = Texels::colors;  // of the texture that is written
-  std::map<std::pair<const Component*, Texels>, Ref<Component>>
-      baked_;                            // by images and products of them, as numbers or colours
-  std::set<const Component*> readable_;  // images that were written for Mitsuba
-  std::vector<Ref<Component>> made_;     // images for shaders that hold one of their own
+  Ref<Component> around_;                                                // the medium that surrounds the scene
+  Texels read_as_ = Texels::colors;                                      // of the texture being written
+  std::map<std::pair<const Component*, Texels>, Ref<Component>> baked_;  // by image or product of images, as numbers or colours
+  std::set<const Component*> readable_;                                  // images that were written for Mitsuba
+  std::vector<Ref<Component>> made_;                                     // images of shaders that name a file instead of a map
   std::map<const Component*, std::string> groups_;
   std::map<std::tuple<const Component*, bool, Uv>, std::string> bsdfs_;
 };

@@ -1,4 +1,4 @@
-// Lights without extent, and environments.
+// Writes delta lights and environments.
 
 #include <cmath>
 
@@ -12,15 +12,16 @@ namespace {
 
 constexpr double exact_pi = 3.14159265358979323846;
 
-/// An image in longitude and latitude as a square of equal areas (Clarberg 2008, "Fast equal-area mapping of the (hemi)sphere
-/// using SIMD"), whose middle is at the top, for a light that is turned so that its z is the environment's y.
+/// Converts an image in longitude and latitude to an equal-area square (Clarberg 2008, "Fast equal-area mapping of the
+/// (hemi)sphere using SIMD") with the upper pole at the centre, for a light that is rotated so that its z axis is the
+/// environment's y axis.
 LinearImage squared(const LinearImage& image) {
   LinearImage square;
-  // As many pixels as the image has near its equator.
+  // The resolution of the image near its equator.
   square.width = square.height = std::max(image.width / 2, 1);
   const int n = square.width;
   square.rgb.resize(size_t(n) * size_t(n) * 3);
-  constexpr int parts = 3;  // across and down each pixel
+  constexpr int parts = 3;  // samples per pixel, along each side
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       double sum[3]{};
@@ -30,7 +31,7 @@ LinearImage squared(const LinearImage& image) {
         const double phi = (r == 0 ? 1 : (std::abs(b) - std::abs(a)) / r + 1) * exact_pi / 4;
         const double ring = r * std::sqrt(2 - r * r), z = std::copysign(1 - r * r, distance);
         const double x = std::copysign(std::cos(phi), a) * ring, y = std::copysign(std::sin(phi), b) * ring;
-        // Of the environment: (x, z, -y), of which u = atan2(x, -z) / (2 pi).
+        // In the environment's space (x, z, -y), where u = atan2(x, -z) / (2 pi).
         double u = std::atan2(x, y) / (2 * exact_pi);
         if (u < 0) u += 1;
         const double px = u * image.width - 0.5, py = std::acos(std::clamp(z, -1.0, 1.0)) / exact_pi * image.height - 0.5;
@@ -78,7 +79,7 @@ std::string Writer::environment(const SceneObject& object, const Component& emis
     }
     text += fmt::format(" \"string filename\" \"{}\" \"float scale\" {}", name, scale);
   }
-  // pbrt's z is up, of the environment y: (x, y, z) there is (x, z, -y) here.
+  // pbrt's z axis points up, the environment's y axis here: (x, y, z) in pbrt is (x, z, -y) here.
   const Transform turn(Transform::DoubleMatrix{1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0});
   return "AttributeBegin\n" + transform_of(object.transform, "ConcatTransform") + "ConcatTransform " + matrix(turn) + "\n" +
          text + "\nAttributeEnd\n";

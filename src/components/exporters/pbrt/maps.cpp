@@ -1,4 +1,4 @@
-// Maps as textures.
+// Writes maps as textures.
 
 #include "components/exporters/asked_members.h"
 #include "components/exporters/baked_images.h"
@@ -42,7 +42,7 @@ std::string Writer::image(const Component& map, const std::string& more, bool nu
   const std::vector<double> repeat = numbers_of(map, "repeat");
   if (more.empty() && repeat.size() == 2 && (repeat[0] != 1 || repeat[1] != 1))
     text += fmt::format(" \"float uscale\" {} \"float vscale\" {}", repeat[0], repeat[1]);
-  if (!numbers) AskedMembers::note(map, "as_number");  // of which no colour depends
+  if (!numbers) AskedMembers::note(map, "as_number");  // no colour depends on it
   return text + more;
 }
 
@@ -58,7 +58,7 @@ std::string Writer::texture(const Component& map, bool numbers) {
     if (made) return texture(*made, true);
   }
   const std::string key = numbers ? "float" : "spectrum";
-  // The same map may be asked for as numbers and as colours: two textures.
+  // If a map is used both as numbers and as colours, two textures are written.
   std::string& known = textures_[&map];
   const std::string name = exporting.name_for(map) + (numbers ? "_number" : "");
   if (known.find("|" + name + "|") != known.npos) return name;

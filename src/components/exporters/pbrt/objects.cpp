@@ -1,4 +1,4 @@
-// Objects, what they emit, and instances.
+// Writes objects with their emission, and instances.
 
 #include <algorithm>
 #include <array>
@@ -11,9 +11,9 @@ namespace etendue::pbrt_export {
 
 namespace {
 
-constexpr size_t most_inline = 64;  ///< vertices of a mesh that is written into the scene itself
+constexpr size_t most_inline = 64;  ///< vertices of a mesh that is written inline
 
-/// The twelve triangles of a box, each face with corners and surface coordinates of its own.
+/// The twelve triangles of a box; each face has its own corners and texture coordinates.
 ExportedMesh box_of(const Component& box) {
   const std::vector<double> centre = numbers_of(box, "centre"), size = numbers_of(box, "size");
   ExportedMesh mesh;
@@ -61,7 +61,7 @@ std::string Writer::shape(const SceneObject& object, const std::string& more, bo
     const std::vector<double> r = numbers_of(object, "radii");
     return moved("centre") + fmt::format("Scale {} {} {}\nShape \"sphere\"{}\n", r[0], r[1], r[2], more);
   }
-  // pbrt's discs have surface coordinates that go around.
+  // pbrt's disks have polar texture coordinates.
   const bool disc = name == "Disc" || name == "Annulus";
   const bool as_disc = disc && (word_of(object, "coordinates") == "around" || !textured(part_of(object, "shader").get()));
   if (name == "Disc" && !as_disc) {
@@ -155,7 +155,7 @@ void Writer::object(const SceneObject& object, bool instanced) {
   if (interior)
     if (const std::string inside = medium_of(*interior); !inside.empty())
       medium = fmt::format("MediumInterface \"{}\" \"{}\"\n", inside, around_);
-  // What has no inside has the same medium on both sides: beyond a wall, light that comes back from it goes on in that.
+  // An object without an interior has the same medium on both sides, so that light reflected by a wall continues in it.
   if (medium.empty() && !around_.empty() && !enterable_once_prepared(object))
     medium = fmt::format("MediumInterface \"{0}\" \"{0}\"\n", around_);
   if (word_of(object, "sides") != "both") exporting.inexact("surfaces scatter light on both sides in pbrt", &object);
@@ -175,7 +175,7 @@ void Writer::instance(const Component& object) {
   std::string& name = instanced_[scene.get()];
   if (name.empty()) {
     name = exporting.name_for(*scene);
-    // What it holds is defined where no transform applies.
+    // Instanced objects are defined under the identity transform.
     out_ += fmt::format("AttributeBegin\nIdentity\nObjectBegin \"{}\"\n", name);
     const auto& inner = dynamic_cast<const Scene&>(*scene);
     objects(inner, true);

@@ -1,4 +1,4 @@
-// PbrtExporter: a job as a scene of pbrt-v4.
+// PbrtExporter: exports a job as a scene of pbrt-v4.
 
 #include "components/exporters/asked_members.h"
 #include "writer.h"
@@ -7,7 +7,7 @@ namespace etendue {
 
 namespace pbrt_export {
 
-/// What surrounds all is the medium around the camera, and outside of all shapes.
+/// The interior of Surroundings becomes the medium around the camera and outside of all shapes.
 void Writer::surroundings() {
   for (const Ref<SceneObject>& object : job.scene->objects) {
     if (!object->surrounds()) continue;

@@ -1,4 +1,4 @@
-// Shaders as materials, and media.
+// Writes shaders as materials, and media.
 
 #include "writer.h"
 
@@ -6,7 +6,7 @@ namespace etendue::pbrt_export {
 
 Surface Writer::surface_of(const Component* shader) {
   Surface surface;
-  // Holes belong to the shape in pbrt.
+  // In pbrt opacity belongs to the shape.
   if (shader && shader->class_info().name == "MaskShader") {
     surface.alpha = number_map("alpha", *shader, "opacity");
     const Ref<Component> inner = part_of(*shader, "shader");
@@ -24,7 +24,7 @@ Surface Writer::surface_of(const Component* shader) {
 
 std::string Writer::material_of(const Component& shader) {
   if (const auto found = materials_.find(&shader); found != materials_.end()) return found->second;
-  // Bumps and normals are parameters of the material under them.
+  // Bump and normal maps are parameters of the material that they modify.
   const Component* base = &shader;
   std::string relief;
   Ref<Component> held;
@@ -74,7 +74,7 @@ std::string Writer::roughness_of(const Component& shader, const std::string& pre
 std::string Writer::index_of(const Component& shader, const std::string& name) {
   Color c = color_of(shader, "ior");
   if (!c) return fmt::format(" \"float {}\" {}", name, number_of(shader, "ior"));
-  // pbrt's is that of one side against the other.
+  // pbrt's eta is the relative index of the two sides.
   const Color outside = shader.class_info().find("exterior") ? color_of(shader, "exterior") : nullptr;
   if (outside && outside->varies()) {
     std::vector<float> wavelengths, quotients;
@@ -119,7 +119,7 @@ std::string Writer::layered(const Component& shader, std::string& type) {
   text += diffuse ? color_map("reflectance", *bottom, "color")
                   : roughness_of(*bottom, "conductor.") + metal_of(*bottom, "conductor.");
   text += " \"bool remaproughness\" false";
-  // pbrt's layer absorbs as if its extinction were 1; a thickness of nothing makes that clear.
+  // pbrt's layer always has the extinction 1; a thickness of 0 makes it clear.
   const Ref<Component> thickness = part_of(shader, "thickness");
   const Color t = thickness ? constant_of(*thickness) : nullptr;
   if (!medium) return text + " \"float thickness\" 0";

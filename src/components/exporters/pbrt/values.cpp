@@ -1,4 +1,4 @@
-// Numbers, spectra and transforms as pbrt writes them.
+// Writes numbers, spectra and transforms in pbrt's syntax.
 
 #include "writer.h"
 
@@ -50,7 +50,7 @@ std::string Writer::light_of(const Component& emission, const char* name, const 
   return light(name, factor == 1 ? c : scaled_spectrum(factor, c));
 }
 
-// A diffuse luminaire of area A sends out pi A times its radiance on each side, a point 4 pi times its intensity.
+// A diffuse luminaire of area A emits pi A times its radiance on each side, a point light 4 pi times its intensity.
 double Writer::amount_of(const Component& emission, const SpectralFunction& radiance, const SceneObject& object) {
   for (const char* amount : {"luminous_intensity", "illuminance"})
     if (emission.class_info().find(amount) && number_of(emission, amount) > 0)
@@ -70,7 +70,7 @@ double Writer::amount_of(const Component& emission, const SpectralFunction& radi
     sum += value;
     seen += 683.002 * observer(float(nm)).y * value;
   }
-  // A copy, as objects may change what they hold when they are prepared.
+  // A copy, as preparing may change an object's members.
   const Ref<SceneObject> twin = ref_cast<SceneObject>(copy(object));
   if (!point) prepare_tree(*twin);
   const double each = point ? 4 : double(twin->area(0)) * (word_of(emission, "sides") == "both" ? 2 : 1);

@@ -1,4 +1,4 @@
-// Camera, film, filter, sampler and integrator.
+// Writes camera, film, filter, sampler and integrator.
 
 #include <cmath>
 #include <filesystem>
@@ -11,14 +11,14 @@ namespace etendue::pbrt_export {
 namespace {
 constexpr double exact_pi = 3.14159265358979323846;
 
-/// How far the point is from the camera that is sharp [m].
+/// The distance from the camera to the plane in focus [m].
 double focus_of(const Component& camera) {
   const std::vector<double> f = numbers_of(camera, "from"), t = numbers_of(camera, "to");
   const double focus = number_of(camera, "focus_distance");
   return focus > 0 ? focus : std::sqrt(std::pow(t[0] - f[0], 2) + std::pow(t[1] - f[1], 2) + std::pow(t[2] - f[2], 2));
 }
 
-/// A LensCamera's surfaces, with its stop as it is opened [m].
+/// A LensCamera's surfaces, with the current diameter of its aperture stop [m].
 std::vector<LensSurface> lens_of(const Component& camera) {
   const Value file = value_of(camera, "file"), list = value_of(camera, "surfaces");
   const FilePath* path = file.as<FilePath>();
@@ -30,7 +30,7 @@ std::vector<LensSurface> lens_of(const Component& camera) {
   return surfaces;
 }
 
-/// By what pbrt's irradiance of the film is to be multiplied.
+/// The factor from pbrt's film irradiance to this program's pixel values.
 double lens_brightness(const Component& camera) {
   if (camera.class_info().name != "LensCamera" || word_of(camera, "measures") == "irradiance") return 1;
   LensSystem lens;
@@ -41,10 +41,10 @@ double lens_brightness(const Component& camera) {
   return 1 / pupils.solid_angle();
 }
 
-/// Lengths of the table are millimetres.
+/// Lengths in the table are in millimetres.
 std::string realistic(Exporting& exporting, const Component& camera) {
   std::string table = "# radius of curvature, thickness, index, diameter\n";
-  double stop = 1e3;  // of what pbrt takes for a stop it makes nothing wider than it is
+  double stop = 1e3;  // [mm]; pbrt only narrows stops to this diameter, so that a large value changes nothing
   const std::vector<LensSurface> surfaces = lens_of(camera);
   for (size_t i = 0; i < surfaces.size(); ++i) {
     const LensSurface& s = surfaces[i];
@@ -78,7 +78,7 @@ void Writer::camera() {
     keys = animated->keys();
   else
     keys = {{0, moved.as<Transform>() ? *moved.as<Transform>() : Transform()}};
-  // +x is to the left of our pictures, to the right of pbrt's. pbrt's spheres look elsewhere, as its importer says.
+  // +x points to the left in our images, to the right in pbrt's. For pbrt's spherical cameras see its importer.
   using M = Transform::DoubleMatrix;
   const bool square = spherical && word_of(camera, "mapping") == "equal_area";
   const Transform turned = square      ? Transform(M{-1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0})
@@ -114,13 +114,13 @@ void Writer::camera() {
   const bool across_width = axis == "width" || (axis == "smaller" && aspect <= 1) || (axis == "larger" && aspect > 1);
   const bool shorter_is_width = aspect <= 1;
   double tangent = std::tan(field_of_view(camera) * exact_pi / 360);
-  if (axis == "diagonal") tangent /= std::hypot(aspect, 1.0);  // of the height
+  if (axis == "diagonal") tangent /= std::hypot(aspect, 1.0);  // becomes the tangent across the height
   if (across_width && !shorter_is_width) tangent /= aspect;
   if (!across_width && shorter_is_width) tangent *= aspect;
   out_ += fmt::format("Camera \"perspective\" \"float fov\" {}", 2 * std::atan(tangent) * 180 / exact_pi);
   if (const double radius = number_of(camera, "lens_radius"); radius > 0)
     out_ += fmt::format(" \"float lensradius\" {} \"float focaldistance\" {}", radius, focus_of(camera));
-  // A lens that is shifted sees a window beside the middle; the shorter side of pbrt's is 2 long.
+  // A shifted lens sees an off-centre window; the shorter side of pbrt's window has length 2.
   if (const std::vector<double> shift = numbers_of(camera, "principal_point"); shift[0] != 0 || shift[1] != 0) {
     const double x = std::max(aspect, 1.0), y = std::max(1 / aspect, 1.0);
     out_ += fmt::format(" \"float screenwindow\" [ {} {} {} {} ]", x * (-1 - 2 * shift[0]), x * (1 - 2 * shift[0]),
@@ -138,7 +138,7 @@ void Writer::film() {
   const double open = number_of(*job.camera, "shutter_open"), close = number_of(*job.camera, "shutter_close");
   out_ += fmt::format("Film \"rgb\" \"integer xresolution\" {} \"integer yresolution\" {} \"string filename\" \"{}\"",
                       image.width, image.height, file);
-  // The longer its shutter is open, the brighter pbrt's picture is.
+  // pbrt's image is brighter the longer its shutter is open.
   const double brightness = lens_brightness(*job.camera) / (close > open ? close - open : 1);
   if (brightness != 1) out_ += fmt::format(" \"float iso\" {}", 100 * brightness);
   if (job.camera->class_info().name == "LensCamera")
@@ -183,7 +183,7 @@ void Writer::integrator() {
     if (name == ours) type = theirs;
   if (!type) exporting.inexact(fmt::format("pbrt has no {}: paths are traced", name), &renderer);
   out_ += fmt::format("Integrator \"{}\"", type ? type : "volpath");
-  // Segments of a path: pbrt counts the scattering between them.
+  // The depth is in segments; pbrt counts the scattering events between them.
   const double depth = name == "DirectRenderer"                  ? 2
                        : renderer.class_info().find("max_depth") ? number_of(renderer, "max_depth")
                                                                  : 0;

@@ -1,5 +1,5 @@
 #pragma once
-// A job on its way into a file of pbrt-v4.
+// Writes a job as a file of pbrt-v4.
 
 #include <fmt/format.h>
 
@@ -15,10 +15,10 @@
 
 namespace etendue::pbrt_export {
 
-/// What stands around a shader in pbrt, or at the shape that has it.
+/// A shader in pbrt: a material, and a parameter of the shape that has it.
 struct Surface {
-  std::string material;  ///< a name; the null material's is "interface"
-  std::string alpha;     ///< a parameter of the shape
+  std::string material;  ///< name; that of pbrt's null material is "interface"
+  std::string alpha;     ///< parameter of the shape
 };
 
 class Writer {
@@ -27,16 +27,16 @@ class Writer {
   std::string write();
 
  private:
-  // values.cpp: parameters, each with a blank before it.
+  // values.cpp: parameters, each with a leading blank.
   std::string spectrum(const char* name, const Color&, ColorUse) const;
-  /// Of light, with the scale that undoes what v4 does to a spectrum.
+  /// A light's spectrum, with the scale that undoes v4's normalization.
   std::string light(const char* name, const Color&) const;
-  /// The light of an emission's radiance; none and a note: it is no constant.
+  /// The light from an emission's radiance; empty, with a warning: it is not constant.
   std::string light_of(const Component& emission, const char* name, const SceneObject& object);
-  /// What an amount of light that is asked for multiplies the radiance by; what cannot be known is noted, and 1.
+  /// The factor by which a requested amount of light multiplies the radiance; 1, with a warning, if it cannot be computed.
   double amount_of(const Component& emission, const SpectralFunction& radiance, const SceneObject& object);
 
-  // maps.cpp: a parameter, whose texture is written first.
+  // maps.cpp: a parameter; textures that it refers to are written first.
   std::string color_map(const char* name, const Component& part, const char* member, ColorUse = ColorUse::reflectance);
   std::string number_map(const char* name, const Component& part, const char* member);
   std::string texture(const Component& map, bool numbers);
@@ -56,7 +56,7 @@ class Writer {
   // objects.cpp
   void objects(const Scene&, bool instanced);
   void object(const SceneObject&, bool instanced);
-  /// The shape's directive; none and a note: pbrt has no such shape.
+  /// The shape's directive; empty, with a warning: pbrt has no such shape.
   std::string shape(const SceneObject&, const std::string& more, bool& placed);
   std::string mesh(const ExportedMesh&, const std::string& more);
   std::string emission_of(const SceneObject&, bool& reversed);
@@ -81,8 +81,8 @@ class Writer {
   const Job& job;
   Exporting& exporting;
   std::string out_;
-  std::string around_;                                ///< the medium around everything; empty: none
-  std::map<const Component*, Ref<Component>> baked_;  // by images that are numbers, and products of images and colours
+  std::string around_;                                ///< the medium that surrounds the scene; empty: none
+  std::map<const Component*, Ref<Component>> baked_;  // by images read as numbers, and products of images and colours
   std::map<const Component*, std::string> materials_, textures_, media_, instanced_;
 };
 

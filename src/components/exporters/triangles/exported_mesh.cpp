@@ -19,11 +19,11 @@ std::vector<double> list(const Component& part, const char* member) {
   return numbers ? numbers->values : std::vector<double>();
 }
 
-/// Gives a mesh that has none the normals that TriangleMesh finds for it.
+/// Computes normals as TriangleMesh does, for a mesh without any.
 void find_normals(ExportedMesh& mesh) {
   MeshData data;
   for (const std::uint32_t i : mesh.indices)
-    if (3 * size_t(i) + 2 >= mesh.positions.size()) return;  // nobody has checked them yet
+    if (3 * size_t(i) + 2 >= mesh.positions.size()) return;  // indices have not been checked before
   for (size_t i = 0; i + 2 < mesh.positions.size(); i += 3)
     data.positions.push_back({float(mesh.positions[i]), float(mesh.positions[i + 1]), float(mesh.positions[i + 2])});
   for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
@@ -64,7 +64,7 @@ ExportedMesh from_members(const SceneObject& object) {
   return mesh;
 }
 
-/// Each triangle with corners of its own, as the surface says what is there.
+/// A mesh in which each triangle has its own corners, with the attributes of the surface at each corner.
 ExportedMesh from_surface(const SceneObject& object, const TriangleView& view) {
   ExportedMesh mesh;
   bool smooth = false;
@@ -101,7 +101,7 @@ std::optional<ExportedMesh> mesh_of(const SceneObject& object, bool& placed) {
   placed = false;
   if (object.class_info().name == "TriangleMesh") return from_members(object);
   if (object.transform.animated()) return std::nullopt;
-  // A copy, as objects may change what they hold when they are prepared.
+  // A copy, as preparing may change an object's members.
   AskedMembers::note_shape(object);
   const Ref<SceneObject> twin = ref_cast<SceneObject>(copy(object));
   prepare_tree(*twin);

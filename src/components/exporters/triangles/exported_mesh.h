@@ -1,5 +1,5 @@
 #pragma once
-// Objects made of triangles, as other programs take them.
+// Objects as triangle meshes, for export to other programs.
 
 #include <cstdint>
 #include <optional>
@@ -10,16 +10,16 @@
 
 namespace etendue {
 
-/// Vertices in the object's own coordinates, three numbers each, or two for surface coordinates. Normals and surface
-/// coordinates are by vertex, or absent. The front is where corners run counter-clockwise.
+/// Vertices in object space, three numbers each, or two for texture coordinates. Normals and texture coordinates are per
+/// vertex, or absent. The front is the side from which corners run counter-clockwise.
 struct ExportedMesh {
   std::vector<double> positions;
   std::vector<float> normals, uvs;
   std::vector<std::uint32_t> indices;
 };
 
-/// The triangles of a TriangleMesh as it was written or as its file says; those of any other object that is made of triangles
-/// in the coordinates of what contains it (`placed`), its transform done. Nothing: it has none.
+/// The triangles of a TriangleMesh as written or as in its file; those of any other object made of triangles with the object's
+/// transform applied (`placed`), in the space of its parent. Nothing: it has none.
 std::optional<ExportedMesh> mesh_of(const SceneObject&, bool& placed);
 
 /// A binary PLY file.

@@ -11,7 +11,7 @@ namespace etendue {
 namespace {
 
 constexpr double pi_twice = 2 * std::numbers::pi;
-// So many around: an inscribed polygon of 128 sides is 0.04 % smaller than its circle.
+// Segments around a circle: an inscribed polygon of 128 sides has a 0.04 % smaller area than its circle.
 constexpr int around = 128;
 
 struct Corner {
@@ -30,7 +30,7 @@ bool same(const ExportedMesh& mesh, std::uint32_t a, std::uint32_t b) {
                     mesh.positions.begin() + 3 * long(b));
 }
 
-/// A grid of (columns + 1) (rows + 1) corners, of places from 0 to 1 in u and v; its front is on the side of du x dv.
+/// A grid of (columns + 1) (rows + 1) vertices, placed by u and v from 0 to 1; its front is on the side of du x dv.
 template <class Place>
 void grid(ExportedMesh& mesh, int columns, int rows, Place&& place) {
   const auto first = std::uint32_t(mesh.positions.size() / 3), width = std::uint32_t(columns + 1);
@@ -39,7 +39,7 @@ void grid(ExportedMesh& mesh, int columns, int rows, Place&& place) {
   for (std::uint32_t j = 0; j < std::uint32_t(rows); ++j)
     for (std::uint32_t i = 0; i < std::uint32_t(columns); ++i) {
       const std::uint32_t a = first + j * width + i, b = a + 1, c = b + width, d = a + width;
-      // Rows that are a point, at poles and in middles, leave one triangle of two.
+      // In a row that degenerates to a point, at a pole or centre, one of the two triangles is dropped.
       if (!same(mesh, a, b)) mesh.indices.insert(mesh.indices.end(), {a, b, c});
       if (!same(mesh, c, d)) mesh.indices.insert(mesh.indices.end(), {a, c, d});
     }
@@ -76,7 +76,7 @@ ExportedMesh rectangle(const SceneObject& o) {
   return mesh;
 }
 
-// Each face has a square of surface coordinates; u runs so that du x dv points outwards (Box).
+// Each face covers the unit square of texture coordinates; u runs so that du x dv points outwards (as in Box).
 ExportedMesh box(const SceneObject& o) {
   const std::vector<double> centre = numbers_of(o, "centre"), size = numbers_of(o, "size");
   ExportedMesh mesh;
@@ -96,7 +96,7 @@ ExportedMesh box(const SceneObject& o) {
   return mesh;
 }
 
-/// A disc at a height, whose front is up or down; of rings that end in its middle. Its surface coordinates are a Disc's.
+/// A disc at a height, facing up or down, made of rings around its centre. Its texture coordinates are those of Disc.
 void disc(ExportedMesh& mesh, double radius, double z, bool up, const std::string& coordinates) {
   grid(mesh, around, 1, [&](double u, double v) {
     const double turn = up ? u : 1 - u, r = 1 - v, x = r * std::cos(turn * pi_twice), y = r * std::sin(turn * pi_twice);

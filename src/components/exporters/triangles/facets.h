@@ -1,5 +1,5 @@
 #pragma once
-// Curved and simple shapes as triangles, for programs that have nothing else.
+// Tessellates curved and simple shapes, for programs that support only triangles.
 
 #include <optional>
 
@@ -7,8 +7,8 @@
 
 namespace etendue {
 
-/// A mesh for a shape, in the object's own coordinates, with its surface coordinates; `curved` tells that it is not the same
-/// shape. Nothing: there is none for such a shape.
+/// A mesh of a shape, in object space, with its texture coordinates; sets `curved` if the mesh only approximates the shape.
+/// Nothing: shapes of this class are not supported.
 std::optional<ExportedMesh> facets_of(const SceneObject&, bool& curved);
 
 }  // namespace etendue

@@ -1,5 +1,5 @@
-// AssimpImporter: the many formats that the library Assimp reads. It does so in a process of its own (src/assimp), which gives
-// a .glb: what is read here is always glTF, and checked as such.
+// AssimpImporter: the formats that the library Assimp reads. Assimp runs in a process of its own (src/assimp), which converts
+// the file to .glb; that output is read and checked like any other glTF file.
 
 #include <fmt/format.h>
 

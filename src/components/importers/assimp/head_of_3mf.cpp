@@ -12,7 +12,7 @@
 namespace etendue {
 namespace {
 
-constexpr size_t looked_at = 1 << 16;  // bytes
+constexpr size_t looked_at = 1 << 16;  // [bytes] of the model that are decompressed and searched
 
 template <class T>
 T number_at(const std::string& bytes, size_t at) {
@@ -29,7 +29,7 @@ std::string part_of(RegularFile& file, std::uint64_t offset, std::uint64_t count
   return bytes;
 }
 
-/// How a compressed entry begins.
+/// Decompresses the beginning of a ZIP entry's deflate stream (at most 4 * looked_at bytes).
 std::string inflated(std::string bytes) {
   z_stream stream{};
   if (::inflateInit2(&stream, -MAX_WBITS) != Z_OK) return {};
@@ -44,8 +44,8 @@ std::string inflated(std::string bytes) {
   return text;
 }
 
-/// How the file's first model begins. A ZIP archive ends with a record that says where the list of its entries is; each of
-/// those names its own head, behind which its bytes follow (PKWARE, APPNOTE 4.3).
+/// The beginning of the file's first model. A ZIP archive ends with a record that gives the offset of the central directory;
+/// each entry of the directory gives the offset of a local header, which the entry's bytes follow (PKWARE, APPNOTE 4.3).
 std::string begin_of_model(RegularFile& file) {
   constexpr size_t end_record = 22, longest_comment = 65535, entry_record = 46, local_record = 30;
   const std::uint64_t from = file.size() - std::min<std::uint64_t>(file.size(), end_record + longest_comment);
@@ -73,8 +73,8 @@ std::string begin_of_model(RegularFile& file) {
 
 }  // namespace
 
-// 3MF core specification 3.4: the attribute `unit` of the element `model`. Resources stand before what is built of them, so
-// that those of colours are mostly near the beginning; prefixes of their names are the file's own.
+// 3MF core specification 3.4: the unit is the attribute `unit` of the element `model`. Resources precede the build items, so
+// that colour resources are mostly near the beginning; a file may choose any prefix for their XML namespaces.
 HeadOf3mf head_of_3mf(const std::string& path) {
   HeadOf3mf head;
   std::string text;

@@ -26,7 +26,7 @@ T load(const char* from) {
   return value;
 }
 
-// Fractions of the largest number, as glTF 3.6.2.2 has it.
+// Normalized integers are fractions of the largest number (glTF 2.0, 3.6.2.2).
 float number_at(const char* from, int component, bool normalized) {
   switch (component) {
     case int8: return normalized ? std::max(float(load<std::int8_t>(from)) / 127, -1.0f) : float(load<std::int8_t>(from));
@@ -47,7 +47,7 @@ std::uint32_t index_at(const char* from, int component) {
   }
 }
 
-/// Elements that lie together are read together.
+/// Adjacent elements are read in blocks of this size.
 constexpr size_t bytes_at_once = 1 << 22;
 
 }  // namespace
@@ -106,7 +106,7 @@ void Accessor::elements(Take take) const {
   }
 }
 
-// Elements that are replaced by others.
+// Reads the sparse elements, which replace others.
 template <class Take>
 void Accessor::sparse(Take take) const {
   const Json& s = object_in(*json_, "sparse");

@@ -1,5 +1,5 @@
 #pragma once
-// Accessors: lists of numbers or vectors in the buffers of a glTF file.
+// Accessors: typed arrays of numbers or vectors in the buffers of a glTF file.
 
 #include <cstdint>
 #include <vector>
@@ -8,23 +8,23 @@
 
 namespace etendue::gltf {
 
-/// Bytes of a number of a type, by glTF's code. Throws Error when there is no such type.
+/// Size of a component type, given by glTF's code [bytes]. Throws Error for an unknown type.
 size_t size_of_component(int component);
 
 struct Accessor {
   Accessor(const Document&, size_t index);
 
-  size_t count = 0, width = 0;  ///< elements, and numbers of each
-  int component = 0;            ///< type of a number, by glTF's code
+  size_t count = 0, width = 0;  ///< number of elements, and components of each
+  int component = 0;            ///< component type, by glTF's code
   bool normalized = false;
 
-  /// All numbers, element after element. Throws Error when it has another width than one of these.
+  /// All numbers, element after element. Throws Error if the file's data is damaged.
   std::vector<float> floats() const;
-  /// The same straight to where `count * width` floats have room.
+  /// The same, written to an array of `count * width` floats.
   void floats(float* to) const;
-  /// Whether its numbers are whole ones, not negative, and mean that.
+  /// Whether its elements are single unsigned integers that are not normalized.
   bool whole_numbers() const;
-  /// As whole numbers, not negative.
+  /// The numbers as unsigned integers.
   std::vector<std::uint32_t> indices() const;
 
  private:

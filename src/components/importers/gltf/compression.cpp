@@ -45,12 +45,12 @@ MeshoptLayout layout_of(const Json& meshopt, std::uint64_t view_size) {
   return layout;
 }
 
-/// Whether a list of numbers lies in the file as it is.
+/// Whether an accessor's data is stored uncompressed.
 bool is_there(const Document& document, size_t accessor) {
   return find(document.element("accessors", accessor), "bufferView") != nullptr;
 }
 
-/// Whether a primitive is compressed, and not there uncompressed too.
+/// Whether a primitive exists only in Draco-compressed form.
 bool needs_draco(const Document& document, const Json& primitive) {
   constexpr size_t triangles = 4;
   const Json& attributes = object_in(primitive, "attributes");
@@ -62,19 +62,19 @@ bool needs_draco(const Document& document, const Json& primitive) {
   return false;
 }
 
-/// A primitive that Draco compressed, and its mesh among those that are asked for.
+/// A primitive that Draco compressed, and the index of its request.
 struct Compressed {
   size_t mesh, primitive, request;
   struct Attribute {
     std::string name;
-    size_t accessor, place;  ///< of what is known of it, and among the request's
+    size_t accessor, place;  ///< the accessor that describes it, and its index in the request
   };
   std::vector<Attribute> attributes;
 
   std::string where() const { return fmt::format("meshes[{}].primitives[{}]: {}", mesh, primitive, draco); }
 };
 
-/// What is asked of Draco: each of its views once, whatever primitives have it.
+/// The requests to Draco: each buffer view once, even if several primitives use it.
 class Requests {
  public:
   explicit Requests(const Document& document) : document_(document) {}
@@ -123,7 +123,7 @@ class Requests {
   std::uint64_t bytes_ = 0;
 };
 
-/// Adds to the JSON's lists what says where decompressed numbers lie; the same once.
+/// Adds accessors and buffer views for the decompressed data to the JSON, each only once.
 class Additions {
  public:
   Additions(Json& json, const DracoMeshes& made, size_t buffer) : json_(json), made_(made), buffer_(buffer) {}
@@ -151,7 +151,7 @@ class Additions {
                                     {"type", "SCALAR"},
                                     {"count", 3 * mesh.triangles}});
     primitive["indices"] = known->second;
-    primitive["mode"] = 4;  // triangles, whatever it was: that is how they are decompressed
+    primitive["mode"] = 4;  // triangles, whatever the mode was: Draco decodes to triangle lists
   }
 
  private:
@@ -164,7 +164,7 @@ class Additions {
   Json& json_;
   const DracoMeshes& made_;
   size_t buffer_;
-  std::map<std::tuple<size_t, size_t, size_t>, size_t> known_;  // accessors
+  std::map<std::tuple<size_t, size_t, size_t>, size_t> known_;  // indices of accessors
 };
 
 }  // namespace
@@ -174,8 +174,8 @@ bool is_fallback(const Json& buffer) {
                              [&](const char* name) { return truth(extension(buffer, name), "fallback", false); });
 }
 
-// A view's bytes are those of a buffer of its own from here on. The compressed bytes of two views should not overlap; of those
-// that do together no more is made than could be of the whole file.
+// Each decompressed view gets a buffer of its own. The compressed bytes of two views should not overlap; if they do, their
+// decompressed size in total is limited to what the whole file could encode.
 void Document::decompress_views() {
   std::uint64_t room = 1024 * buffer_bytes();
   for (size_t i = 0; i < count("bufferViews"); ++i) {
@@ -204,7 +204,7 @@ void Document::decompress_views() {
   }
 }
 
-// All that Draco makes lies in one buffer; the primitives name accessors of it.
+// All data that Draco decodes is stored in one buffer, which new accessors of the primitives refer to.
 void Document::decompress_meshes() {
   Requests asked(*this);
   for (size_t m = 0; m < count("meshes"); ++m) {

@@ -20,12 +20,12 @@ constexpr std::array<std::int8_t, 256> base64_digits = [] {
   digits.fill(-1);
   constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   for (size_t i = 0; i < letters.size(); ++i) digits[static_cast<unsigned char>(letters[i])] = std::int8_t(i);
-  digits['-'] = 62;  // as in URLs
+  digits['-'] = 62;  // the URL-safe variant of base64
   digits['_'] = 63;
   return digits;
 }();
 
-/// RFC 4648.
+/// Base64 decoding (RFC 4648).
 std::string decode_base64(std::string_view text) {
   std::string bytes;
   bytes.reserve(text.size() / 4 * 3);

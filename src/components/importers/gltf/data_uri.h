@@ -1,5 +1,5 @@
 #pragma once
-// URIs in glTF files: data within them, and names of files.
+// URIs in glTF files: embedded data, and file names.
 
 #include <optional>
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace etendue::gltf {
 
-/// What follows "data:": its type ("image/png") and its bytes; none: it is no data URI. Throws Error when it is damaged.
+/// The media type of a data URI ("image/png") and its bytes; empty if it is no data URI. Throws Error if it is damaged.
 struct UriData {
   std::string type, bytes;
 };
 bool is_data_uri(std::string_view uri);
 UriData decode_data_uri(std::string_view uri);
-/// "my%20file.png" as "my file.png".
+/// Replaces percent escapes: "my%20file.png" becomes "my file.png".
 std::string decode_percents(std::string_view uri);
 
 }  // namespace etendue::gltf

@@ -82,11 +82,11 @@ void set_described_members(Importing& importing, const Document& document, Mater
   Describer(importing, document, materials).members(json, of);
 }
 
-// ---- what materials have in ETENDUE_surface -----------------------------------------------------------------------------
+// ---- the material extension ETENDUE_surface -----------------------------------------------------------------------------
 
 namespace {
 
-/// Sets what is said of a list of members.
+/// Sets a member if the key is present.
 template <class Read, class T>
 void take(const Json& json, const char* key, T& member, Read read) {
   if (find(json, key)) within(key, [&] { member = read(object_in(json, key)); });
@@ -128,7 +128,7 @@ SurfaceNumber Materials::described_number(const Json& json) {
   bool has_alpha = false;
   n.texture = described_texture(json, &has_alpha);
   n.channel = text(json, "channel");
-  if (n.channel == "A" && !has_alpha) n.texture.reset();  // what is not in an image is 1
+  if (n.channel == "A" && !has_alpha) n.texture.reset();  // a missing channel counts as 1
   if (n.texture) n.offset = gltf::number(json, "offset", 0);
   if (!n.texture && find(json, "texture")) n.value = gltf::number(json, "without", n.value);
   return n;

@@ -1,10 +1,11 @@
 #pragma once
-// Parts that glTF has no words for, in the private extensions of files that our own converters make (etendue_usd.py). They are
-// not read in files of others.
+// Components that glTF cannot express, in private extensions of files that our own converters write (etendue_usd.py). The
+// extensions are ignored in other files.
 //
-// ETENDUE_part {"class": "Rectangle", "members": {…}, "rigid": true, "lamp": true} on a node: an object with the node's place
-// (rigid: without its size). {"members": {…}} on a camera: members of the camera made of it.
-// ETENDUE_surface on a material: {"base_color": {…}, "metalness": {…}, …}, what Surface has, with textures of any channel.
+// ETENDUE_part {"class": "Rectangle", "members": {…}, "rigid": true, "lamp": true} on a node: an object with the node's
+// transform (rigid: without its scale). {"members": {…}} on a camera: members of the camera made from it.
+// ETENDUE_surface on a material: {"base_color": {…}, "metalness": {…}, …}, the members of Surface, with textures of any
+// channel.
 //
 // A value is a number, a text, true or false, a list of numbers, or an object with one of
 //   "class", "members"  a part              "accessor"  a list of numbers in the file's buffer
@@ -17,9 +18,9 @@
 
 namespace etendue::gltf {
 
-/// A part as such an object describes it; `name` is its name.
+/// The component that a JSON object of this form describes, with this name.
 Ref<Component> described_part(Importing&, const Document&, Materials&, const Json&, const std::string& name);
-/// Sets what {"members": {…}} says.
+/// Sets the members of {"members": {…}}.
 void set_described_members(Importing&, const Document&, Materials&, const Json&, Component&);
 
 }  // namespace etendue::gltf

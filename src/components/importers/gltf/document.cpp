@@ -29,7 +29,7 @@ struct Opened {
 };
 std::mutex mutex;
 
-/// How an image begins, and the ending of its name.
+/// The file name ending for an image, from its first bytes or its media type.
 std::string image_ending(std::string_view start, const std::string& type) {
   using namespace std::string_view_literals;
   if (start.starts_with("\x89PNG")) return "png";
@@ -71,7 +71,7 @@ std::shared_ptr<const Document> Document::open(const std::string& path, const Im
   const auto size = std::filesystem::file_size(path, none);
   const auto converter = converters().find(ending_of_contents(path));
   if (given) time = given->options().time;
-  if (converter == converters().end()) time = 0;  // what moves in a glTF file is told by the names of its parts
+  if (converter == converters().end()) time = 0;  // times of a glTF file's animation are part of its parts' names
   const std::pair key(path, time);
   if (const auto found = known.find(key);
       found != known.end() && found->second.written == written && found->second.size == size && size != 0)
@@ -116,7 +116,7 @@ void Document::parse(std::string_view text) {
   if (!version.starts_with("2.")) throw Error("it is of glTF version '" + version + "'; 2.0 is read");
 }
 
-// A .glb is a head of 12 bytes ("glTF", version, length), then chunks of a length, a type and bytes: JSON, then BIN.
+// A .glb has a header of 12 bytes ("glTF", version, length), then chunks, each a length, a type and bytes: JSON, then BIN.
 void Document::read_container(const std::string& path, const std::string* bytes) {
   std::unique_ptr<RegularFile> file;
   if (!bytes) file = std::make_unique<RegularFile>(path);
@@ -179,7 +179,7 @@ Buffer Document::find_buffer(const Json& description, size_t index, const Import
     buffer.size = RegularFile(path).size();
   } catch (const Error&) {
     if (!is_fallback(description)) throw;
-    return missing;  // the same is there in compressed form
+    return missing;  // the data is also stored in compressed form
   }
   return buffer;
 }

@@ -39,7 +39,7 @@ void Glow::shine(size_t mesh, size_t primitive, double luminance) {
 
 Glow::Areas Glow::taken() { return std::exchange(shining_, {}); }
 
-// A matrix M makes of an area vector a that of the cofactors, C a.
+// A matrix M transforms an area vector a to C a, where C is its cofactor matrix.
 void Glow::stand(size_t mesh, const Transform& place, const Areas& shining) {
   placed_.emplace_back(mesh, place);
   const auto& m = place.exact();
@@ -48,8 +48,8 @@ void Glow::stand(size_t mesh, const Transform& place, const Areas& shining) {
   for (const Vector3& a : shining) sum_ += length(double(a.x) * yz + double(a.y) * zx + double(a.z) * xy);
 }
 
-// An area A of luminance L sends out pi L A, which on a sphere around the model, of radius R, makes an illuminance of
-// L A / (4 R^2). Where a display's white is 1, a white surface lit by less than a hundredth is black.
+// An area A of luminance L emits the flux pi L A, which on a sphere of radius R around the model gives the illuminance L A / (4
+// R^2). On a display whose white is 1, a white surface lit by less than a hundredth appears black.
 bool Glow::lights() const {
   if (!(sum_ > 0)) return false;
   Bounds3 all;

@@ -1,5 +1,5 @@
 #pragma once
-// Whether what shines in a model lights it.
+// Decides whether the emissive surfaces of a model are strong enough to light it.
 
 #include <vector>
 
@@ -12,15 +12,15 @@ class Glow {
  public:
   explicit Glow(const Document& document) : document_(document) {}
 
-  /// A primitive of the mesh that is being made shines, with a mean luminance.
+  /// Adds an emissive primitive of the current mesh, with its mean luminance.
   void shine(size_t mesh, size_t primitive, double luminance);
-  /// Area vectors of triangles times their luminances.
+  /// Area vectors of triangles, multiplied by their luminance.
   using Areas = std::vector<Vector3>;
-  /// Of the primitives that shone since then, in the mesh's own coordinates.
+  /// Those added since the last call, in the mesh's object space.
   Areas taken();
-  /// A mesh of which that shines stands somewhere.
+  /// Adds an instance of a mesh with these emissive areas.
   void stand(size_t mesh, const Transform&, const Areas&);
-  /// Whether all of it makes lamps of them.
+  /// Whether the total emission lights the model.
   bool lights() const;
 
  private:

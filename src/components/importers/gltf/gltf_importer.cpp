@@ -10,11 +10,11 @@ namespace etendue {
 namespace gltf {
 namespace {
 
-/// Extensions that are read, or whose absence changes nothing that is shown, those of materials and textures aside.
+/// Extensions that are supported, or that do not change the image, other than those of materials and textures.
 constexpr const char* known_extensions[] = {"KHR_texture_transform", "KHR_lights_punctual", "KHR_mesh_quantization",
                                             "EXT_mesh_gpu_instancing", "KHR_materials_variants", "KHR_node_visibility",
                                             "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
-                                            // Of files, of what a hand does, and of what is neither seen nor lights anything.
+                                            // Metadata, interaction, and data that is neither visible nor emits light.
                                             "KHR_xmp", "KHR_xmp_json_ld", "KHR_node_selectability", "KHR_node_hoverability",
                                             "KHR_interactivity", "KHR_audio_emitter", "KHR_physics_rigid_bodies",
                                             "KHR_implicit_shapes", "EXT_mesh_features", "EXT_instance_features",
@@ -36,7 +36,7 @@ void check_extensions(Importing& importing, const Document& document) {
       importing.inexact(fmt::format("it uses the extension {}, which is not read", name.get<std::string>()), importing.at());
 }
 
-/// What a converter from another format could not express (see src/assimp).
+/// Forwards the warnings of a converter from another format (see src/assimp).
 void tell_notes(Importing& importing, const Document& document) {
   const Json& extras = object_in(document.json(), "asset");
   if (!find(extras, "extras") || !extras["extras"].is_object()) return;

@@ -1,5 +1,5 @@
 #pragma once
-// What a glTF file holds, or one of another format that was converted to glTF.
+// Imports a glTF file, or a file of another format converted to glTF.
 
 #include "etendue/importer.h"
 

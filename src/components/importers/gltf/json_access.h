@@ -1,5 +1,5 @@
 #pragma once
-// Members of JSON objects as what they should be. Errors name the member; `within` adds where the object is.
+// Typed access to members of JSON objects. Errors name the member; `within` adds the location of the object.
 
 #include <array>
 #include <nlohmann/json.hpp>
@@ -13,7 +13,7 @@ namespace etendue::gltf {
 
 using Json = nlohmann::json;
 
-/// Calls, and tells errors with the place: "materials[2]: 'alphaMode' is not a text".
+/// Calls a function and prepends the location to its errors: "materials[2]: 'alphaMode' is not a text".
 template <class Call>
 auto within(const std::string& where, Call call) {
   try {
@@ -23,7 +23,7 @@ auto within(const std::string& where, Call call) {
   }
 }
 
-/// The member, or null when there is none.
+/// The member, or null if it is missing.
 inline const Json* find(const Json& object, const char* key) {
   if (!object.is_object()) return nullptr;
   const auto found = object.find(key);
@@ -41,12 +41,12 @@ inline double number(const Json& object, const char* key, double otherwise) {
   return member->get<double>();
 }
 
-/// A whole number, not negative.
+/// A nonnegative integer; nothing if the member is missing.
 inline std::optional<size_t> whole(const Json& object, const char* key) {
   const Json* member = find(object, key);
   if (!member) return std::nullopt;
   if (member->is_number_unsigned()) return member->get<size_t>();
-  const double value = member->is_number() ? member->get<double>() : -1;  // 3.0 is a whole number too
+  const double value = member->is_number() ? member->get<double>() : -1;  // 3.0 is an integer too
   if (!(value >= 0 && value < 9e15 && value == double(size_t(value)))) wrong(key, "a whole number from 0 on");
   return size_t(value);
 }
@@ -70,7 +70,7 @@ inline std::string text(const Json& object, const char* key, const std::string& 
   return member->get<std::string>();
 }
 
-/// An object; an empty one when there is none.
+/// An object; an empty one if the member is missing.
 inline const Json& object_in(const Json& object, const char* key) {
   static const Json none = Json::object();
   const Json* member = find(object, key);
@@ -79,7 +79,7 @@ inline const Json& object_in(const Json& object, const char* key) {
   return *member;
 }
 
-/// A list; an empty one when there is none.
+/// A list; an empty one if the member is missing.
 inline const Json& list_in(const Json& object, const char* key) {
   static const Json none = Json::array();
   const Json* member = find(object, key);
@@ -106,7 +106,7 @@ inline std::array<double, 3> rgb(const Json& object, const char* key, double oth
   return numbers<3>(object, key).value_or(std::array<double, 3>{otherwise, otherwise, otherwise});
 }
 
-/// The places in another list that a list names.
+/// A list of indices into another list of `count` elements. Throws Error if one is out of range.
 inline std::vector<size_t> places(const Json& object, const char* key, size_t count) {
   std::vector<size_t> all;
   for (const Json& one : list_in(object, key)) {

@@ -23,9 +23,9 @@ Transform without_stretch(const Transform& t) {
   return Transform(m);
 }
 
-// The file counts light in candela and lux, colours of surfaces that shine in candela per square metre. All are told here so
-// that 1 cd/m^2 has the luminance Y = 1 (it is 683 lm/W * 106.857 nm = 72984 times less in SI units, which changes exposure
-// only): viewers show that as white, and what is added to files without light fits to it.
+// glTF measures light in candela and lux, and emissive surfaces in cd/m^2. All are converted such that 1 cd/m^2 has the
+// luminance Y = 1 (in SI units it is 683 lm/W * 106.857 nm = 72984 times less, which changes the exposure only): viewers show 1
+// cd/m^2 as white, and the lights added to files without light match it.
 Ref<Component> make_light(Importing& importing, const Document& document, size_t index, const Transform& transform) {
   const Json& lights = list_in(extension(document.json(), "KHR_lights_punctual"), "lights");
   if (index >= lights.size()) throw Error(fmt::format("there is no KHR_lights_punctual.lights[{}]", index));
@@ -81,7 +81,7 @@ MadeCamera make_camera(Importing& importing, const Document& document, size_t in
     } else {
       throw Error("a camera of the type '" + type.substr(0, 20) + "' is unknown");
     }
-    // All that show glTF leave out what lies before or behind these planes, and Cycles does, whose files state them.
+    // All glTF viewers clip at these planes, and so does Cycles, whose exported files state them.
     const double nearest = number(view, "znear", 0), farthest = number(view, "zfar", 0);
     if (!(nearest >= 0) || (farthest != 0 && !(farthest > nearest))) throw Error("its 'znear' and 'zfar' leave nothing to see");
     if (nearest > 0) set_member(*made.camera, "near_clip", nearest, at);

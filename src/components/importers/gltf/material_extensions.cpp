@@ -8,9 +8,9 @@
 namespace etendue::gltf {
 namespace {
 
-/// The highest index of Principled; a file's 0 stands for an infinite one (KHR_materials_ior).
+/// The highest index of Principled; in KHR_materials_ior 0 stands for an infinite index.
 constexpr double highest_ior = 4;
-/// F0 of dielectrics.
+/// F0, the reflectance of a dielectric at normal incidence.
 double reflectance_of(double ior) { return ior == 0 ? 1 : std::pow((ior - 1) / (ior + 1), 2); }
 
 }  // namespace
@@ -35,7 +35,7 @@ void Materials::read_extensions(const Json& extensions, Surface& s) {
   if (const Json& e = named("KHR_materials_iridescence"); !e.empty()) {
     s.film = number(e, "iridescenceFactor", 0, "iridescenceTexture", "R");
     s.film_ior = gltf::number(e, "iridescenceIor", 1.3);
-    // mix(minimum, maximum, texture); without one, the maximum.
+    // mix(minimum, maximum, texture); without a texture the maximum.
     const double thickest = gltf::number(e, "iridescenceThicknessMaximum", 400);
     s.film_thickness = thickest;
     if (auto thickness = texture(e, "iridescenceThicknessTexture")) {
@@ -48,12 +48,13 @@ void Materials::read_extensions(const Json& extensions, Surface& s) {
     }
   }
   if (const Json& e = named("KHR_materials_anisotropy"); !e.empty()) {
-    // The ratio of roughnesses alpha is 1 / (1 - a) in Principled and in glTF (alpha + (1 - alpha) s^2) / alpha.
+    // The ratio of the roughnesses alpha along and across is 1 / (1 - a) in Principled, and (alpha + (1 - alpha) s^2) / alpha
+    // in glTF.
     const double strength = gltf::number(e, "anisotropyStrength", 0);
     const double alpha = std::max(s.roughness.value * s.roughness.value, 1e-3);
     const double along = alpha + (1 - alpha) * strength * strength;
     s.anisotropy = 1 - alpha / along;
-    // glTF keeps the alpha across and stretches that along; Principled, given the ratio, keeps the sum of their squares.
+    // glTF keeps the alpha across and increases the alpha along; Principled keeps the sum of their squares for any ratio.
     if (!s.roughness.texture)
       s.roughness.value = std::pow((along * along + alpha * alpha) / 2, 0.25);
     else if (strength != 0)
@@ -74,14 +75,14 @@ void Materials::read_extensions(const Json& extensions, Surface& s) {
 
 void Materials::read_specular(const Json& e, Surface& s) {
   const SurfaceNumber& metal = s.metalness;
-  if (metal.value >= 1 && !metal.texture) {  // of metals it says nothing, nor does an index
+  if (metal.value >= 1 && !metal.texture) {  // the extension and the index do not affect metals
     s.ior = 1.5;
     return;
   }
   s.specular = number(e, "specularFactor", 1, "specularTexture", "A");
   s.specular_color = color(e, "specularColorFactor", "specularColorTexture", 1);
-  // What reflects more or less than its index says has another one: F90 stays 1. Where light is refracted it is the tint that
-  // makes it less.
+  // A reflectance above or below that of the index is expressed by another index, so that F90 stays 1. If the material
+  // refracts, a lower reflectance is expressed by the tint instead.
   const double most = std::ranges::max(s.specular_color.value);
   const bool refracts = s.transmission.value > 0 && !s.thin;
   if (most > 1 || (most < 1 && !refracts) || s.ior == 0 || s.ior > highest_ior) {
@@ -93,11 +94,11 @@ void Materials::read_specular(const Json& e, Surface& s) {
   if (metal.value > 0) keep_metal(s);
 }
 
-/// Sets what is reflected of light straight on. A dark body that reflects more than insulators do is metal (as in Khronos' own
-/// conversion of KHR_materials_pbrSpecularGlossiness, without its blend between the two).
+/// Sets the reflectance at normal incidence. A dark surface that reflects more than insulators do is taken for metal (as in
+/// Khronos' own conversion of KHR_materials_pbrSpecularGlossiness, without its blend between the two).
 void Materials::reflect(const SurfaceColor& reflected, Surface& s) {
   const double strongest = std::ranges::max(reflected.value);
-  const double diffuse = std::ranges::max(s.base_color.value) * (1 - strongest);  // what is not reflected gets to the body
+  const double diffuse = std::ranges::max(s.base_color.value) * (1 - strongest);  // the unreflected part reaches the base
   if (strongest > 0.25 && !(s.metalness.value > 0) && !(s.transmission.value > 0) && !s.base_color.texture && diffuse < 0.1) {
     s.metalness = 1;
     s.base_color = reflected;
@@ -112,7 +113,7 @@ void Materials::reflect(const SurfaceColor& reflected, Surface& s) {
     for (double& x : s.specular_color.value) x /= strongest;
 }
 
-// Principled weakens and tints what metal reflects too. Where it is metal or not, place by place, the weight can be
+// Principled's specular weight and tint also apply to metal. If metalness is 0 or 1 at each point, the weight can be
 // mix(specular, 1, metalness).
 void Materials::keep_metal(Surface& s) {
   if (s.specular_color.texture || s.specular_color.value != std::array<double, 3>{1, 1, 1})
@@ -144,7 +145,7 @@ void Materials::read_volume(const Json& extensions, Surface& s) {
   s.thin = !(gltf::number(volume, "thicknessFactor", 0) > 0);
   s.attenuation_color = rgb(volume, "attenuationColor", 1);
   s.attenuation_distance = gltf::number(volume, "attenuationDistance", s.attenuation_distance);
-  // KHR_materials_dispersion: 20 over the Abbe number.
+  // KHR_materials_dispersion: dispersion = 20 / Abbe number.
   const double dispersion = gltf::number(object_in(extensions, "KHR_materials_dispersion"), "dispersion", 0);
   if (dispersion > 0) s.abbe_number = 20 / dispersion;
 }

@@ -21,8 +21,8 @@ constexpr const char* known_extensions[] = {"KHR_materials_transmission",
                                             "KHR_materials_emissive_strength",
                                             "KHR_materials_pbrSpecularGlossiness"};
 
-/// Formats of images that stand for, or beside, the image of a texture. No library of Debian 12 reads Basis Universal; for the
-/// others see docs/decisions/017-image-library.md.
+/// Image formats that replace the image of a texture, or are an alternative to it. No library of Debian 12 reads Basis
+/// Universal; for the others see docs/decisions/017-image-library.md.
 struct UnreadFormat {
   const char *extension, *name;
 };
@@ -54,7 +54,7 @@ const Material& Materials::get(std::optional<size_t> material, bool colored, boo
   made.made = make_surface(importing_, surface, at());
   made.uv_set = uv_set_.value_or(0);
   made.by_tangents = surface.normals || surface.anisotropy.value > 0;
-  // A strength is given to lamps alone; without it what shines no more than white may be a screen.
+  // The emissive strength is used for lamps only; an emission without it that is at most white may be a screen.
   const bool strong = material && has_extension(document_.element("materials", *material), "KHR_materials_emissive_strength");
   const std::array<double, 3>& light = surface.emission.value;
   if (!surface.unlit && std::ranges::any_of(light, [&](double x) { return x > (strong ? 0.0 : 1.0); })) {
@@ -106,7 +106,7 @@ void Materials::read_metal(const Json& pbr, Surface& s) {
   s.roughness = number(pbr, "roughnessFactor", 1, "metallicRoughnessTexture", "G");
 }
 
-// The old way to say metals: by the colour of their reflections.
+// The older workflow, which expresses metals by the colour of their specular reflection.
 void Materials::read_specular_glossiness(const Json& old, Surface& s) {
   const auto factor = numbers<4>(old, "diffuseFactor").value_or(std::array<double, 4>{1, 1, 1, 1});
   bool has_alpha = false;
@@ -132,7 +132,7 @@ void Materials::read_specular_glossiness(const Json& old, Surface& s) {
   }
 }
 
-/// Whether 'extensionsUsed' has it: what of that is not read is told once.
+/// Whether 'extensionsUsed' lists the extension: unsupported ones in that list are reported once.
 bool Materials::is_listed(const std::string& extension) const {
   return std::ranges::any_of(list_in(document_.json(), "extensionsUsed"), [&](const Json& x) { return x == Json(extension); });
 }
@@ -160,7 +160,7 @@ SurfaceNumber Materials::number(const Json& object, const char* factor, double o
   return n;
 }
 
-/// The image of a texture; none, with a note: it has none that is read.
+/// The image of a texture; nothing, with a warning, if it has no image in a supported format.
 std::optional<size_t> Materials::image_of(const Json& texture) {
   if (const auto webp = whole(extension(texture, "EXT_texture_webp"), "source")) return webp;
   const auto source = whole(texture, "source");
@@ -201,7 +201,8 @@ std::optional<SurfaceTexture> Materials::texture(const Json& object, const char*
       made.wrap_v = named(v);
       made.nearest = whole(s, "magFilter") == nearest;
     }
-    // Of the file's coordinates: T R S with v downwards. Turned over, the turn keeps its sense and the rest follows.
+    // In the file's coordinates, with v downwards, the transform is T R S. Flipping v keeps the rotation angle and changes the
+    // shift.
     const auto scale = numbers<2>(transform, "scale").value_or(std::array<double, 2>{1, 1});
     const auto offset = numbers<2>(transform, "offset").value_or(std::array<double, 2>{0, 0});
     const double angle = gltf::number(transform, "rotation", 0), c = std::cos(angle), sine = std::sin(angle);

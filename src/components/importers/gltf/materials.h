@@ -1,5 +1,5 @@
 #pragma once
-// Materials of glTF files, and the textures they name.
+// Converts materials of glTF files, and their textures.
 
 #include <map>
 
@@ -8,30 +8,31 @@
 
 namespace etendue::gltf {
 
-/// What a material is of, and which set of surface coordinates its textures use.
+/// A converted material, and the set of texture coordinates that its textures use.
 struct Material {
   MadeSurface made;
   size_t uv_set = 0;
-  bool by_tangents = false;  ///< an image of normals or stretched highlights
-  double glow = 0;           ///< mean luminance, when it is more than a display's white or has a strength
+  bool by_tangents = false;  ///< has a normal map or anisotropy
+  double glow = 0;  ///< mean luminance of the emission if it is above a display's white or has an emissive strength; else 0
 };
 
-/// Whether an extension of materials is read, or changes nothing that a path tracer shows.
+/// Whether a material extension is supported, or makes no difference in a path tracer.
 bool is_known_material_extension(std::string_view name);
 
-/// Whether an extension of textures is read, or told where a texture has it.
+/// Whether a texture extension is supported, or a warning is added where a texture has it.
 bool is_known_texture_extension(std::string_view name);
 
 class Materials {
  public:
   Materials(Importing& importing, const Document& document) : importing_(importing), document_(document) {}
 
-  /// The same each time for the same; `colored`: vertices have colours, `faded`: and alpha. None: the default material.
+  /// The converted material, cached. `colored`: vertices have colours; `faded`: their colours have alpha. Nothing as
+  /// `material`: the default material.
   const Material& get(std::optional<size_t> material, bool colored, bool faded);
 
-  /// An image of the file, laid over the unit square; none, with a note: it cannot be read.
+  /// An image of the file on the unit square; nothing, with a warning, if it cannot be read.
   std::optional<SurfaceTexture> image_texture(size_t index, bool* has_alpha = nullptr);
-  // What files of our own converters say (described.h).
+  // Material properties in files of our own converters (described.h).
   SurfaceColor described_color(const Json&);
 
  private:
@@ -65,7 +66,7 @@ class Materials {
   const Document& document_;
   std::map<Key, Material> made_;
   std::map<size_t, Image> images_;
-  std::optional<size_t> uv_set_;  // of the material that is read
+  std::optional<size_t> uv_set_;  // of the material being read
 };
 
 }  // namespace etendue::gltf

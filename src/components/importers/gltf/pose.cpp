@@ -7,7 +7,7 @@
 namespace etendue::gltf {
 namespace {
 
-/// Numbers that change with time, after glTF 3.11 and its appendix C.
+/// An animation sampler: values that change with time (glTF 2.0, 3.11 and appendix C).
 class Sampler {
  public:
   Sampler(const Document& document, const Json& sampler) : interpolation_(text(sampler, "interpolation", "LINEAR")) {
@@ -21,7 +21,7 @@ class Sampler {
     if (!std::ranges::is_sorted(times_)) throw Error("the times of its keys do not increase");
   }
 
-  /// As many numbers as there are for a key; `turns`: they are a rotation.
+  /// The interpolated values at a time; `turns`: they are a rotation.
   std::vector<double> at(double time, bool turns) const {
     const size_t next = size_t(std::ranges::upper_bound(times_, float(time)) - times_.begin());
     if (next == 0) return key(0);
@@ -43,7 +43,7 @@ class Sampler {
 
  private:
   bool cubic() const { return interpolation_ == "CUBICSPLINE"; }
-  /// Of a cubic key the second of three is the value, the others are tangents.
+  /// A cubic key consists of in-tangent, value and out-tangent; `which` 1 is the value.
   double value(size_t key, size_t which, size_t i) const {
     return double(values_[(cubic() ? 3 * key + which : key) * width_ + i]);
   }
@@ -52,7 +52,7 @@ class Sampler {
     for (size_t i = 0; i < width_; ++i) all[i] = value(k, 1, i);
     return all;
   }
-  /// The shorter way, at a constant speed (Shoemake 1985).
+  /// Spherical linear interpolation along the shorter arc (Shoemake 1985).
   static void slerp(std::vector<double>& a, const std::vector<double>& b, double t) {
     double cosine = 0;
     for (size_t i = 0; i < 4; ++i) cosine += a[i] * b[i];

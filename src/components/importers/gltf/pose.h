@@ -1,30 +1,30 @@
 #pragma once
-// Where the nodes of a glTF file are at a time, and how much their morph targets weigh.
+// The transforms of a glTF file's nodes at a time, and the weights of their morph targets.
 
 #include "document.h"
 #include "etendue/core/transform.h"
 
 namespace etendue::gltf {
 
-/// All animations at once.
+/// Plays all animations together.
 constexpr size_t every_animation = SIZE_MAX;
-/// What of a file is shown: the time and the animation.
+/// The displayed state of a file: time and animation.
 struct Moment {
   double time = 0;                  ///< [s]
-  std::optional<size_t> animation;  ///< none: as the nodes say
+  std::optional<size_t> animation;  ///< none: the nodes' own transforms
   bool operator==(const Moment&) const = default;
 };
 
 class Pose {
  public:
-  /// Throws Error when nodes are their own descendants or have two parents.
+  /// Throws Error if a node is its own descendant or has two parents.
   Pose(const Document&, const Moment&);
 
-  /// From a node's coordinates to the scene's.
+  /// From a node's space to that of the scene.
   const Transform& global(size_t node) const { return globals_.at(node); }
-  /// Of the mesh of a node.
+  /// Morph target weights of a node's mesh.
   std::vector<double> weights(size_t node) const;
-  /// Whether the animation changes weights of the node's mesh.
+  /// Whether the animation changes the weights of the node's mesh.
   bool morphs(size_t node) const { return animated_.at(node).weights.has_value(); }
 
  private:
@@ -41,11 +41,11 @@ class Pose {
   std::vector<Transform> globals_;
 };
 
-/// Translation, rotation (a quaternion x y z w) and scale; the scale first.
+/// The transform of translation, rotation (a quaternion x y z w) and scale; the scale is applied first.
 Transform composed(const std::array<double, 3>& translation, std::array<double, 4> rotation,
                    const std::array<double, 3>& scale);
 
-/// Whether nodes of the file can move at all.
+/// Whether the file has any animation.
 bool has_animation(const Document&);
 
 }  // namespace etendue::gltf

@@ -38,7 +38,7 @@ void append_triangles(size_t mode, const std::vector<std::uint32_t>& c, std::vec
       to.push_back(i % 2 == 0 ? std::array{c[i - 2], c[i - 1], c[i]} : std::array{c[i - 1], c[i - 2], c[i]});
 }
 
-/// Vertices that no triangle has go: several primitives often share the vertices of all.
+/// Removes unused vertices: primitives often share one vertex array.
 void compact(MeshData& mesh) {
   constexpr std::uint32_t unused = 0xffffffffu;
   std::vector<std::uint32_t> now(mesh.positions.size(), unused), kept;
@@ -66,7 +66,7 @@ void compact(MeshData& mesh) {
     for (std::uint32_t& c : t) c = now[c];
 }
 
-/// An attribute of so many numbers for each vertex.
+/// The accessor of a vertex attribute, checked for its number of components (one of `widths`) and of vertices.
 Accessor attribute(const Document& document, const Json& attributes, const char* name, size_t vertices,
                    std::initializer_list<size_t> widths) {
   Accessor accessor(document, needed_whole(attributes, name));
@@ -140,7 +140,7 @@ double differing_tangents(const Document& document, const Json& primitive, size_
     const auto grown = [&](size_t corner, size_t k) { return uvs[2 * t[corner] + k] - uvs[2 * t[0] + k]; };
     const float u1 = grown(1, 0), v1 = grown(1, 1), u2 = grown(2, 0), v2 = grown(2, 1), area = u1 * v2 - u2 * v1;
     if (!(area != 0)) continue;
-    // dp/du and, as v runs downwards in the file, the direction against dp/dv.
+    // dp/du and, since v points downwards in the file, the direction opposite to dp/dv.
     const Vector3 along = (v2 * a - v1 * b) * (area > 0 ? 1.0f : -1.0f), up = (u2 * a - u1 * b) * (area > 0 ? 1.0f : -1.0f);
     for (const std::uint32_t corner : t) {
       const Vector3 normal = vector(normals, 3 * corner), tangent = vector(tangents, 4 * corner);

@@ -1,14 +1,14 @@
 #pragma once
-// The triangles of a primitive of a glTF mesh.
+// Reads the triangles of a primitive of a glTF mesh.
 
 #include "components/objects/meshes/mesh_data.h"
 #include "pose.h"
 
 namespace etendue::gltf {
 
-/// Which triangles of a file: those of a primitive of a mesh as it is, or as a node bends it. As a text:
-/// "meshes[3].primitives[0]" or "nodes[7].primitives[0] at 0.5 of animation 1", and "with TEXCOORD_1" when the second set of
-/// surface coordinates is meant; "… at second 2.5" of a file of another format that was converted as it is then.
+/// Names the triangles of a primitive, of a mesh as stored or as deformed by a node. As a text: "meshes[3].primitives[0]" or
+/// "nodes[7].primitives[0] at 0.5 of animation 1", with the suffix "with TEXCOORD_1" for the second set of texture coordinates,
+/// and "… at second 2.5" for a file of another format that was converted in its state at that time.
 struct PartName {
   bool of_node = false;
   size_t owner = 0, primitive = 0;
@@ -20,15 +20,16 @@ struct PartName {
   static PartName parse(const std::string&);
 };
 
-/// v runs upwards in what this gives, as everywhere in this program; in the file it runs downwards.
+/// In the result v points upwards, as everywhere in this program; in the file it points downwards.
 MeshData read_primitive(const Document&, const PartName&);
 
-/// Whether a primitive is of triangles, and how many it has at most; throws Error when what it names is not there.
+/// Whether a primitive consists of triangles, and an upper bound of their number; throws Error if an accessor it names is
+/// missing.
 bool is_triangles(const Json& primitive);
 size_t triangle_count(const Document&, const Json& primitive);
 
-/// How much, in [0, 1], of the corners of a primitive's triangles have a TANGENT that turns by more than 20 degrees from where
-/// its surface coordinates grow, or tells the other side for green to tilt to.
+/// The fraction, in [0, 1], of triangle corners whose TANGENT deviates by more than 20 degrees from dp/du, or has the opposite
+/// handedness for the green channel of normal maps.
 double differing_tangents(const Document&, const Json& primitive, size_t uv_set);
 
 }  // namespace etendue::gltf

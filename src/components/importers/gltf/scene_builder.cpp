@@ -25,7 +25,7 @@ SceneBuilder::SceneBuilder(Importing& importing, const Document& document)
       glow_(document),
       own_file_(text(object_in(document.json(), "asset"), "generator") == "Etendue") {}
 
-/// What `-D camera=name` chooses from a list, by name or number.
+/// The index that `-D camera=name` selects from a list, by name or number.
 size_t SceneBuilder::chosen(const char* parameter, const char* list, size_t otherwise) {
   const auto said = importing_.parameter(parameter);
   if (!said) return otherwise;
@@ -60,7 +60,7 @@ Moment SceneBuilder::moment() {
 std::vector<size_t> SceneBuilder::roots() {
   const size_t scenes = document_.count("scenes"), nodes = document_.count("nodes");
   if (scenes == 0) {
-    // A file of parts: all nodes that are nobody's children.
+    // A library of parts: all root nodes.
     std::vector<bool> child(nodes);
     for (size_t i = 0; i < nodes; ++i)
       for (const size_t c : places(document_.element("nodes", i), "children", nodes)) child[c] = true;
@@ -118,7 +118,7 @@ void SceneBuilder::add_node(size_t node) {
   if (const auto mesh = whole(n, "mesh")) add_mesh(node, *mesh);
 }
 
-/// What a converter of ours describes itself.
+/// Adds an object that one of our own converters describes.
 void SceneBuilder::add_described(const Json& json, const std::string& name, const Transform& place) {
   const Ref<Component> object = described_part(importing_, document_, materials_, json, name);
   const std::optional<Transform> thick = with_thickness(place);
@@ -139,7 +139,7 @@ void SceneBuilder::add_described(const Json& json, const std::string& name, cons
   add(ref_cast<SceneObject>(object));
 }
 
-// A mesh that stands in one place is an object with a transform; one in several is stored once, as a scene.
+// A mesh with one instance becomes an object with a transform; a mesh with several is stored once, as a scene.
 void SceneBuilder::add_mesh(size_t node, size_t mesh) {
   const Json& n = document_.element("nodes", node);
   const bool skinned = find(n, "skin") != nullptr, bent = skinned || !pose_.weights(node).empty();
@@ -176,7 +176,7 @@ void SceneBuilder::add_mesh(size_t node, size_t mesh) {
   }
 }
 
-/// Where the mesh of a node stands: in one place, or in those of EXT_mesh_gpu_instancing.
+/// The transforms of a node's mesh: one, or those of EXT_mesh_gpu_instancing.
 std::vector<Transform> SceneBuilder::places_of(size_t node) {
   const Json& instancing = extension(document_.element("nodes", node), "EXT_mesh_gpu_instancing");
   const Transform& place = pose_.global(node);
@@ -236,7 +236,7 @@ std::vector<Ref<SceneObject>> SceneBuilder::primitives(size_t mesh, const PartNa
 }
 
 Ref<SceneObject> SceneBuilder::primitive(size_t mesh, const Json& p, PartName part, const std::string& name) {
-  if (!find(object_in(p, "attributes"), "POSITION")) {  // glTF 2.0, 3.7.2.1: then an extension says where, or nothing
+  if (!find(object_in(p, "attributes"), "POSITION")) {  // glTF 2.0, 3.7.2.1: an extension provides positions, or nothing
     importing_.inexact("a primitive without POSITION is left out", at());
     return nullptr;
   }
@@ -246,8 +246,8 @@ Ref<SceneObject> SceneBuilder::primitive(size_t mesh, const Json& p, PartName pa
   }
   const size_t triangles = triangle_count(document_, p);
   if (triangles == 0) return nullptr;
-  // A few bytes of a hostile file could name the same vertices again and again; of a real one each triangle has some of its
-  // own.
+  // A few bytes of a malicious file could refer to the same vertices again and again; in real files most triangles have data of
+  // their own.
   triangles_ += double(triangles);
   constexpr double always = 1e6, most_for_a_byte = 4;
   if (triangles_ > always + most_for_a_byte * double(document_.buffer_bytes()))

@@ -1,5 +1,5 @@
 #pragma once
-// The objects, lights and cameras of a scene of a glTF file.
+// Builds the objects, lights and cameras of a glTF scene.
 
 #include <map>
 #include <set>
@@ -17,9 +17,9 @@ class SceneBuilder {
   SceneBuilder(Importing&, const Document&);
 
   Ref<Scene> build();
-  /// The camera to look through, when the scene has one; after `build`.
+  /// The camera to render with, if the scene has one; call after `build`.
   std::optional<MadeCamera> camera();
-  /// Whether there are lamps; after `build`. What merely glows does not light a scene.
+  /// Whether the scene has light sources; call after `build`. Weakly emissive surfaces do not count.
   bool has_lights() const { return has_lights_ || glow_.lights(); }
 
  private:
@@ -48,12 +48,12 @@ class SceneBuilder {
   std::optional<size_t> variant_;
   Materials materials_;
   Ref<Scene> scene_;
-  std::set<size_t> hidden_;        // nodes: all but their cameras (KHR_node_visibility)
-  std::map<size_t, size_t> uses_;  // of meshes, by nodes
+  std::set<size_t> hidden_;        // hidden nodes; their cameras are still used (KHR_node_visibility)
+  std::map<size_t, size_t> uses_;  // number of nodes that use each mesh
   std::map<size_t, Shared> shared_;
   std::vector<std::pair<size_t, Transform>> cameras_;
   Glow glow_;
-  bool own_file_ = false;  // Étendue wrote it
+  bool own_file_ = false;  // written by Étendue
   double triangles_ = 0;
   bool has_lights_ = false;
 };

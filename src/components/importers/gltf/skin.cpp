@@ -14,7 +14,7 @@ Accessor of_vertices(const Document& document, const Json& attributes, const cha
   return accessor;
 }
 
-/// Adds so much of a target's colours and surface coordinates, whose v runs downwards.
+/// Adds a weighted morph target's colours and texture coordinates, whose v points downwards.
 void morph_attributes(const Document& document, const Json& target, float weight, size_t uv_set, MeshData& mesh) {
   const size_t n = mesh.positions.size();
   const std::string uvs = fmt::format("TEXCOORD_{}", uv_set);
@@ -61,7 +61,7 @@ void morph(const Document& document, const Json& primitive, const std::vector<do
         for (float& x : a.values) x = std::min(std::max(x, 0.0f), 1.0f);
 }
 
-/// From the skin's coordinates to the scene's, for each joint.
+/// From the skin's space to scene space, for each joint.
 std::vector<Transform> joint_transforms(const Document& document, size_t skin, const Pose& pose) {
   const Json& s = document.element("skins", skin);
   const std::vector<size_t> joints = places(s, "joints", document.count("nodes"));
@@ -86,7 +86,7 @@ std::vector<Transform> joint_transforms(const Document& document, size_t skin, c
   return all;
 }
 
-// Linear blend skinning, glTF 3.7.3.3.
+// Linear blend skinning (glTF 2.0, 3.7.3.3).
 void skin_vertices(const Document& document, const Json& attributes, const std::vector<Transform>& joints, MeshData& mesh) {
   const size_t n = mesh.positions.size();
   std::vector<Transform::DoubleMatrix> sums(n);

@@ -5,14 +5,14 @@
 
 namespace etendue::gltf {
 
-// glTF 2.0, 3.5.3: what has one scale of zero is to be shown, flat. Of a matrix M of rank 2, M + s e_i e_j^T has the
-// determinant s C_ij, with C the cofactors: the largest of them tells where least is needed. The determinant is made positive,
-// as that of what is not mirrored: fronts stay fronts.
+// glTF 2.0, 3.5.3: an object with one scale of zero is shown flat. For a matrix M of rank 2, M + s e_i e_j^T has the
+// determinant s C_ij, with C the cofactor matrix: at the largest cofactor the smallest change is needed. The determinant is
+// made positive, as for a transform that does not mirror: fronts stay fronts.
 std::optional<Transform> with_thickness(const Transform& t) {
   if (t.valid()) return t;
   Transform::DoubleMatrix m = t.exact();
   const auto at = [&](size_t r, size_t c) { return m[4 * (r % 3) + c % 3]; };
-  double largest = 0;  // of the columns
+  double largest = 0;  // largest element of the matrix
   size_t row = 0, column = 0;
   double best = 0;
   for (size_t r = 0; r < 3; ++r)

@@ -1,5 +1,5 @@
 #pragma once
-// What is scaled to nothing along an axis.
+// Transforms that scale to zero along one axis.
 
 #include <optional>
 
@@ -7,8 +7,8 @@
 
 namespace etendue::gltf {
 
-/// A transform that can be undone and moves nothing seen: what is flat gets a ten thousandth of its size as its thickness.
-/// None: it makes a line or a point of everything, of which nothing is seen.
+/// An invertible transform without visible change: a flat object gets a thickness of 1e-4 of its size. Nothing: the transform
+/// maps everything to a line or a point, which is invisible.
 std::optional<Transform> with_thickness(const Transform&);
 
 }  // namespace etendue::gltf

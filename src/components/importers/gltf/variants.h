@@ -1,12 +1,12 @@
 #pragma once
-// Which materials a mesh has, of those that a file gives it to choose from (KHR_materials_variants).
+// Selection among the material variants of a file (KHR_materials_variants).
 
 #include "document.h"
 
 namespace etendue::gltf {
 
-/// What `-D variant=` chooses, by name or number; none: the materials of the primitives themselves, with a note that there are
-/// others.
+/// The variant that `-D variant=` selects, by name or number. Nothing: the primitives' own materials, with a warning if the
+/// file has variants.
 std::optional<size_t> chosen_variant(Importing&, const Document&);
 
 /// The material of a primitive in a variant.

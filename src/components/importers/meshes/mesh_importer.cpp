@@ -1,4 +1,4 @@
-// MeshImporter: files of triangles alone, without materials.
+// MeshImporter: file formats that hold triangles but no materials.
 
 #include <algorithm>
 
@@ -19,10 +19,10 @@ class MeshImporter final : public Importer {
 
   Ref<Component> import(Importing& importing) const override {
     const Location at = importing.at();
-    bool of_faces = false;  // colours
+    bool of_faces = false;  // whether colours belong to faces rather than to vertices
     std::optional<SurfaceTexture> texture;
     try {
-      const MeshData read = read_mesh(importing.path());  // what is wrong with it is told now, and not when it is rendered
+      const MeshData read = read_mesh(importing.path());  // errors are reported at import, not when rendering begins
       const auto has = [](const std::vector<VertexAttribute>& list, const char* name) {
         return std::ranges::any_of(list, [&](const VertexAttribute& a) { return a.name == name; });
       };
@@ -50,7 +50,7 @@ class MeshImporter final : public Importer {
     set(*mesh, "shader", Value(made.shader, at));
     const Ref<Scene> scene = ref_cast<Scene>(importing.make(imported_structure, at));
     scene->objects.push_back(ref_cast<SceneObject>(mesh));
-    // What is printed or machined stands on the xy plane.
+    // Models for printing or machining (.stl) stand on the xy plane.
     if (importing.path().size() > 4 && std::tolower(importing.path()[importing.path().size() - 3]) == 's')
       importing.up = {0, 0, 1};
     return scene;

@@ -118,7 +118,7 @@ class MtlReader {
       } else if (option == "-boost" || option == "-texres") {
         if (const std::vector<double> n = numbers(1); option == "-boost" && !n.empty() && n[0] != 0)
           importing_.inexact("a texture is not made sharper (-boost)", at);
-      } else if (lower(lines.keyword()) == "on" && option == "-cc") {  // -blendu, -blendv, -type: how it is filtered
+      } else if (lower(lines.keyword()) == "on" && option == "-cc") {  // -blendu, -blendv, -type: filtering
         importing_.inexact("a texture's correction of colours (-cc) is left out", at);
       }
       lines.at_end();
@@ -180,7 +180,7 @@ class MtlReader {
 
   void base(const MtlLines& said, Surface& s) const {
     const MtlTexture* texture = said.texture("map_kd");
-    // Exporters often leave Kd black where a texture stands for it.
+    // Exporters often leave Kd black when a texture replaces it.
     s.base_color = said.color("kd", texture ? 1 : 0.8);
     if (texture && s.base_color.black()) s.base_color.value = {1, 1, 1};
     put(texture, s.base_color);
@@ -188,7 +188,7 @@ class MtlReader {
     if (said.texture("map_ke") && s.emission.black()) s.emission.value = {1, 1, 1};
     put(said.texture("map_ke"), s.emission);
     s.ior = std::clamp(said.number("ni", 1.5), 1.0, 4.0);
-    if (s.ior == 1) s.ior = 1.5;  // what exporters write that know no index
+    if (s.ior == 1) s.ior = 1.5;  // exporters without an index of refraction write 1
   }
 
   static void pbr(const MtlLines& said, Surface& s) {
@@ -215,7 +215,7 @@ class MtlReader {
       put(said.texture("map_ks"), s.base_color);
       return;
     }
-    // 0.5 is what exporters write for the four percent that plastics, paints and glass reflect.
+    // Exporters write 0.5 for the reflectance of 4 % that plastics, paints and glass have.
     s.specular = std::min(2 * most, 1.0);
     s.specular_color = std::array<double, 3>{reflected[0] / most, reflected[1] / most, reflected[2] / most};
     put(said.texture("map_ks"), s.specular_color);
@@ -284,7 +284,7 @@ class MtlReader {
   }
 
   Importing& importing_;
-  mutable std::map<std::string, bool> of_normals_;  // images that were looked at
+  mutable std::map<std::string, bool> of_normals_;  // cache: whether an image is a normal map, by file
   std::string path_, folder_;
   const char* file_;
   bool tr_is_opacity_ = false;

@@ -1,5 +1,5 @@
 #pragma once
-// What an MTL file says of a material, line by line.
+// The properties of a material as an MTL file states them, before they are interpreted.
 
 #include <array>
 #include <map>
@@ -13,11 +13,11 @@ namespace etendue {
 struct MtlTexture {
   SurfaceTexture image;
   std::string channel;
-  double bump = 1, base = 0, gain = 1;  // what it says is base + gain * texel
+  double bump = 1, base = 0, gain = 1;  // the value is base + gain * texel
   bool has_alpha = false, has_colors = false;
 };
 
-/// The lines of one material, before it is known what they mean together.
+/// The lines of one material, not yet interpreted together.
 struct MtlLines {
   std::string name;
   Location at;
@@ -39,11 +39,11 @@ struct MtlLines {
   }
 };
 
-/// Of 'Tr' there are two meanings. By most it is the transparency, 1 - d; MeshLab's library (vcglib) and others write the
-/// opacity itself, 1 for what is opaque. Whether all materials of a file mean the latter, which is told at the first.
+/// 'Tr' has two meanings. Most programs write the transparency, 1 - d; MeshLab's library (vcglib) and others write the opacity
+/// itself, 1 for opaque. Returns whether all materials of a file mean the opacity, and then adds a warning at the first one.
 bool tr_is_opacity(Importing&, const std::vector<MtlLines>&, bool by_meshlab);
 
-/// What of a surface is there, by 'd' and 'Tr'.
+/// The opacity of a material from 'd' and 'Tr'.
 double mtl_opacity(Importing&, const MtlLines&, bool tr_is_opacity);
 
 }  // namespace etendue

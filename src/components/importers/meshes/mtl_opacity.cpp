@@ -1,4 +1,4 @@
-// What of a surface is there, in the dialects of 'd' and 'Tr'.
+// The opacity of MTL materials, in the dialects of 'd' and 'Tr'.
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 namespace etendue {
 namespace {
 
-/// Whether what is not opaque is glass, and so seen.
+/// Whether the illumination model is one of glass, so that a material of opacity 0 is still visible.
 bool refracts(const MtlLines& m) {
   const double illum = m.number("illum", 2);
   return illum == 4 || illum == 6 || illum == 7 || illum == 9;
@@ -18,8 +18,8 @@ bool refracts(const MtlLines& m) {
 
 }  // namespace
 
-// What tells the meanings of 'Tr' apart: materials that state 'd' as well; who wrote the file; or that by the first meaning the
-// file would have something invisible and nothing opaque, which nobody saves.
+// The meaning of 'Tr' is decided by materials that also state 'd'; else by the program that wrote the file; else by whether a
+// reading as transparency would leave something invisible and nothing opaque, which nobody would save.
 bool tr_is_opacity(Importing& importing, const std::vector<MtlLines>& materials, bool by_meshlab) {
   constexpr double near = 0.01;
   int as_opacity = 0, as_transparency = 0;

@@ -12,7 +12,7 @@
 namespace etendue {
 namespace {
 
-/// A reader's "line 7: what is wrong" as an error there.
+/// Throws the mesh reader's message "line 7: what is wrong" as an Error located at that line.
 [[noreturn]] void throw_located(const Importing& importing, const std::string& words) {
   int line = 0, end = 0;
   if (std::sscanf(words.c_str(), "line %d: %n", &line, &end) == 1 && end > 0)
@@ -72,17 +72,17 @@ class ObjImporter final : public Importer {
   }
 
   struct Used {
-    std::map<std::string, int> lines;  // at which materials are used first
-    bool colored = false;              // vertices
+    std::map<std::string, int> lines;  // line of the first use of each material
+    bool colored = false;              // vertices have colours
   };
-  /// What is neither a triangle nor of its looks.
+  /// The warning for an OBJ statement whose geometry is left out, or null.
   static const char* not_shown(std::string_view word) {
     if (word == "l" || word == "p") return "points and lines are not shown";
     if (word == "curv" || word == "curv2" || word == "surf" || word == "cstype")
       return "curves and curved surfaces are not shown";
     return nullptr;
   }
-  /// Reads the material files it names.
+  /// Reads the material libraries that the OBJ file names.
   static Used read_libraries(Importing& importing, std::map<std::string, MtlMaterial>& materials) {
     const FileContents contents(importing.path());
     const bool marked = has_byte_order_mark(contents.text());
@@ -96,7 +96,7 @@ class ObjImporter final : public Importer {
         int count = 0;
         try {
           for (; count < 7 && !lines.at_end(); ++count) lines.number();
-        } catch (const Error&) {  // the reader tells
+        } catch (const Error&) {  // the mesh reader reports it
         }
         used.colored = used.colored || count == 6;
       }
@@ -111,7 +111,7 @@ class ObjImporter final : public Importer {
     return used;
   }
 
-  /// One name, which may hold spaces, or several.
+  /// `names` is one file name, which may contain spaces, or several names separated by spaces.
   static std::vector<std::string> library_files(Importing& importing, const std::string& names, Location at) {
     try {
       return {importing.file(names, at)};
@@ -132,7 +132,7 @@ class ObjImporter final : public Importer {
       }
       begin = end + 1;
     }
-    if (all.empty()) lost = {names};  // one name, which holds spaces
+    if (all.empty()) lost = {names};  // one name that contains spaces
     for (const std::string& name : lost) (void)importing.optional_file(name, at);
     return all;
   }

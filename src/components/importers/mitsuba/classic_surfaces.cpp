@@ -1,4 +1,4 @@
-// Matt surfaces, glossy ones by formula, Disney's model, hair.
+// Diffuse surfaces, Phong and Ward models, Disney's BSDF, hair.
 
 #include <fmt/format.h>
 
@@ -54,13 +54,13 @@ Converter::Surface Converter::classic(const Element& e, Uv uv, const std::string
   return {shader, false};
 }
 
-/// Where the two programs' models part (docs/coming-from-mitsuba.md has the numbers).
+/// Warns where this program's model and Mitsuba's differ in energy (docs/coming-from-mitsuba.md has the numbers).
 void Converter::tell_of_energy(const Element& e, const Component& shader) {
   const Value base = get(shader, "base_color");
   const auto* part = base.as<Ref<Component>>();
   const auto* map = part ? dynamic_cast<const ObjectMap*>(part->get()) : nullptr;
   const Color constant = map ? map->constant() : nullptr;
-  constexpr float bright = 0.85f;  // above it Mitsuba's lobes together come to more than 1 by some percent
+  constexpr float bright = 0.85f;  // above it the lobes of Mitsuba's model add up to more than 1 by some percent
   if (constant && range_of(*constant, ColorUse::reflectance).most > bright)
     importing_.inexact(
         "'principled' of so bright a colour sends away more light than arrives in Mitsuba, up to a tenth; here it is "
@@ -90,7 +90,7 @@ Converter::Surface Converter::principled(const Element& e, Uv uv, const std::str
   if (e.has("eta")) {
     set_member(*shader, "ior", e.number("eta", 1.5), e.location_of("eta"));
   } else if (!thin && e.has("specular")) {
-    // What reflects 0.08 times "specular" straight on.
+    // The index of refraction whose reflectance at normal incidence is 0.08 times "specular".
     const double root = std::sqrt(0.08 * std::clamp(e.number("specular", 0.5), 0.0, 10.0));
     set_member(*shader, "ior", 2 / (1 - root) - 1, e.location_of("specular"));
   }

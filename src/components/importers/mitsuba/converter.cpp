@@ -12,7 +12,7 @@ namespace etendue::mitsuba {
 
 namespace {
 
-constexpr size_t most_errors = 20;  // told at once
+constexpr size_t most_errors = 20;  // reported at once
 
 }  // namespace
 
@@ -23,7 +23,8 @@ Converter::Reading::Reading(const Element& element) : element_(element) {
 
 namespace {
 
-/// The first element of one of these types, or of any when none is named, within another; null: there is none.
+/// The first nested element with one of these types, or with any type if the list is empty; null: there is none. Searches
+/// recursively.
 const Element* first_of(const Element& within, const char* tag, std::initializer_list<const char*> types) {
   for (const Property& p : within.properties) {
     const auto* nested = std::get_if<Nested>(&p.value);
@@ -36,7 +37,7 @@ const Element* first_of(const Element& within, const char* tag, std::initializer
   return nullptr;
 }
 
-/// Whether one of its integrators takes notice of media: Mitsuba 0.5 had many that do.
+/// Whether an integrator of the scene handles participating media; many of Mitsuba 0.5 do.
 bool knows_media(const Element& scene) {
   return first_of(scene, "integrator", {"volpath", "volpathmis", "prbvolpath", "volpath_simple"}) ||
          (scene.old && first_of(scene, "integrator", {"bdpt", "ptracer", "photonmapper", "pssmlt", "mlt", "erpt", "vpl"}));
@@ -79,7 +80,8 @@ Ref<Job> Converter::job(const Element& scene) {
   const std::vector<const Element*> integrators = scene.all("integrator");
   const Element* const film = films.empty() ? nullptr : films.front();
   set_member(*job, "image", image(film), scene.at);
-  // To volpath what goes straight through a pane has not been scattered (BSDFFlags::Null); to path it has.
+  // volpath does not count null scattering (BSDFFlags::Null), such as transmission through a thin dielectric, for max_depth;
+  // path does.
   const Element* volumetric = first_of(scene, "integrator", {"volpath", "volpathmis", "prbvolpath"});
   const Element* pane = first_of(scene, "bsdf", {"thindielectric"});
   if (volumetric && pane && volumetric->integer("max_depth", -1) >= 0)
@@ -155,7 +157,7 @@ void Converter::note_unread(const Element& scene) {
     Location at;
   };
   std::vector<Unread> all;
-  std::vector<const char*> files;  // as they are met: names of files are each stored once
+  std::vector<const char*> files;  // in the order of first use; each name is stored only once
   std::vector<const Element*> open{&scene};
   std::set<const Element*> seen;
   while (!open.empty()) {
@@ -166,7 +168,7 @@ void Converter::note_unread(const Element& scene) {
       if (std::ranges::find(files, p.at.file) == files.end()) files.push_back(p.at.file);
       const auto* nested = std::get_if<Nested>(&p.value);
       if (nested && nested->element->read) open.push_back(nested->element);
-      // What stands in the scene may be referred to from within.
+      // A plugin directly in the scene need not be read there: plugins inside may refer to it.
       if (!e.read || e.dismissed || p.asked || (nested && &e == &scene && nested->element->read)) continue;
       if (nested) {
         all.push_back({fmt::format("{} '{}' has no use for a {} '{}'{}", e.tag, e.type, nested->element->tag,
@@ -179,7 +181,7 @@ void Converter::note_unread(const Element& scene) {
       }
     }
   }
-  // Of several places of one text the first in the file is told.
+  // Of several places with the same message the first in the file is reported.
   const auto place = [&](const Unread& u) {
     return std::tuple(std::ranges::find(files, u.at.file) - files.begin(), u.at.line, u.at.column);
   };

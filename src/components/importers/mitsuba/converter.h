@@ -1,5 +1,5 @@
 #pragma once
-// Plugins of Mitsuba into components.
+// Converts Mitsuba plugins to components.
 
 #include <map>
 #include <string>
@@ -14,16 +14,16 @@
 
 namespace etendue::mitsuba {
 
-/// How a shape's surface coordinates here relate to Mitsuba's, where v counts as the rows of images do, from their top.
+/// How a shape's texture coordinates here relate to Mitsuba's, where v follows the rows of images, from the top.
 enum class Uv : std::uint8_t {
   as_is,     ///< v is Mitsuba's
-  from_top,  ///< v is 1 - Mitsuba's, as images count here: OBJ files, which Mitsuba turns over, and spheres
+  from_top,  ///< v is 1 - Mitsuba's, as image rows are numbered here: OBJ files, whose v Mitsuba flips, and spheres
 };
 
-/// What a texture is asked for.
+/// The quantity that a texture is read as.
 enum class Read : std::uint8_t {
   color,
-  mean,       ///< a number: of a colour's three values, as in version 0
+  mean,       ///< a number: the mean of a colour's three values, as in version 0
   luminance,  ///< a number
 };
 
@@ -34,7 +34,7 @@ class Converter {
   Ref<Job> job(const Element& scene);
 
  private:
-  /// Marks a plugin as read while it is; a plugin that holds itself is an Error.
+  /// Marks a plugin as being read during its lifetime; throws Error if a plugin contains itself.
   class Reading {
    public:
     explicit Reading(const Element&);
@@ -61,16 +61,16 @@ class Converter {
   Ref<Component> renderer(const Element& scene, const Element* integrator, const Element* sampler);
   Ref<Component> around(const Element& outer, const std::vector<const Element*>& inner);
   Ref<Component> features(const Element& integrator);
-  /// What Mitsuba takes where a scene has none.
+  /// Mitsuba's defaults for a scene without a sensor or an emitter.
   Ref<Component> default_camera(const Element& scene, const std::vector<Ref<SceneObject>>& world);
   Ref<SceneObject> default_sky(const Element& scene);
   Ref<Component> light_transport(const Element& integrator);
   void set_depths(Component& renderer, const Element& integrator);
-  /// Notes where an integrator says that the camera is not to see emitters.
+  /// Records where an integrator states that the camera does not see emitters.
   void note_hidden_emitters(const Element& integrator) {
     if (integrator.boolean("hide_emitters", false)) hides_emitters_ = integrator.location_of("hide_emitters");
   }
-  /// Lets the camera see none of these that emit.
+  /// Makes those of the objects that emit invisible to the camera.
   void hide_emitters(const std::vector<Ref<SceneObject>>&);
 
   // shapes
@@ -84,18 +84,18 @@ class Converter {
   Ref<Component> curves(const Element&);
   Ref<Component> instance(const Element&);
   Ref<Component> group(const Element&);
-  /// `shader`: what it looks like where there is no bsdf.
+  /// `shader`: used if the shape has no bsdf.
   void set_surface(Component& object, const Element& shape, Uv, const Element* bsdf, const Ref<Component>& shader = nullptr);
   /// An OBJ file of version 0.x whose faces have several materials, as a group; null: it is one mesh.
   Ref<Component> parts_of_obj(const Element&);
   Ref<Component> turned_round(const Ref<Component>& shader, Location at);
   bool textured(const Element&);
-  bool tilts(const Element&);  ///< whether bumps or an image of normals are among the bsdfs it is made of
+  bool tilts(const Element&);  ///< whether its bsdfs include a bump map or a normal map
 
   // surfaces
   struct Surface {
     Ref<Component> shader;
-    bool both_sides = false;  ///< as seen from behind it is no black
+    bool both_sides = false;  ///< the back is not black
   };
   Surface surface(const Element& bsdf, Uv);
   Surface make_surface(const Element& bsdf, Uv, const std::string& name);
@@ -116,11 +116,11 @@ class Converter {
   void set_roughness(Component& shader, const Element&, Uv, double otherwise);
   double index(const Element&, const char* name, const char* otherwise);
   Color spectrum_of(const Element&, const std::string& name, double otherwise);
-  /// Of a medium, per distance or an albedo: read as Mitsuba's spectral variants do.
+  /// A coefficient per distance or an albedo of a medium, upsampled as Mitsuba's spectral variants do.
   Color medium_color(const Element&, const std::string& name, double otherwise);
 
   // textures and colours
-  /// What a member that takes a colour or a map is set to.
+  /// The value for a member that accepts a colour or a map.
   Value color(const Element&, const std::string& name, double otherwise, Uv, Read = Read::color);
   Value scalar(const Element&, const std::string& name, double otherwise, Uv);
   Value texture(const Element&, Uv, Read = Read::color);
@@ -130,7 +130,7 @@ class Converter {
   Value light(const Element&, const std::string& name, Uv);
   Value light_of(const Element& spectrum, Uv);
   Color scaled_light(const ColorValue&, bool old) const;
-  /// A map looked up at the coordinates that `to_uv` and the shape's own make of u and v; `from_top`: it counts v downwards.
+  /// A map whose coordinates are transformed by `to_uv` and the shape's convention; `from_top`: the map's v counts downwards.
   Value placed(const Ref<Component>& map, const Element& texture, Uv, bool counts_from_top);
   Transform to_uv(const Element& texture);
 
@@ -142,7 +142,7 @@ class Converter {
   Ref<Component> directional(const Element&);
   Ref<Component> environment(const Element&);
   Ref<Component> sky(const Element&);
-  /// Remembers which sun of version 0.x is that of which sky.
+  /// Stores which sun and which sky of a version 0.x scene belong together.
   void pair_sun_and_sky(const Element& scene);
   void aim_sun(Component& emission, const Element&, const AnimatedTransform& stands);
   void set_sun_diameter(Component& emission, const Element&);
@@ -151,7 +151,8 @@ class Converter {
   Ref<Component> diffuse_emission(const Element&, const char* light_name);
 
   // media
-  /// What fills an object, whose transform is set: grids lie in the object's own coordinates. `glow`: the object's volumelight.
+  /// The medium inside an object, whose transform must be set: grids are placed in object space. `glow`: the object's
+  /// volumelight.
   Ref<Component> medium(const Element&, const Component& object, const Element* glow = nullptr);
   Ref<Component> homogeneous(const Element&);
   Ref<Component> heterogeneous(const Element&, const Component& object, const Element* glow);
@@ -159,30 +160,30 @@ class Converter {
   Ref<Component> box_of(const Element& medium, const Element* volume, const Component& object);
   void place_box(Component& box, const Element& medium, const Element* grid, const Component& object);
   void set_albedo(Component& medium, const Element&, const Element* volume, const Component& object);
-  /// From the unit cube to the box that a heterogeneous medium fills whose extinction is the same everywhere.
+  /// From the unit cube to the box of a heterogeneous medium with constant extinction.
   static Transform box_of_constant(const Element& medium);
   Ref<Component> even_everywhere(const Element& medium, const Color& extinction);
   static Transform to_world_of(const Component& object);
   void shine(Component& medium, const Element& glow, const Component& object);
   void set_grid(Component& grid, const Element& volume, const Component& object);
-  /// Where a grid lies in the world.
+  /// The placement of a grid in world space.
   struct GridPlace {
-    Transform cells;       ///< from the unit cube; where the box is the file's and `apart` is false, from that box
-    Transform box;         ///< from the same to what a medium of this grid ends with
-    bool by_file = false;  ///< the box is the file's
-    bool apart = false;    ///< the cells do not fill just that box
+    Transform cells;       ///< from the unit cube; if `by_file` is true and `apart` false, from the file's box
+    Transform box;         ///< from the same space to the box that bounds a medium of this grid
+    bool by_file = false;  ///< the box is stated in the file
+    bool apart = false;    ///< the cells do not exactly fill the box
   };
   GridPlace place_of_grid(const Element& volume);
   VolumeGrid read_grid(const Element& volume);
-  /// What lies outside of a grid, as `outside` of a GridMap.
+  /// The value outside a grid, for the member `outside` of GridMap.
   static std::string beyond_grid(const Element& volume);
-  /// From the unit cube to the box that a medium ends with; nothing: it is not on a grid.
+  /// From the unit cube to the box that bounds a medium; nothing: the medium has no grid.
   std::optional<Transform> grid_box(const Element& medium);
   void set_phase(Component& volume, const Element& medium);
   Ref<Component> phase_function(const Element&);
   Ref<Component> blended_phases(const Element&);
-  /// surroundings.cpp: what has to be added to the world for the medium around the sensor; null: nothing.
-  /// `seen`: Mitsuba's integrator takes notice of media.
+  /// The object to be added to the world for the medium around the sensor; null: nothing (surroundings.cpp). `seen`: Mitsuba's
+  /// integrator handles media.
   Ref<SceneObject> settle_media(const Element* sensor, bool seen, const std::vector<Ref<SceneObject>>& world);
 
   // helpers
@@ -191,33 +192,33 @@ class Converter {
   }
   Ref<Component> make(const char* class_name, const Element& e) { return make(class_name, e, e.id); }
   void set_transform(Component&, const TransformValue&, Location);
-  /// A file a plugin names.
+  /// A file that a plugin names.
   FilePath file(const Element&, const std::string& name = "filename");
   [[noreturn]] void fail_unknown(const Element&, const std::vector<std::string>& known) const;
-  /// Tells that there is no such plugin, or none here, and what stands for it; what else it says is told no more.
+  /// Warns that the plugin is unknown or unsupported and that `what` replaces it; its other properties are not reported.
   void stand_in(const Element&, const std::vector<std::string>& known, const std::string& what);
-  /// Notes properties of plugins that were read which nobody has asked for.
+  /// Warns of properties of the plugins read that were never queried.
   void note_unread(const Element& scene);
   void inexact(const Element& e, const std::string& what) { importing_.inexact(what, e.at); }
 
-  /// The media that a shape names.
+  /// The media that a shape states for its two sides.
   struct MediumSides {
     Ref<SceneObject> object;
     const Element *interior, *exterior;  ///< null: none
-    bool in_group;                       ///< it stands in a group of shapes
+    bool in_group;                       ///< the shape is part of a shapegroup
     Location at;
   };
 
   Importing& importing_;
   std::vector<MediumSides> sides_;
-  Location hides_emitters_;  // unknown: they are seen
-  int groups_read_ = 0;      ///< within one another, at present
+  Location hides_emitters_;  // unknown location: emitters are visible
+  int groups_read_ = 0;      ///< current nesting depth of groups
   std::map<std::pair<const Element*, Uv>, Surface> surfaces_;
   std::map<const Element*, Ref<Component>> media_, groups_;
   std::map<const Element*, bool> textured_, tilts_;
   std::map<const Element*, GridPlace> places_;
-  const Element *sun_of_sky_ = nullptr, *sky_with_sun_ = nullptr;  ///< that belong together
-  std::map<const Component*, Ref<Component>> turned_;              // shaders, by those that are not
+  const Element *sun_of_sky_ = nullptr, *sky_with_sun_ = nullptr;  ///< a sun and a sky that belong together
+  std::map<const Component*, Ref<Component>> turned_;              // shaders with front and back exchanged, by their originals
 };
 
 }  // namespace etendue::mitsuba

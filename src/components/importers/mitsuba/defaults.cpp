@@ -1,4 +1,4 @@
-// What Mitsuba takes where a scene has no sensor, integrator or emitter.
+// Mitsuba's defaults for scenes without a sensor, integrator or emitter.
 
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace etendue::mitsuba {
 
 namespace {
 
-/// Bounds of what is not at infinity. Objects are prepared to know theirs: copies of them.
+/// The bounding box of all finite objects. Copies of the objects are prepared, as only prepared objects have bounds.
 Bounds3 bounds_of(const std::vector<Ref<SceneObject>>& world) {
   Bounds3 all;
   for (const Ref<SceneObject>& object : world) {
@@ -20,7 +20,7 @@ Bounds3 bounds_of(const std::vector<Ref<SceneObject>>& world) {
     body->interior = nullptr;
     try {
       prepare_tree(*body);
-    } catch (const Error&) {  // the scene will say so
+    } catch (const Error&) {  // reported again when the scene is prepared
       continue;
     } catch (const Errors&) {
       continue;
@@ -32,8 +32,8 @@ Bounds3 bounds_of(const std::vector<Ref<SceneObject>>& world) {
 
 }  // namespace
 
-// 45 degrees across the picture, from before the middle of all shapes along +z, so far that their largest extent across is
-// seen.
+// A field of view of 45 degrees across the image, looking along +z from before the centre of all shapes, at a distance from
+// which their largest lateral extent is visible.
 Ref<Component> Converter::default_camera(const Element& scene, const std::vector<Ref<SceneObject>>& world) {
   Ref<Component> camera = importing_.make("PerspectiveCamera", scene.at);
   set_member(*camera, "fov", 45, scene.at);
@@ -53,7 +53,7 @@ Ref<Component> Converter::default_camera(const Element& scene, const std::vector
   return camera;
 }
 
-// A sky twice as bright, with a sun fifteen times as large.
+// Mitsuba's default: a sky twice as bright, with a sun of fifteen times the diameter.
 Ref<SceneObject> Converter::default_sky(const Element& scene) {
   importing_.inexact("the scene has no emitter: sky and sun shine, as in Mitsuba 0.x, but not from below the horizon",
                      scene.at);

@@ -10,8 +10,8 @@ namespace etendue::mitsuba {
 
 namespace {
 
-constexpr size_t deepest = 16;             // entities that name entities
-constexpr size_t most = size_t(64) << 20;  // [bytes] that all of them may add: a few lines can double with each line
+constexpr size_t deepest = 16;             // nesting of entities in entities
+constexpr size_t most = size_t(64) << 20;  // [bytes] added by all expansions: sizes can double with each declaration
 constexpr std::string_view blanks = " \t\r\n";
 
 using Entities = std::map<std::string, std::string, std::less<>>;
@@ -21,7 +21,7 @@ class Declarations {
  public:
   explicit Declarations(std::string_view text) : text_(text) {}
 
-  /// Returns where the document type ends; npos: there is none, or it declares nothing.
+  /// Returns the offset behind the document type; npos: there is none, or it declares no entities.
   size_t read(Entities& entities) {
     at_ = text_.find("<!DOCTYPE");
     if (at_ == text_.npos) return at_;
@@ -43,7 +43,7 @@ class Declarations {
     const size_t end = text_.find('>', at_);
     return end == text_.npos || entities.empty() ? text_.npos : end + 1;
   }
-  size_t first = std::string_view::npos;  ///< declaration
+  size_t first = std::string_view::npos;  ///< offset of the first declaration
 
  private:
   void skip_behind(std::string_view end) {
@@ -82,7 +82,7 @@ class Declarations {
   size_t at_ = 0;
 };
 
-/// Puts entities in their places.
+/// Replaces entity references by their texts.
 class Expander {
  public:
   Expander(const Entities& entities, ExpandedText& to) : entities_(entities), to_(to) {}
@@ -113,7 +113,7 @@ class Expander {
   }
 
  private:
-  /// Behind a comment or literal text that begins here, in which there are no entities.
+  /// The offset behind a comment or CDATA section that begins at `at`, where entities are not expanded; else `at`.
   static size_t passed_over(std::string_view text, size_t at) {
     constexpr std::pair<std::string_view, std::string_view> without[] = {{"<!--", "-->"}, {"<![CDATA[", "]]>"}};
     for (const auto& [begin, end] : without)
@@ -121,7 +121,7 @@ class Expander {
     return at;
   }
 
-  /// Quotes end the value of an attribute, but not where an entity has them.
+  /// Tracks whether the position is inside a quoted attribute value; quotes that come from an entity do not end it.
   void note_tag(char c) {
     if (quote_ != 0)
       quote_ = c == quote_ ? '\0' : quote_;

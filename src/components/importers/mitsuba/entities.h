@@ -1,5 +1,5 @@
 #pragma once
-// Entities of XML: texts that a document declares, and names where they are to stand.
+// XML entities: texts that a document declares, and their expansion where the document refers to them.
 
 #include <optional>
 #include <stdexcept>
@@ -9,8 +9,8 @@
 
 namespace etendue::mitsuba {
 
-/// From `begin` in an expanded text on, what was written at `written` stands, all of it one after the other; `whole`: up to the
-/// next expansion it stands for what was written there.
+/// Maps offsets of the expanded text to the source. From `begin` in the expanded text on, the text was copied from `written` in
+/// the source, character by character; if `whole`, all of it up to the next expansion replaces the reference at `written`.
 struct Expansion {
   size_t begin, written;
   bool whole;
@@ -19,20 +19,20 @@ struct Expansion {
 struct ExpandedText {
   std::string text;
   std::vector<Expansion> expansions;  ///< by `begin`
-  size_t declared;                    ///< where the first declaration was written
+  size_t declared;                    ///< offset of the first declaration in the source
 };
 
 class EntityError : public std::runtime_error {
  public:
   EntityError(const std::string& what, size_t at) : std::runtime_error(what), place(at) {}
-  size_t place;  ///< in the text as it was written
+  size_t place;  ///< offset in the source
 };
 
-/// The text with all entities that it declares in their places; nothing: it declares none. Throws EntityError for one that
-/// stands for another file or for itself, and where all of them would be too long.
+/// The text with all entities expanded that it declares; nothing: it declares none. Throws EntityError for an entity that
+/// refers to a file or to itself, and if the expansions would be too long.
 std::optional<ExpandedText> expand_entities(std::string_view text);
 
-/// Where something of an expanded text was written.
+/// The offset in the source of an offset in the expanded text.
 size_t written_at(const std::vector<Expansion>&, size_t offset);
 
 }  // namespace etendue::mitsuba

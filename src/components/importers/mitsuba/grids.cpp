@@ -1,4 +1,4 @@
-// Media whose densities lie on grids.
+// Heterogeneous media, whose coefficients are stored on grids.
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 namespace etendue::mitsuba {
 
 Ref<Component> Converter::heterogeneous(const Element& e, const Component& body, const Element* glow) {
-  const char* const name = e.has("sigma_t") ? "sigma_t" : "density";  // the latter in 0.5
+  const char* const name = e.has("sigma_t") ? "sigma_t" : "density";  // "density" is the name in 0.5
   const Element *const volume = e.nested(name), *albedo = e.nested("albedo");
   if (albedo && albedo->tag != "volume") albedo = nullptr;
   std::optional<Reading> of_volume, of_albedo;
@@ -34,13 +34,14 @@ Ref<Component> Converter::heterogeneous(const Element& e, const Component& body,
   const bool boxed = !even || !e.old;  // before version 2 a constant volume had no bounds
   const Location at = e.location_of(name);
   if (!boxed && !of_maps) return even_everywhere(e, all_of_it);
-  // A box that the cells do not fill limits the medium, whose maps are then in its coordinates.
+  // If the cells do not fill the box, the box bounds the medium, and the maps are placed in its space.
   const Ref<Component> frame = apart ? make("Box", e, "") : nullptr;
   if (frame) set_member(*frame, "transform", place->box, at);
   const Component& object = frame ? *frame : body;
   Ref<Component> medium = make(of_maps ? "MapVolume" : "GridVolume", e);
   if (of_maps) {
-    // What shines ends with the box, too, which is therefore the density; a file's box is known to the grid alone.
+    // Emission must end with the box too, so the box becomes the density map; a box that is stated in the file is known to the
+    // grid alone.
     if (apart) {
       set_member(*medium, "limited", true, at);
       set_member(*medium, "placement", to_world_of(body).inverse() * place->box, at);
@@ -63,7 +64,7 @@ Ref<Component> Converter::heterogeneous(const Element& e, const Component& body,
       place_box(*medium, e, nullptr, object);
     else
       set_grid(*medium, *volume, object);
-    set_member(*medium, "outside", "cut", at);  // the medium ends with the box, whatever is around it
+    set_member(*medium, "outside", "cut", at);  // the medium ends with the box, whatever the grid's wrap mode
   }
   if (!even) beyond_grid(*volume);
   set_albedo(*medium, e, albedo, object);
@@ -74,7 +75,7 @@ Ref<Component> Converter::heterogeneous(const Element& e, const Component& body,
   return medium;
 }
 
-/// A heterogeneous medium of version 0.x whose volumes are constant: it fills its shape.
+/// The medium for a heterogeneous medium of version 0.x with constant volumes: it fills its shape.
 Ref<Component> Converter::even_everywhere(const Element& e, const Color& extinction) {
   Ref<Component> medium = make("HomogeneousVolume", e);
   set_member(*medium, "extinction", extinction, e.at);
@@ -83,7 +84,7 @@ Ref<Component> Converter::even_everywhere(const Element& e, const Color& extinct
   return medium;
 }
 
-/// 1 in the box of a heterogeneous medium, and 0 outside. `volume`: its 'sigma_t', if that is one.
+/// A map that is 1 in the box of a heterogeneous medium and 0 outside. `volume`: the nested volume 'sigma_t', or null.
 Ref<Component> Converter::box_of(const Element& e, const Element* volume, const Component& object) {
   Ref<Component> box = make("GridMap", e, "");
   place_box(*box, e, volume && volume->type == "gridvolume" ? volume : nullptr, object);
@@ -97,16 +98,16 @@ void Converter::place_box(Component& box, const Element& e, const Element* grid,
   if (!placement.identity()) set_member(box, "placement", placement, e.at);
 }
 
-/// Whether two grids lie in one place and are read alike.
+/// Whether two grids have the same placement and filter.
 bool Converter::same_place(const Element& a, const Element& b) {
-  // Boxes that two files name may differ.
+  // The boxes stated in two files may differ.
   if (a.boolean("use_grid_bbox", false) && file(a).resolved() != file(b).resolved()) return false;
   return a.transform().transform.still().exact() == b.transform().transform.still().exact() &&
          a.boolean("use_grid_bbox", false) == b.boolean("use_grid_bbox", false) &&
          a.string("filter_type", "trilinear") == b.string("filter_type", "trilinear");
 }
 
-/// `volume`: the volume that says it; null: the medium itself says it.
+/// `volume`: the volume of the albedo; null: the albedo is a property of the medium itself.
 void Converter::set_albedo(Component& medium, const Element& e, const Element* volume, const Component& object) {
   if (!volume || volume->type != "gridvolume") {
     set_member(medium, "albedo", medium_color(e, "albedo", 0.75), e.location_of("albedo"));
@@ -114,7 +115,7 @@ void Converter::set_albedo(Component& medium, const Element& e, const Element* v
     const Ref<Component> grid = make("GridMap", *volume);
     set_grid(*grid, *volume, object);
     set_member(*grid, "outside", beyond_grid(*volume), volume->at);
-    const Ref<Component> read = make("ReadAsMap", *volume, "");  // colours in grids are not those of surfaces there
+    const Ref<Component> read = make("ReadAsMap", *volume, "");  // Mitsuba does not treat colours in grids as surface colours
     set_member(*read, "map", grid, volume->at);
     set_member(*read, "as", "coefficient", volume->at);
     set_member(medium, "albedo", read, volume->at);
@@ -126,7 +127,8 @@ void Converter::set_albedo(Component& medium, const Element& e, const Element* v
   }
 }
 
-// A heterogeneous medium ends there with the box, along the axes of the world, of its 'sigma_t', be that the same everywhere.
+// In Mitsuba a heterogeneous medium ends with the axis-aligned world-space bounding box of its 'sigma_t', even if that is
+// constant.
 Transform Converter::box_of_constant(const Element& medium) {
   const Element* const volume = medium.nested("sigma_t");
   const Bounds3 box = (volume ? volume->transform().transform.still() : Transform())(Bounds3{Point3{0, 0, 0}, Point3{1, 1, 1}});
@@ -141,7 +143,7 @@ Transform Converter::to_world_of(const Component& object) {
   return placed ? placed->still() : (still ? *still : Transform());
 }
 
-/// The file of a grid and its place.
+/// Sets the file of a grid and its placement.
 void Converter::set_grid(Component& grid, const Element& volume, const Component& object) {
   const GridPlace place = place_of_grid(volume);
   set_member(grid, "file", file(volume), volume.location_of("filename"));
@@ -159,7 +161,7 @@ Transform from_unit_cube(const DoublePoint3& low, const DoublePoint3& high) {
 
 DoublePoint3 exact(const Point3& p) { return {double(p.x), double(p.y), double(p.z)}; }
 
-/// Whether axes of the unit cube stay along axes.
+/// Whether the transform maps coordinate axes to coordinate axes.
 bool along_axes(const Transform& t) {
   const Transform::DoubleMatrix& m = t.exact();
   for (size_t row = 0; row < 3; ++row) {
@@ -193,10 +195,10 @@ VolumeGrid Converter::read_grid(const Element& volume) {
   }
 }
 
-// Version 0.x has the values of a grid in the corners of cells, of which there is one less along each axis than there are
-// values, and nothing outside of the box that the file names, or of that from 'min' to 'max'. Version 3 has them in the middles
-// of cells, which fill the unit cube unless the file's box is asked for; a medium ends there with the box along the world's
-// axes around it, up to which 'wrap_mode' says how the grid goes on.
+// Version 0.x stores grid values at the corners of cells, of which there is one less than values along each axis, and the
+// medium is empty outside the box that the file states, or the box from 'min' to 'max'. Version 3 stores them at the centres of
+// cells, which fill the unit cube unless the file's box is requested; the medium ends with the world-space axis-aligned
+// bounding box of the grid, and up to there 'wrap_mode' continues the grid.
 Converter::GridPlace Converter::place_of_grid(const Element& volume) {
   if (const auto known = places_.find(&volume); known != places_.end()) return known->second;
   GridPlace place;
@@ -211,7 +213,7 @@ Converter::GridPlace Converter::place_of_grid(const Element& volume) {
       low = {from.x, from.y, from.z};
       high = {to.x, to.y, to.z};
     }
-    DoublePoint3 first = low, last = high;  // where the cells would end that have the values in their middles
+    DoublePoint3 first = low, last = high;  // the box whose cells have the values at their centres
     const auto widen = [&](int values, double& from, double& to) {
       if (!(to > from)) throw Error("the box of this grid has no volume", volume.location_of("filename"));
       if (values < 2) inexact(volume, "a grid of one value along an axis is empty in Mitsuba 0.x: here it fills its box");

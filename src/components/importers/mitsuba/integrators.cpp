@@ -1,4 +1,4 @@
-// Integrators: which renderer computes the same.
+// Converts integrators to the renderers that compute the same.
 
 #include <fmt/format.h>
 
@@ -40,7 +40,7 @@ const std::vector<std::string> known_integrators = {"path",
                                                     "stokes",
                                                     "guiding"};
 
-constexpr int without_end = 100000;  // segments; Russian roulette ends paths long before
+constexpr int without_end = 100000;  // segments; Russian roulette terminates paths long before
 
 }  // namespace
 
@@ -72,11 +72,11 @@ Ref<Component> Converter::renderer(const Element& scene, const Element* integrat
 }
 
 void Converter::set_depths(Component& outer, const Element& e) {
-  // A renderer around another has the other's depths.
+  // The depths belong to the inner renderer if there is one.
   const Value inner = outer.class_info().find("inner") ? get(outer, "inner") : Value();
   const auto* within = inner.as<Ref<Component>>();
   Component& renderer = within && *within ? **within : outer;
-  // Both count segments: 1 shows emitters alone, 2 adds direct light.
+  // In both programs the depth counts segments: 1 shows emitters alone, 2 adds direct light.
   const std::int64_t depth = e.integer("max_depth", -1);
   if (depth == 0) importing_.inexact("paths of no segment are a black picture: here they have one", e.location_of("max_depth"));
   const double longest = depth < 0 ? without_end : double(std::clamp<std::int64_t>(depth, 1, without_end));
@@ -90,10 +90,10 @@ void Converter::set_depths(Component& outer, const Element& e) {
   set_or_tell("roulette_depth", double(std::max<std::int64_t>(e.integer("rr_depth", 5), 1)), "rr_depth");
   note_hidden_emitters(e);
   if (e.boolean("strict_normals", false))
-    e.ignore({"strict_normals"});  // light that interpolated normals would send through a surface never goes through here
+    e.ignore({"strict_normals"});  // here a shading normal never sends light through a surface
 }
 
-// What only measures, or adds channels, around another integrator.
+// Integrators around another one that only measure or add channels.
 Ref<Component> Converter::around(const Element& e, const std::vector<const Element*>& inner) {
   const std::string& t = e.type;
   if (inner.size() > 1) inexact(*inner[1], "one integrator is used: the first");
@@ -109,7 +109,7 @@ Ref<Component> Converter::around(const Element& e, const std::vector<const Eleme
     inexact(e, fmt::format("'{}' around another integrator is left out", t));
   Ref<Component> made = light_transport(*inner.front());
   if (t == "adaptive") {
-    // Others than these spread a sample over the picture.
+    // Other renderers splat a sample to many pixels, which adaptive sampling excludes.
     if (const std::string& of = made->class_info().name; of == "PathTracer" || of == "DirectRenderer") {
       inexact(e, "'adaptive' becomes AdaptiveSampling: samples are the mean over all pixels, whatever the error");
       Ref<Component> outer = make("AdaptiveSampling", e);
@@ -123,7 +123,7 @@ Ref<Component> Converter::around(const Element& e, const std::vector<const Eleme
   return made;
 }
 
-// A feature of what is seen: the 'field' of version 0.x, or the first of an 'aov' that stands by itself.
+// The renderer of a geometric feature: 'field' of version 0.x, or the first channel of an 'aov' without an inner integrator.
 Ref<Component> Converter::features(const Element& e) {
   Ref<Component> made = make("FeatureRenderer", e);
   std::string asked = "depth";

@@ -1,4 +1,4 @@
-// Emitters, and colours as light.
+// Converts emitters, and colours of light.
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ Numbers three(const DoubleVector3& v) { return {{v.x, v.y, v.z}, 1, Dimension::n
 }  // namespace
 
 Color Converter::scaled_light(const ColorValue& c, bool old) const {
-  // Mitsuba before 2 renders red, green and blue: a light of equal values is white there, which is D65.
+  // Mitsuba before 2 renders in RGB: a light of equal components is white, which is D65.
   if (old && c.kind == ColorValue::Kind::flat) return rgb_color("srgb", c.rgb[0], c.rgb[0], c.rgb[0]);
   return c.color;
 }
@@ -43,7 +43,7 @@ Value Converter::light_of(const Element& e, Uv uv) {
   if (const auto* n = v.as<Number>(); n && e.old) return Value(rgb_color("srgb", n->value, n->value, n->value), e.at);
   const auto* map = v.as<Ref<Component>>();
   if (!map || e.old) return v;
-  // There a picture as light is not multiplied by the white of its colour space.
+  // Mitsuba does not multiply an image used as light by the white point of its colour space.
   Ref<Component> read = make("ReadAsMap", e, "");
   set_member(*read, "map", *map, e.at);
   set_member(*read, "as", "coefficient", e.at);
@@ -55,7 +55,7 @@ Ref<Component> Converter::area_emission(const Element& e, Uv uv) {
     importing_.inexact(fmt::format("emitter '{}' on a shape is taken for 'area'", e.type), e.at);
   }
   const Reading reading(e);
-  const char* const name = !e.has("radiance") && e.has("intensity") ? "intensity" : "radiance";  // the latter in 0.3
+  const char* const name = !e.has("radiance") && e.has("intensity") ? "intensity" : "radiance";  // "intensity" in 0.3
   Ref<Component> emission = make(e.type == "directionalarea" ? "CollimatedEmission" : "DiffuseEmission", e);
   if (e.type == "directionalarea") inexact(e, "light along the normal alone spreads by 0.1 degrees here");
   set(*emission, "radiance", light(e, name, uv));
@@ -101,7 +101,7 @@ Ref<SceneObject> Converter::emitter(const Element& e) {
     object = beam(e);
   } else if (e.type == "area") {
     if (e.id.empty()) throw Error("an 'area' emitter stands inside a shape", e.at);
-    e.read = false;  // shapes refer to it
+    e.read = false;  // read when a shape refers to it
   } else {
     inexact(e, fmt::format("emitter '{}' is not known here: it is left out", e.type));
     e.dismiss();
@@ -116,7 +116,7 @@ Ref<Component> Converter::spot(const Element& e) {
   set_member(*emission, "outer_angle", cutoff, e.location_of("cutoff_angle"));
   set_member(*emission, "inner_angle", e.number("beam_width", cutoff * 3 / 4), e.location_of("beam_width"));
   set_member(*emission, "edge", "linear", e.at);
-  // u and v of its picture begin at the lower right as the light sees it; its rows at their top, as all images there.
+  // In Mitsuba u and v of the spot's texture begin at the lower right as seen from the light, and image rows at the top.
   if (const Element* picture = e.nested("texture")) {
     set(*emission, "picture", texture(*picture, Uv::as_is));
   }
@@ -128,21 +128,21 @@ Ref<Component> Converter::spot(const Element& e) {
 
 Ref<Component> Converter::projector(const Element& e) {
   Ref<Component> emission = make("ProjectorEmission", e, "");
-  const Element* const picture = e.nested("irradiance");  // null: the same everywhere, over a square
+  const Element* const picture = e.nested("irradiance");  // null: constant over a square
   set(*emission, "picture", light(e, "irradiance", Uv::from_top));
   set_member(*emission, "scale", e.number("scale", 1) * std::numbers::pi, e.at);
   double aspect = 1;
   if (picture && picture->type == "bitmap")
     if (const auto file =
             importing_.optional_file(picture->string("filename", ""), picture->location_of("filename"), picture->folder)) {
-      const Image image = read_image(*file);  // once more, for its size alone
+      const Image image = read_image(*file);  // reads the image again, only for its size
       aspect = double(image.width) / double(image.height);
       set_member(*emission, "aspect", aspect, picture->at);
     }
   std::string axis = axis_of(e);
   double fov = e.number("fov", 0);
   const Location at = e.location_of(e.has("fov") ? "fov" : "focal_length");
-  if (!e.has("fov")) {  // of a film whose diagonal is that of 36 x 24 mm
+  if (!e.has("fov")) {  // for a film with the diagonal of 36 x 24 mm
     fov = 2 * std::atan(std::hypot(36, 24) / (2 * focal_length(e))) * degrees_a_radian;
     axis = "diagonal";
   }
@@ -172,7 +172,7 @@ Ref<Component> Converter::environment(const Element& e) {
   Ref<Component> emission = make("EnvironmentEmission", e, "");
   set_member(*emission, "file", file(e), e.location_of("filename"));
   if (!e.old) set_member(*emission, "rows", "poles", e.at);                // row j at v = j / (height - 1)
-  const char* const scale = e.has("scale") ? "scale" : "intensity_scale";  // the latter in 0.4
+  const char* const scale = e.has("scale") ? "scale" : "intensity_scale";  // "intensity_scale" is the name in 0.4
   if (e.has(scale)) set_member(*emission, "scale", e.number(scale, 1), e.location_of(scale));
   if (e.has("gamma")) {
     if (e.number("gamma", 0) == 1) set_member(*emission, "transfer", "linear", e.location_of("gamma"));

@@ -19,10 +19,10 @@ namespace {
 
 const std::vector<std::string> known_media = {"homogeneous", "heterogeneous"};
 
-/// Of a medium or a phase function: the lobe of an 'hg'.
+/// Sets the anisotropy g of an 'hg' phase function, for a medium or a phase function.
 void set_lobe(Component& part, const Element& hg) { set_member(part, "anisotropy", hg.number("g", 0.8), hg.at); }
 
-/// Of red, green and blue that a property gives, itself or by the spectrum that it names; null: it gives something else.
+/// The RGB colour that a property states directly or by a nested spectrum; null: the property is something else.
 const ColorValue* written_rgb(const Element& e, const std::string& name) {
   const Property* p = e.find(name);
   if (!p) return nullptr;
@@ -33,14 +33,14 @@ const ColorValue* written_rgb(const Element& e, const std::string& name) {
 
 }  // namespace
 
-// Red, green and blue of a medium, where none is above 1, become the spectrum of a surface of that colour there, be they an
-// albedo or coefficients, which 'scale' multiplies later. Above 1 the spectral variants refuse them, and they are read as
-// everywhere here: a spectrum within twice the largest component. docs/colour.md tells what the two have in common.
+// Mitsuba's spectral variants convert the RGB values of a medium, albedo or coefficients (which 'scale' multiplies later), to
+// the spectrum of a surface of that colour if none is above 1. Larger values are refused by Mitsuba; they are read here as
+// everywhere else, as a spectrum bounded by twice the largest component. docs/colour.md compares the two.
 Color Converter::medium_color(const Element& e, const std::string& name, double otherwise) {
   const Property* const given_by = e.find(name);
   const Element* inner = given_by && std::holds_alternative<Nested>(given_by->value) ? e.nested(name) : nullptr;
   if (inner && inner->type != "constvolume") inner = nullptr;
-  std::optional<Reading> reading;  // who asks may be reading the volume already
+  std::optional<Reading> reading;  // the caller may be reading the volume already
   if (inner && !inner->being_read) reading.emplace(*inner);
   const Element& says = inner ? *inner : e;
   const std::string property = inner ? "value" : name;
@@ -49,7 +49,7 @@ Color Converter::medium_color(const Element& e, const std::string& name, double 
   if (!written || std::ranges::any_of(written->rgb, [](double x) { return x > 1; })) return read;
   if (name != "albedo") return used_spectrum(ColorUse::reflectance, read);
   const std::array<double, 3> given{written->rgb[0], written->rgb[1], written->rgb[2]}, there = tabulated_color(given);
-  // Where what is absorbed differs by more than can be seen.
+  // Whether the absorption, 1 - albedo, differs visibly.
   const bool differs = std::ranges::any_of(std::array<size_t, 3>{0, 1, 2}, [&](size_t i) {
     return std::abs(there[i] - given[i]) > 0.05 * (1 - given[i]) && std::abs(there[i] - given[i]) > 2e-4;
   });
@@ -77,7 +77,8 @@ Ref<Component> Converter::medium(const Element& e, const Component& object, cons
   return made;
 }
 
-// The emitter 'volumelight' of a shape: its "radiance" is what the medium inside adds per distance, whatever it absorbs.
+// Emitter 'volumelight' of a shape: its "radiance" is the emission of the medium inside per distance, independent of
+// absorption.
 void Converter::shine(Component& medium, const Element& glow, const Component& object) {
   glow.ignore({"sampling_weight"});
   if (!glow.has("radiance")) {
@@ -96,7 +97,7 @@ void Converter::shine(Component& medium, const Element& glow, const Component& o
   set_grid(*grid, *volume, object);
   set_member(*grid, "outside", beyond_grid(*volume), volume->at);
   set_member(*read, "map", grid, volume->at);
-  set_member(*read, "as", "coefficient", volume->at);  // a grid as light is not multiplied by a white there
+  set_member(*read, "as", "coefficient", volume->at);  // Mitsuba does not multiply a grid used as light by a white point
   set_member(medium, "emission", read, volume->at);
   volume->ignore({"raw", "accel"});
 }
@@ -138,7 +139,7 @@ Ref<Component> Converter::phase_function(const Element& e) {
 Ref<Component> Converter::blended_phases(const Element& e) {
   const std::vector<const Element*> parts = e.all("phase");
   std::vector<double> weights;
-  if (e.type == "mixturephase") {  // of 0.5
+  if (e.type == "mixturephase") {  // of version 0.5
     weights = parse_numbers({e.string("weights", ""), e.location_of("weights")});
   } else if (e.nested("weight")) {
     inexact(*e.nested("weight"), "phase functions are blended alike everywhere, here half and half");
@@ -152,7 +153,7 @@ Ref<Component> Converter::blended_phases(const Element& e) {
   if (std::ranges::any_of(weights, [](double w) { return !(w >= 0); })) throw Error("weights must not be negative", e.at);
   std::vector<Ref<Component>> made;
   for (const Element* part : parts) made.push_back(phase_function(*part));
-  // Neighbours by twos, and those again: of many parts none lies deep.
+  // Blends neighbours in pairs, then the results in pairs: a balanced tree, so that no phase function is nested deeply.
   while (made.size() > 1) {
     const size_t left = made.size() / 2;
     for (size_t k = 0; k < left; ++k) {
@@ -172,7 +173,7 @@ Ref<Component> Converter::blended_phases(const Element& e) {
 
 namespace {
 
-/// A measured medium by its name, small letters and capitals aside; null: there is none.
+/// The measured medium of this name, ignoring case; null: there is none.
 const MeasuredMedium* measured_medium(std::string name) {
   const auto small = [](std::string text) {
     std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
@@ -197,7 +198,7 @@ Ref<Component> Converter::homogeneous(const Element& e) {
     set_member(*volume, "albedo", medium_color(e, "albedo", 0.75), e.location_of("albedo"));
     return volume;
   }
-  // Before version 2 all that is not given is of a measured medium, there in 1/mm.
+  // Before version 2 coefficients that are not given come from a measured medium, in 1/mm.
   const MeasuredMedium* known = measured_medium("Skin1");
   if (e.has("material")) {
     const std::string name = e.string("material", "");
@@ -211,7 +212,7 @@ Ref<Component> Converter::homogeneous(const Element& e) {
     }
   }
   std::array<double, 3> absorbed{}, scattered{}, whole{}, albedo{};
-  const auto a_metre = [](double x) { return std::round(x * 1e11) / 1e9; };  // times 100 there, without new digits
+  const auto a_metre = [](double x) { return std::round(x * 1e11) / 1e9; };  // Mitsuba multiplies by 100; adds no digits
   for (size_t i = 0; i < 3; ++i) {
     absorbed[i] = a_metre(known->absorption[i]);
     scattered[i] = a_metre(known->scattering[i]);

@@ -16,7 +16,7 @@ Ref<Component> Converter::mesh(const Element& e, Uv& uv) {
   set_member(*mesh, "file", file(e), e.location_of("filename"));
   if (e.type == "serialized")
     set_member(*mesh, "part", std::to_string(e.integer("shape_index", 0)), e.location_of("shape_index"));
-  // Normals that a file lacks are found from the triangles, unless faces are to be flat.
+  // Missing normals are computed from the triangles, unless faces are to be flat.
   set_member(*mesh, e.boolean("face_normals", false) ? "flat" : "smooth", true, e.at);
   if (e.has("max_smooth_angle")) {
     e.find("max_smooth_angle");
@@ -39,8 +39,8 @@ constexpr size_t fewest_of_spline = 4;
 
 constexpr std::string_view binary_hair = "BINARY_HAIR";
 
-/// Mitsuba 0.5's binary hair: behind the first word a number of vertices (32 bits), then x, y and z of each as floats, lowest
-/// byte first; before the first vertex of a strand stands an infinity.
+/// Mitsuba 0.5's binary hair: after the first word the number of vertices (32 bits), then x, y and z of each as little-endian
+/// floats; an infinity precedes the first vertex of a strand.
 Strands read_binary_hair(const std::string& path, std::string_view bytes, Location at, double radius) {
   size_t next = binary_hair.size();
   const auto take = [&](auto& to) {
@@ -129,7 +129,7 @@ Ref<Component> Converter::curves(const Element& e) {
   Ref<Component> curve = make("Curve", e);
   if (e.type == "hair") {
     set_transform(*curve, e.transform(), e.location_of("to_world"));
-  } else {  // there the points alone are transformed, and radii stay what they are
+  } else {  // Mitsuba transforms only the points; radii are unchanged
     const TransformValue placed = e.transform();
     if (placed.transform.animated()) inexact(e, "curves stay where they are at first");
     const Transform to_world = placed.transform.still();
@@ -178,7 +178,7 @@ Ref<Component> Converter::instance(const Element& e) {
     const Reading reading(of);
     set_member(*instance, "scene", group(of), e.at);
   }
-  const char* const placement = e.has("animation") ? "animation" : "to_world";  // the former counts alone
+  const char* const placement = e.has("animation") ? "animation" : "to_world";  // if present, "animation" alone counts
   set_transform(*instance, e.transform(placement), e.location_of(placement));
   return instance;
 }

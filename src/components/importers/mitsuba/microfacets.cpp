@@ -1,4 +1,4 @@
-// Surfaces of glass, metal and plastic.
+// Dielectrics, conductors and plastic.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ struct NamedIndex {
   const char* name;
   double index;
 };
-// As Mitsuba has them, so that scenes look as they do there: "Mitsuba 3 documentation", plugin "dielectric".
+// Mitsuba's own values, so that scenes look the same: "Mitsuba 3 documentation", plugin "dielectric".
 constexpr NamedIndex indices[] = {{"vacuum", 1.0},      {"helium", 1.00004},         {"hydrogen", 1.00013},
                                   {"air", 1.000277},    {"carbon dioxide", 1.00045}, {"water", 1.3330},
                                   {"acetone", 1.36},    {"ethanol", 1.361},          {"carbon tetrachloride", 1.461},
@@ -88,11 +88,11 @@ Converter::Surface Converter::dielectric(const Element& e, Uv uv, const std::str
 
 namespace {
 
-/// Mitsuba's metal without absorption, of index 0, which reflects all light: F = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2) at
-/// normal incidence, which for k = 1 is 1 - 2 n here to the first order. An index is more than 0.
+/// The index n for Mitsuba's lossless conductor, whose n = 0 reflects all light: F = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2) at
+/// normal incidence, which for k = 1 is 1 - 2 n to first order. Here an index must be positive.
 constexpr float almost_no_index = 1e-6f;
 
-/// Tables of Mitsuba in which something visible is missing. It takes n = 0 there, which reflects all light.
+/// Mitsuba's tables that do not cover the visible range. Mitsuba uses n = 0 in the gaps, which reflects all light.
 constexpr const char* going_on = "and all light beyond is reflected: here the last n and k go on";
 constexpr std::tuple<const char*, const char*, const char*> incomplete_tables[] = {
     {"AlSb", "ends at 590 nm", going_on},
@@ -102,7 +102,8 @@ constexpr std::tuple<const char*, const char*, const char*> incomplete_tables[] 
     {"AlAs", "has n = 0 from 394 to 435 nm",
      "where all light is reflected: here n goes evenly from what it is on either side"}};
 
-/// An index of refraction whose table ends within the visible goes on with its first and last values: no index is 0.
+/// A table of refractive indices that ends within the visible range is extended by its first and last values: an index of 0 is
+/// invalid.
 Color going_on_at_its_ends(const Color& table) {
   constexpr int first = 360, last = 830;  // [nm]
   const auto at = [&](int nm) { return table->at(float(nm), ColorUse::coefficient); };
@@ -110,7 +111,7 @@ Color going_on_at_its_ends(const Color& table) {
   while (low < last && at(low) == 0) ++low;
   while (high > low && at(high) == 0) --high;
   if (low == first && high == last) return table;
-  if (low == last) return table;  // black everywhere: whoever needs an index says so
+  if (low == last) return table;  // 0 everywhere: reported where the index is used
   std::vector<float> wavelengths, values;
   for (int nm = first; nm <= last; ++nm) {
     wavelengths.push_back(float(nm));
@@ -119,9 +120,9 @@ Color going_on_at_its_ends(const Color& table) {
   return table_spectrum(std::move(wavelengths), std::move(values));
 }
 
-/// The n and k of a name of Mitsuba; tells where they are not those it has.
+/// The complex index of a material name of Mitsuba; warns where the values differ from Mitsuba's.
 Color named_metal(Importing& importing, const std::string& material, Location at) {
-  // Of most, Mitsuba has the same table under two names, one of which tells the handbook: "Mo" and "Mo_palik".
+  // Mitsuba has most tables under two names, one of which states the source (Palik's handbook): "Mo" and "Mo_palik".
   constexpr std::string_view palik = "_palik";
   std::vector<std::string> names = {material};
   if (material.ends_with(palik)) names.push_back(material.substr(0, material.size() - palik.size()));

@@ -1,4 +1,4 @@
-// OBJ files of Mitsuba 0.x whose faces name materials.
+// OBJ files of Mitsuba 0.x whose faces refer to materials.
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace etendue::mitsuba {
 
 namespace {
 
-/// The materials of the libraries that an OBJ file names.
+/// The materials of the MTL libraries that an OBJ file names.
 std::map<std::string, MtlMaterial> materials_of(Importing& importing, const std::string& path, Location at) {
   std::map<std::string, MtlMaterial> all;
   const FileContents contents(path);
@@ -30,8 +30,8 @@ std::map<std::string, MtlMaterial> materials_of(Importing& importing, const std:
 
 }  // namespace
 
-// Bsdfs without a name are for all faces; those with one, and the materials of the file itself, for faces of that material. The
-// last one counts.
+// Bsdfs without a name apply to all faces; bsdfs with a name, and the materials of the MTL file, to the faces of that material.
+// The last one counts.
 Ref<Component> Converter::parts_of_obj(const Element& e) {
   if (!e.old || e.type != "obj") return nullptr;
   e.ignore({"load_materials"});
@@ -51,8 +51,8 @@ Ref<Component> Converter::parts_of_obj(const Element& e) {
   } catch (const Error& error) {
     throw Error(error.what(), error.location.known() ? error.location : at);
   }
-  if (!named && (materials.empty() || !e.all("emitter").empty())) return nullptr;  // a lamp is what it is
-  std::map<std::string, const Element*> chosen;                                    // by the names of materials
+  if (!named && (materials.empty() || !e.all("emitter").empty())) return nullptr;  // a shape with an emitter stays one mesh
+  std::map<std::string, const Element*> chosen;                                    // by material name
   for (const Property& p : e.properties) {
     const auto* nested = std::get_if<Nested>(&p.value);
     if (!nested || nested->element->tag != "bsdf") continue;

@@ -1,4 +1,4 @@
-// What Mitsuba 0.3 to 0.6 called by other names.
+// Names of Mitsuba 0.3 to 0.6 that changed later.
 
 #include <cctype>
 #include <utility>
@@ -25,7 +25,7 @@ std::string modern_tag(const std::string& tag) {
 }
 
 std::string modern_type(const std::string& tag, const std::string& written) {
-  std::string type = written;  // "Rectangle" is found where file names do not tell capitals apart
+  std::string type = written;  // Mitsuba finds "Rectangle" too on file systems that ignore case
   for (char& c : type) c = char(std::tolower(static_cast<unsigned char>(c)));
   static constexpr std::pair<const char*, const char*> bsdfs[] = {
       {"lambertian", "diffuse"},        {"microfacet", "roughplastic"}, {"roughglass", "roughdielectric"},

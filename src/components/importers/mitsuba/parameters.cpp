@@ -1,4 +1,4 @@
-// Attributes with the scene's parameters ("$spp") put in, and references by id.
+// Substitution of the scene's parameters ("$spp") in attributes, and resolution of references by id.
 
 #include <fmt/format.h>
 
@@ -37,7 +37,7 @@ std::string SceneReader::with_parameters(const std::string& text, Location at) {
     size_t end = dollar + 1;
     while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_')) ++end;
     const std::string word = text.substr(dollar + 1, std::min(end - dollar - 1, size_t(200)));
-    // "$resolution_x" may be the parameter "resolution" with something after it: the longest name that is known counts.
+    // "$resolution_x" may be the parameter "resolution" followed by text: the longest known name is substituted.
     std::optional<std::string> value;
     size_t length = word.size();
     for (; length > 0 && !value; --length) {
@@ -66,8 +66,8 @@ std::string SceneReader::with_parameters(const std::string& text, Location at) {
 
 namespace {
 
-/// How deep plugins nest by what they hold and refer to; those that hold themselves are told where they are converted. Bounded,
-/// as what is made of them is built, and taken down, from one to the next.
+/// Computes how deep plugins nest by containment and reference; cycles are reported when they are converted. The depth is
+/// limited because components are created and destroyed recursively.
 class Depths {
  public:
   static constexpr size_t most = 100;
@@ -88,7 +88,7 @@ class Depths {
     if (above + depth >= most) throw Error(fmt::format("plugins that refer to plugins nest more than {} deep", most), e.at);
     return depth;
   }
-  std::map<const Element*, size_t> depths_;  // 0: being found
+  std::map<const Element*, size_t> depths_;  // 0: being computed
 };
 
 }  // namespace

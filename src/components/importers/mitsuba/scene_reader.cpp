@@ -12,8 +12,8 @@ namespace etendue::mitsuba {
 
 namespace {
 
-constexpr size_t deepest = 100;                    // plugins in plugins
-constexpr size_t deepest_include = 16;             // files that include files
+constexpr size_t deepest = 100;                    // nesting of plugins
+constexpr size_t deepest_include = 16;             // nesting of included files
 constexpr size_t most_includes = 10000;            // of one scene
 constexpr size_t most_included = size_t(1) << 30;  // [bytes] of all files together
 
@@ -27,7 +27,7 @@ bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
 
-/// How a text begins, in quotation marks; what is no ASCII, some of which cannot be seen, by its number.
+/// The beginning of a text in quotation marks; characters outside ASCII, some of which are invisible, as code points.
 std::string beginning(const std::string& text) {
   constexpr size_t most = 20;
   const size_t first = std::min(text.find_first_not_of(" \t\r\n"), text.size());
@@ -94,7 +94,7 @@ void SceneReader::read_file(const std::string& path, Element& into, Location fro
 void SceneReader::read_scene_version(const pugi::xml_node& root) {
   const auto version = attribute(root, "version");
   if (!version) {
-    // Version 0.3 had cameras and luminaires.
+    // Tags of version 0.3.
     old_ = root.child("camera") || root.child("luminaire");
     importing_.inexact(fmt::format("<scene> does not say which version of Mitsuba it is for: it is read as for version {}",
                                    old_ ? "0.3, whose tags it has" : "3"),
@@ -180,7 +180,7 @@ ColorValue SceneReader::read_spectrum(const pugi::xml_node& node, const Element&
 bool SceneReader::read_directive(const pugi::xml_node& node, Element& into) {
   const std::string_view tag = node.name();
   if (tag == "default") {
-    // What was given on the command line, or said before, counts.
+    // A value from the command line or an earlier default takes precedence.
     const Text name = required(node, "name"), value = required(node, "value");
     if (name.text.empty()) throw Error("a parameter needs a name", name.at);
     defaults_.emplace(name.text, importing_.parameter(name.text).value_or(value.text));
@@ -228,7 +228,7 @@ void SceneReader::read_animation(const pugi::xml_node& node, Element& into) {
     if (!keys.back().transform.valid()) throw Error("this transform cannot be inverted: it makes things flat", at(child));
   }
   constexpr auto when = &AnimatedTransform::Key::time;
-  std::ranges::sort(keys, {}, when);  // they may stand in any order
+  std::ranges::sort(keys, {}, when);  // they may be in any order
   if (std::ranges::adjacent_find(keys, {}, when) != keys.end()) throw Error("two transforms have the same time", at(node));
   if (keys.empty()) throw Error("<animation> needs transforms", at(node));
   add(into, {modern_name(required(node, "name").text), at(node), TransformValue{AnimatedTransform(std::move(keys)), {}}});
@@ -271,7 +271,7 @@ void SceneReader::add(Element& into, Property property) {
         throw Error(fmt::format("'{}' is given twice; the first is in line {}", p.name, p.at.line), property.at);
       values += !std::holds_alternative<Nested>(p.value);
     }
-    constexpr size_t most = 1000;  // of which the largest have some 30
+    constexpr size_t most = 1000;  // the largest plugins have about 30
     if (values >= most) throw Error(fmt::format("a {} has more than {} values", into.tag, most), property.at);
   }
   into.properties.push_back(std::move(property));

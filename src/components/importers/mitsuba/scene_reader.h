@@ -1,5 +1,5 @@
 #pragma once
-// Mitsuba's XML into plugins and properties.
+// Reads Mitsuba's XML into plugins and properties.
 
 #include <map>
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace etendue::mitsuba {
 
-/// Reads a scene with all it includes, and owns what it has read. Throws Error at what is wrong.
+/// Reads a scene with all files that it includes, and owns its elements. Throws Error at the first mistake.
 class SceneReader {
  public:
   explicit SceneReader(Importing& importing) : importing_(importing) {}
@@ -40,7 +40,7 @@ class SceneReader {
     return [this](const pugi::xml_node& node) { return at(node); };
   }
   Location at(const pugi::xml_node& node) const { return file_->at(node); }
-  /// Refuses attributes that a tag does not have.
+  /// Throws Error for attributes that a tag does not have.
   void expect_attributes(const pugi::xml_node&, std::initializer_list<const char*> names);
   std::string with_parameters(const std::string& text, Location at);
   void name_element(const std::string& id, Element*, Location at);
@@ -49,7 +49,7 @@ class SceneReader {
 
   Importing& importing_;
   const XmlFile* file_ = nullptr;
-  std::string folder_;  // of that file
+  std::string folder_;  // of the current file
   bool old_ = false;
   std::map<std::string, std::string, std::less<>> defaults_;
   std::map<std::string, Element*, std::less<>> by_id_;

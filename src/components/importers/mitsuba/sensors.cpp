@@ -19,7 +19,7 @@ Numbers three(double x, double y, double z) { return {{x, y, z}, 1, Dimension::n
 
 DoubleVector3 column(const Transform::DoubleMatrix& m, size_t i) { return {m[i], m[4 + i], m[8 + i]}; }
 
-/// The same without stretching, of which Mitsuba's cameras take no notice.
+/// The transform without scale, which Mitsuba's cameras ignore.
 Transform unstretched(const Transform& t) {
   const Transform::DoubleMatrix& m = t.exact();
   Transform::DoubleMatrix r = m;
@@ -79,7 +79,7 @@ Ref<Component> Converter::camera(const Element& e) {
   return made;
 }
 
-/// The side that an angle of view is measured across, as it is called here.
+/// The image side that the field of view refers to, under its name in this program.
 std::string Converter::axis_of(const Element& e) {
   const std::string axis = e.string("fov_axis", "x");
   static const std::vector<std::string> axes = {"x", "y", "diagonal", "smaller", "larger"};
@@ -88,7 +88,7 @@ std::string Converter::axis_of(const Element& e) {
   return axis == "x" ? "width" : axis == "y" ? "height" : axis;
 }
 
-/// [mm]
+/// The focal length [mm].
 double Converter::focal_length(const Element& e) {
   const Property* p = e.find("focal_length");
   if (!p) return 50;
@@ -106,7 +106,7 @@ void Converter::set_view(Component& camera, const Element& e) {
   const bool by_length = !e.has("fov");
   if (by_length) {
     at = e.location_of("focal_length");
-    set_member(camera, "focal_length", focal_length(e) / 1000, at);  // of a film whose diagonal is that of 36 x 24 mm, as there
+    set_member(camera, "focal_length", focal_length(e) / 1000, at);  // of a film with the diagonal of 36 x 24 mm
     axis = "diagonal";
   }
   if (!by_length) set_member(camera, "fov", fov, at);
@@ -116,8 +116,8 @@ void Converter::set_view(Component& camera, const Element& e) {
     set_member(camera, "principal_point", Numbers{{-x, -y}, 1, Dimension::none}, e.location_of("principal_point_offset_x"));
 }
 
-// Rays start at near_clip there, and end at far_clip, as here. Where a file states neither, Mitsuba leaves out what is nearer
-// than 0.01 or farther than 10000; nothing is left out here (docs/coming-from-mitsuba.md).
+// As here, Mitsuba's rays start at near_clip and end at far_clip. If a file states neither, Mitsuba clips what is nearer than
+// 0.01 or farther than 10000; here nothing is clipped (docs/coming-from-mitsuba.md).
 void Converter::set_clip(Component& camera, const Element& e) {
   if (!e.has("near_clip") && !e.has("far_clip")) return;
   if (!camera.class_info().find("near_clip")) {
@@ -130,7 +130,7 @@ void Converter::set_clip(Component& camera, const Element& e) {
   if (!(nearest > 0)) throw Error("near_clip must be more than 0", e.location_of("near_clip"));
   if (!(farthest > nearest))
     throw Error("far_clip must be more than near_clip", e.location_of(e.has("far_clip") ? "far_clip" : "near_clip"));
-  if (camera.class_info().name == "OrthographicCamera") {  // its near plane is stretched with it, but not what lies beyond
+  if (camera.class_info().name == "OrthographicCamera") {  // the transform scales near_clip, but not the depth behind it
     const double stretch = length(column(e.transform().transform.still().exact(), 2));
     farthest += nearest * (stretch - 1);
     nearest *= stretch;
@@ -146,7 +146,7 @@ void Converter::set_shutter(Component& camera, const Element& e) {
 }
 
 Ref<Component> Converter::image(const Element* film) {
-  constexpr int width = 768, height = 576;  // where the film does not say
+  constexpr int width = 768, height = 576;  // Mitsuba's defaults
   Ref<Component> image = film ? make("ImageBuffer", *film) : importing_.make("ImageBuffer", importing_.at());
   const Location at = film ? film->at : importing_.at();
   if (film) {

@@ -1,4 +1,4 @@
-// Skies and suns.
+// Converts skies and suns.
 
 #include <fmt/format.h>
 
@@ -17,10 +17,10 @@ namespace {
 
 Numbers three(const DoubleVector3& v) { return {{v.x, v.y, v.z}, 1, Dimension::none}; }
 
-constexpr double largest_sun = 20;  // [deg] across, of a SkyEmission
+constexpr double largest_sun = 20;  // [deg] the largest angular diameter of the sun in a SkyEmission
 
-/// Towards the sun by place and time, in the coordinates of a SkyEmission. The defaults are Mitsuba's of all versions; its sky
-/// has x east and y up in version 0.x, and x south, y west and z up in version 3.
+/// The direction towards the sun from location and time, in the coordinates of a SkyEmission. The defaults are those of all
+/// versions of Mitsuba; its sky has x east and y up in version 0.x, and x south, y west and z up in version 3.
 DoubleVector3 sun_by_time(const Element& e) {
   const auto whole = [&](const char* name, std::int64_t otherwise) { return e.integer(name, otherwise); };
   const double hours = e.number("hour", 15) + e.number("minute", 0) / 60 + e.number("second", 0) / 3600;
@@ -36,12 +36,12 @@ DoubleVector3 sun_by_time(const Element& e) {
   }
 }
 
-/// The mean radiance of the sun's disc, of the same model as the sky's.
+/// The mean radiance of the sun's disc, from the same model as the sky.
 Color radiance_of_sun(double turbidity, const Color& albedo, double elevation, double factor) {
   std::array<float, SkyModel::channels> ground;
   for (int c = 0; c < SkyModel::channels; ++c) ground[size_t(c)] = albedo->at(SkyModel::wavelength(c), ColorUse::reflectance);
   const SkyModel model(float(turbidity), ground, float(elevation));
-  constexpr int first = 360, last = 830, step = 10, rings = 64;  // wavelengths [nm]; rings of the same area
+  constexpr int first = 360, last = 830, step = 10, rings = 64;  // wavelengths [nm]; rings of equal area
   std::vector<float> wavelengths, values;
   for (int nm = first; nm <= last; nm += step) {
     Wavelengths w;
@@ -83,7 +83,7 @@ void Converter::aim_sun(Component& emission, const Element& e, const AnimatedTra
 void Converter::set_sun_diameter(Component& emission, const Element& e) {
   const char* const name = e.old ? "sun_radius_scale" : "sun_aperture";
   if (!e.has(name)) return;
-  constexpr double one = 0.5358;  // [deg] across, of version 0.x
+  constexpr double one = 0.5358;  // [deg] angular diameter in version 0.x
   const double across = e.number(name, 1) * (e.old ? one : 1);
   if (across > 0 && across <= largest_sun)
     set_member(emission, "sun_diameter", across, e.location_of(name));
@@ -91,13 +91,14 @@ void Converter::set_sun_diameter(Component& emission, const Element& e) {
     importing_.inexact("the sun is as large as it is seen from the earth", e.location_of(name));
 }
 
-// The sky's own up is y in Mitsuba 0.x, as here, and z in version 3; the sun's direction is the world's in both.
+// In its own space the sky's up axis is y in Mitsuba 0.x, as here, and z in version 3; the sun's direction is in world space in
+// both.
 Ref<Component> Converter::sky(const Element& e) {
   const Transform y_to_z(Transform::DoubleMatrix{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0});
   TransformValue stands = e.transform();
   if (!e.old) stands.transform = stands.transform * AnimatedTransform(y_to_z);
   Ref<Component> emission = make("SkyEmission", e, "");
-  // In version 0.x a sun of its own may stand beside the sky.
+  // In version 0.x a separate sun plugin may belong to the sky.
   const Element* const own = &e == sky_with_sun_ ? sun_of_sky_ : nullptr;
   const double scale = e.number("scale", 1), sky_scale = scale * e.number("sky_scale", 1),
                sun_scale = own ? own->number("scale", 1) : scale * e.number("sun_scale", 1);
@@ -134,7 +135,7 @@ Ref<Component> Converter::sky(const Element& e) {
   return object;
 }
 
-// The disc alone: a SkyEmission has one with its sky.
+// The sun's disc alone: a SkyEmission has a disc only together with its sky.
 Ref<Component> Converter::lone_sun(const Element& e) {
   const TransformValue stands = e.transform();
   const Ref<Component> sky = make("SkyEmission", e, "");
@@ -149,7 +150,7 @@ Ref<Component> Converter::lone_sun(const Element& e) {
     return nullptr;
   }
   const Value usual = get(*make("SkyEmission", e, ""), "sun_diameter");
-  const double across = diameter.as<Number>()->value;  // [rad], as what is read back is
+  const double across = diameter.as<Number>()->value;  // [rad], the unit in which members are read back
   const double darker = std::pow(std::sin(usual.as<Number>()->value / 2) / std::sin(across / 2), 2);
   Ref<Component> emission = make("SpotEmission", e, "");
   set_member(*emission, "radiance",

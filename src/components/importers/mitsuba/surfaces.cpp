@@ -1,4 +1,4 @@
-// Surfaces: which of Mitsuba's bsdfs is which shader, and those that hold others.
+// Chooses the shader for each bsdf of Mitsuba, and converts bsdfs that contain others.
 
 #include <fmt/format.h>
 
@@ -100,7 +100,8 @@ Converter::Surface Converter::make_surface(const Element& e, Uv uv, const std::s
   return {shader, false};
 }
 
-// Of light without polarization they let half through, or all, straight on, as Mitsuba's unpolarized variants do.
+// Polarizing filters transmit half of unpolarized light, or all of it, without a change of direction, as Mitsuba's unpolarized
+// variants do.
 Converter::Surface Converter::filter_of_polarization(const Element& e, Uv uv, const std::string& name) {
   inexact(e,
           fmt::format("'{}' lets through what it lets through of light without polarization: there is no other here", e.type));
@@ -157,9 +158,9 @@ Converter::Surface Converter::mixture(const Element& e, Uv uv, const std::string
     if (count != 2) throw Error(fmt::format("'blendbsdf' needs two bsdfs inside, not {}", count), e.at);
     return {mixed(parts[0].shader, parts[1].shader, scalar(e, "weight", 0.5, uv), name), any};
   }
-  constexpr size_t most = 100;  // each lies in a mixture with those before it
+  constexpr size_t most = 100;  // each part is nested in a mixture with those before it
   if (count > most) throw Error(fmt::format("a mixture of {} bsdfs: {} are the most", count, most), e.at);
-  // Each of the first i parts has its share of what these make up; what is missing to 1 is black.
+  // The weight of each part is its fraction of the mixture so far; the difference of the sum to 1 is black.
   const std::string text = e.string("weights", "");
   std::vector<double> weights = parse_numbers({text, e.location_of("weights")});
   if (weights.size() != count)
@@ -175,7 +176,7 @@ Converter::Surface Converter::mixture(const Element& e, Uv uv, const std::string
     for (double& w : weights) w /= sum;
   }
   Ref<Component> so_far;
-  double share = std::max(1 - sum, 0.0);  // of black
+  double share = std::max(1 - sum, 0.0);  // starts with the weight of black
   for (size_t i = 0; i < count; ++i) {
     share += weights[i];
     if (weights[i] == 0) continue;
@@ -210,7 +211,7 @@ Converter::Surface Converter::coating(const Element& e, Uv uv, const std::string
 
 Converter::Surface Converter::tilted(const Element& e, Uv uv, const std::string& name) {
   const Surface inner = inner_surface(e, uv);
-  const std::vector<const Element*> maps = e.all("texture");  // whatever its name, before the bsdf or after it
+  const std::vector<const Element*> maps = e.all("texture");  // any name, before the bsdf or after it
   if (maps.empty()) throw Error(fmt::format("'{}' needs a texture", e.type), e.at);
   if (maps.size() > 1) inexact(*maps[1], fmt::format("'{}' has one texture: the first counts", e.type));
   const Element* const map = maps.front();
@@ -224,14 +225,14 @@ Converter::Surface Converter::tilted(const Element& e, Uv uv, const std::string&
       const Reading reading(*map);
       const DoubleVector3 n = map->vector("value", {0.5, 0.5, 1});
       if (n.x != 0.5 || n.y != 0.5) inexact(*map, "a normal map of one normal is left out");
-      return inner;  // one that points straight up changes nothing
+      return inner;  // the unperturbed normal changes nothing
     }
     shader = make("NormalMapShader", e, name);
     set(*shader, "map", texture(*map, uv));
     set_member(*shader, "green", "across", e.at);
   }
   set_member(*shader, "shader", inner.shader, e.at);
-  // Both are Mitsuba's since 3.7.1.
+  // Mitsuba's defaults since 3.7.1.
   if (!e.old && e.boolean("use_shadowing_function", true)) set_member(*shader, "shadowing", true, e.at);
   if (!e.old && e.boolean("flip_invalid_normals", true)) set_member(*shader, "opposite_slopes", true, e.at);
   return {shader, inner.both_sides};

@@ -1,4 +1,4 @@
-// Which media lie on the sides of shapes, and around the sensor.
+// The media on the two sides of shapes, and around the sensor.
 
 #include "components/importers/surroundings.h"
 
@@ -39,7 +39,7 @@ Ref<SceneObject> Converter::settle_media(const Element* sensor, bool seen, const
   camera.program = "Mitsuba";
   const TransformValue t = sensor->transform();
   camera.camera = t.look_at ? t.look_at->from : t.transform.written(0)(DoublePoint3{});
-  const Ref<Component> cube = make("Box", *around);  // whose coordinates are the world's
+  const Ref<Component> cube = make("Box", *around);  // at the origin: its object space is world space
   camera.medium = medium(*around, *cube);
   if (!camera.medium) return nullptr;
   if (camera.medium->class_info().name != "HomogeneousVolume") {

@@ -10,10 +10,10 @@ namespace etendue::mitsuba {
 
 namespace {
 
-// Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", section 4: the coefficients of
-// the sigmoid's quadratic are tabulated at 64 nodes along each axis of a cube for every component that may be the largest.
-// The axes are that component, z, whose nodes stand close together at both ends, and the ratios x and y of the next two
-// components to it. Between nodes the coefficients are linear.
+// Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", section 4: the coefficients of the
+// sigmoid's quadratic are tabulated at 64^3 nodes of a cube, one cube for each choice of the largest component. The axes are
+// that component, z, whose nodes are dense at both ends, and the ratios x and y of the next two components to it. Between nodes
+// the coefficients are interpolated linearly.
 constexpr int nodes = 64;
 
 double smoothstep(double x) { return x * x * (3 - 2 * x); }
@@ -21,7 +21,7 @@ double node_z(int i) { return smoothstep(smoothstep(double(i) / (nodes - 1))); }
 
 struct Cell {
   int first;
-  double part;  ///< from 0 to 1 on the way to the next node
+  double part;  ///< interpolation parameter in [0, 1] towards the next node
 };
 
 Cell cell_of_ratio(double ratio) {
@@ -38,10 +38,10 @@ Cell cell_of_largest(double z) {
 
 }  // namespace
 
-// The error of the linear interpolation is seen near white alone, where the coefficients change fast: of (0.99, 0.999, 0.99)
-// the table returns a spectrum that is (0.998, 0.998, 0.997), which absorbs a fifth of the red light. Light that scatters many
-// times in a medium shows it. The fit that stands for the nodes here is exact, while the table's own is optimized to a
-// tolerance; where the result is used, that is within 0.0004.
+// The error of the linear interpolation is visible only near white, where the coefficients change fast: for (0.99, 0.999, 0.99)
+// the table returns a spectrum of colour (0.998, 0.998, 0.997), which absorbs a fifth of the red light. Multiple scattering in
+// a medium shows it. The fit that replaces the table's nodes here is exact, while the table's own is optimized to a tolerance;
+// where the result is used, the difference is within 0.0004.
 std::array<double, 3> tabulated_color(const std::array<double, 3>& rgb) {
   const size_t largest = size_t(std::max_element(rgb.begin(), rgb.end()) - rgb.begin());
   const size_t next = (largest + 1) % 3, last = (largest + 2) % 3;
@@ -59,7 +59,7 @@ std::array<double, 3> tabulated_color(const std::array<double, 3>& rgb) {
     node[next] = node[largest] * (x.first + dx) / (nodes - 1);
     node[last] = node[largest] * (y.first + dy) / (nodes - 1);
     Coefficients at_node = fit.solve(node);
-    // White has no finite coefficients; the table's are those of a fit that stops short of it.
+    // White has no finite coefficients; the table's come from a fit that stops before them.
     for (double& c : at_node) c = std::clamp(c, -300.0, 300.0);
     for (size_t i = 0; i < 3; ++i) sum[i] += weight * at_node[i];
   }

@@ -1,11 +1,11 @@
 #pragma once
-// What Mitsuba's spectral variants make of an albedo given as red, green and blue.
+// The albedo that Mitsuba's spectral variants obtain from red, green and blue.
 
 #include <array>
 
 namespace etendue::mitsuba {
 
-/// The colour of the spectrum that stands there for `rgb`, components in [0, 1].
+/// The colour of the spectrum that Mitsuba looks up for `rgb`, components in [0, 1].
 std::array<double, 3> tabulated_color(const std::array<double, 3>& rgb);
 
 }  // namespace etendue::mitsuba

@@ -1,4 +1,4 @@
-// Colours, spectra and textures.
+// Converts colours, spectra and textures.
 
 #include <fmt/format.h>
 
@@ -45,7 +45,7 @@ Value Converter::color(const Element& e, const std::string& name, double otherwi
 Value Converter::scalar(const Element& e, const std::string& name, double otherwise, Uv uv) {
   Value v = color(e, name, otherwise, uv, e.old ? Read::mean : Read::luminance);
   if (const auto* c = e.find(name) ? std::get_if<ColorValue>(&e.find(name)->value) : nullptr) {
-    // A colour stands for a number by its luminance.
+    // A colour used as a number is replaced by its luminance.
     const double y = 0.2126 * c->rgb[0] + 0.7152 * c->rgb[1] + 0.0722 * c->rgb[2];
     if (c->kind != ColorValue::Kind::table) v = Value(Number{y}, v.location);
   }
@@ -77,7 +77,7 @@ Value Converter::texture(const Element& e, Uv uv, Read read) {
     if (e.type == "irregular") {
       places = parse_numbers({e.string("wavelengths", ""), e.location_of("wavelengths")});
     } else {
-      const double low = e.number("wavelength_min", e.number("lambda_min", 360)),  // the latter in version 2
+      const double low = e.number("wavelength_min", e.number("lambda_min", 360)),  // "lambda_min" in version 2
           high = e.number("wavelength_max", e.number("lambda_max", 830));
       for (size_t i = 0; i < values.size(); ++i)
         places.push_back(low + (high - low) * double(i) / double(std::max<size_t>(values.size(), 2) - 1));
@@ -142,7 +142,7 @@ Value Converter::bitmap(const Element& e, Uv uv, Read read) {
   return placed(image, e, uv, true);
 }
 
-// Where a number is asked for and not a colour, Mitsuba 2 and 3 exchange the two.
+// When a number is read instead of a colour, Mitsuba 2 and 3 exchange the two colours.
 Value Converter::checkerboard(const Element& e, Uv uv, Read read) {
   const bool exchanged = read != Read::color && !e.old;
   Ref<Component> map = make("CheckerMap", e);
@@ -155,7 +155,7 @@ Value Converter::checkerboard(const Element& e, Uv uv, Read read) {
 Value Converter::attribute_map(const Element& e) {
   Ref<Component> map = make("AttributeMap", e);
   std::string name = e.string("name", "vertex_color");
-  // Of vertices they have their own names here.
+  // Vertex attributes have names without this prefix here.
   if (name.starts_with("vertex_")) name = name.substr(std::string_view("vertex_").size());
   set_member(*map, "name", name, e.location_of("name"));
   const double scale = e.number("scale", 1);
@@ -191,7 +191,7 @@ Value Converter::placed(const Ref<Component>& map, const Element& e, Uv uv, bool
     return outer;
   };
   if (b == 0 && c == 0) return Value(wrap(map, a, d, 0, m[3], m[7]), e.at);
-  // Coordinates are turned, scaled and turned again: the singular value decomposition of a matrix of two rows.
+  // Coordinates are rotated, scaled and rotated again: the singular value decomposition of a 2 x 2 matrix.
   const double sum = std::atan2(c - b, a + d), difference = std::atan2(c + b, a - d);
   const double q = std::hypot(a + d, c - b) / 2, r = std::hypot(a - d, c + b) / 2;
   const double last = (sum + difference) / 2, first = (sum - difference) / 2;

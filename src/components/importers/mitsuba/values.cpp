@@ -29,7 +29,7 @@ double one_number(std::string_view s, Location at) {
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (code == std::errc::invalid_argument || end != digits.data() + digits.size())
     throw Error(fmt::format("a number is expected, not '{}'", shortened(s)), at);
-  // from_chars does not say whether a number is too large or too small; the latter is 0.
+  // from_chars does not distinguish overflow from underflow; underflow gives 0.
   if (code == std::errc::result_out_of_range && std::abs(std::strtod(std::string(digits).c_str(), nullptr)) < 1) return 0;
   if (code != std::errc{} || !std::isfinite(value) || std::abs(value) > 1e38)
     throw Error(fmt::format("'{}' is no number that can be used: it must be finite and below 1e38", shortened(s)), at);
@@ -118,7 +118,7 @@ ColorValue constant_spectrum(double value) {
 ColorValue parse_spectrum(const Text& t) {
   if (t.text.find(':') == std::string::npos) {
     const std::vector<double> numbers = parse_numbers(t);
-    if (numbers.size() == 3) return parse_rgb(t, false);  // Mitsuba before 2 has three numbers as red, green and blue
+    if (numbers.size() == 3) return parse_rgb(t, false);  // Mitsuba before 2 reads three numbers as red, green and blue
     if (numbers.size() != 1)
       throw Error(fmt::format("a spectrum is one number or pairs of wavelength and value such as '400:0.1, 700:0.9', not '{}'",
                               shortened(t.text)),
@@ -192,8 +192,8 @@ Transform matrix_of(const Text& text) {
   return Transform(rows);
 }
 
-/// Rodrigues' formula with the axis as it is given. Mitsuba 2 and 3 do not bring it to length 1, as those before did: with
-/// another length this is no rotation, and stretches.
+/// Rodrigues' formula with the axis unnormalized: Mitsuba 2 and 3 do not normalize it, unlike earlier versions. With an axis of
+/// another length the result is no rotation but also scales.
 Transform rotation_as_there(double radians, const DoubleVector3& a) {
   if (std::abs(length(a) - 1) < 1e-6) return Transform::rotate(radians, a);
   const double s = std::sin(radians), c = std::cos(radians), d = 1 - c;
@@ -240,7 +240,8 @@ TransformValue parse_transform(const pugi::xml_node& node, const Attributes& att
       if (!angle) throw Error("<rotate> needs an angle", place(child));
       const DoubleVector3 axis = parse_vector(child, attribute, place, 0);
       const double radians = parse_number(*angle) * std::numbers::pi / 180;
-      // Of no turn programs write no axis. Mitsuba 3.9 refuses it; with an angle nobody knows what it means.
+      // Programs write rotations by angle 0 without an axis, which Mitsuba 3.9 refuses. With another angle a missing axis is an
+      // error.
       if (!(length(axis) > 0) && radians != 0) throw Error("<rotate> needs an axis other than zero", place(child));
       step = radians == 0 ? Transform() : old ? Transform::rotate(radians, axis) : rotation_as_there(radians, axis);
     } else if (tag == "matrix") {

@@ -9,7 +9,7 @@ namespace etendue::mitsuba {
 
 namespace {
 
-constexpr std::uint64_t largest_file = std::uint64_t(1) << 30;  // [bytes]; scenes keep what is large in other files
+constexpr std::uint64_t largest_file = std::uint64_t(1) << 30;  // [bytes]; scenes keep large data in other files
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 #pragma once
-// An XML file with the place of everything in it.
+// An XML file with the location of each of its nodes.
 
 #include <pugixml.hpp>
 #include <string>
@@ -10,32 +10,32 @@
 
 namespace etendue::mitsuba {
 
-/// A parsed file. Entities that it declares as texts are put in their places, within bounds; nothing else of a document type
-/// declaration is followed.
+/// A parsed file. Entities that it declares as texts are expanded, within limits; nothing else of a document type declaration
+/// is evaluated.
 class XmlFile {
  public:
-  /// `name` is the file in messages. Throws Error with the place of what is wrong.
+  /// `name` is the file's name in messages. Throws Error at the location of a mistake.
   XmlFile(const std::string& path, const char* name);
 
   pugi::xml_node root() const { return document_.document_element(); }
   Location at(const pugi::xml_node& node) const { return at(node.offset_debug()); }
-  /// Where an attribute's value begins.
+  /// The location of an attribute's value.
   Location at(const pugi::xml_attribute&, const pugi::xml_node& of) const;
-  /// Where the first character is that is no blank, of text between elements.
+  /// The location of the first non-blank character of a text between elements.
   Location at_text(const pugi::xml_node&) const;
   size_t size() const { return text_.size(); }
-  /// Where it declares entities; unknown: nowhere.
+  /// The location of its first entity declaration; unknown: it has none.
   Location entities() const { return entities_; }
 
  private:
   Location at(std::ptrdiff_t offset) const;
 
   const char* name_;
-  std::string text_;  // as pugixml left it: it parses in place
+  std::string text_;  // modified by pugixml, which parses in place
   std::vector<Expansion> expansions_;
   Location entities_;
-  std::vector<size_t> lines_;       // where each begins
-  std::vector<size_t> wide_bytes_;  // those that begin no character (in UTF-8), for columns
+  std::vector<size_t> lines_;       // offset of each line
+  std::vector<size_t> wide_bytes_;  // UTF-8 continuation bytes, which do not count as columns
   pugi::xml_document document_;
 };
 

@@ -1,4 +1,4 @@
-// Images of models: those that cannot be read are left out, for a model is better seen without than not at all.
+// Images of models: unreadable images are left out with a warning, since a model without an image is better than none.
 
 #include <algorithm>
 
@@ -9,13 +9,13 @@
 namespace etendue {
 namespace {
 
-/// Of some ten thousand pixels.
+/// The mean colour of about ten thousand pixels.
 std::optional<std::array<double, 3>> mean_of(const std::string& file, const std::string& transfer) {
   LinearImage image;
   try {
     image = read_linear_image(file, transfer);
   } catch (const Error&) {
-    return std::nullopt;  // what is damaged behind its header is told where the map opens it
+    return std::nullopt;  // damage behind the header is reported when the map opens the file
   }
   std::array<double, 3> sum{};
   const size_t pixels = image.rgb.size() / 3, step = std::max<size_t>(pixels / 10000, 1);
@@ -40,7 +40,7 @@ std::optional<std::string> optional_image(Importing& importing, const std::strin
       std::string found = importing.file(tile, at, beside);
       const size_t there = found.rfind(std::to_string(number));
       return there == std::string::npos ? found : found.replace(there, 4, mark);
-    } catch (const Error&) {  // of some squares there may be none
+    } catch (const Error&) {  // some UDIM tiles may be missing
     }
   return importing.optional_file(named, at, beside);
 }

@@ -47,7 +47,7 @@ class SurfaceMaker {
     set(to, member, Value(value, at));
   }
 
-  /// Sets a member that is a number or a map of numbers; when it is the default nothing is written.
+  /// Sets a member to a number or a map of numbers.
   void number(Component& to, std::string_view member, const SurfaceNumber& n) const {
     const double said = std::isfinite(n.value) ? n.value : 0, value = n.squared ? said * said : said;
     if (Ref<Component> map = maps_.number(n))
@@ -122,16 +122,17 @@ class SurfaceMaker {
     return shader;
   }
 
-  // What a coat covers reflects in glTF, MTL and UsdPreviewSurface as if it were bare; in Principled by its index against the
-  // coat's, which must therefore be higher by as much. Of what refracts or has a film the index itself is needed.
+  // In glTF, MTL and UsdPreviewSurface a coated surface reflects as if it were bare. In Principled its reflectance depends on
+  // the ratio of its index to the coat's, so that the index is raised accordingly. Surfaces that refract or have a thin film
+  // need their actual index.
   double ior_below_coat() const {
     if (!is_there(s_.coat) || s_.coat.texture || is_there(s_.transmission) || is_there(s_.film)) return s_.ior;
     const double covered = std::min(s_.coat.value, 1.0);
     return s_.ior / (1 - covered + covered / coat_ior);
   }
 
-  // Light gets to what is below as far as the strongest colour of the fibres leaves it (KHR_materials_sheen: 1 - max(colour)
-  // E), so that this is the fraction of the surface which has them.
+  // The base below the sheen is scaled by 1 - max(colour) E (KHR_materials_sheen), so that max(colour) becomes the fraction of
+  // the surface that has fibres, fuzz_weight.
   void sheen(Component& p) const {
     SurfaceColor fibres = s_.sheen_color;
     const double most = std::ranges::max(fibres.value), weight = std::min(most, 1.0);
@@ -164,9 +165,9 @@ class SurfaceMaker {
     return emission;
   }
 
-  /// What light loses on its way: after the distance the colour is left of white, so that it loses -ln(colour) / distance.
-  /// The spectrum of the colour says how much of each wavelength is left; of a spectrum whose colour is the logarithm's,
-  /// another colour would be left (0.82, 0.40, 0.19 for 0.9, 0.4, 0.2).
+  /// The absorption of the interior: of white light the attenuation colour is left after the attenuation distance, so sigma_a =
+  /// -ln(colour) / distance. The logarithm is taken per wavelength, of the colour's spectrum; a spectrum made from the
+  /// logarithm's RGB would leave another colour (0.82, 0.40, 0.19 for 0.9, 0.4, 0.2).
   Ref<Component> interior() const {
     if (!(is_there(s_.transmission) || is_there(s_.translucence)) || s_.thin || !(s_.attenuation_distance > 0) ||
         !std::isfinite(s_.attenuation_distance))
@@ -197,7 +198,7 @@ class SurfaceMaker {
     return medium;
   }
 
-  // An image that is turned is only looked up elsewhere: its normals still lean along the mesh's own u and v.
+  // A rotated image transform changes only the lookup: the normals in the image still refer to the mesh's own u and v.
   Ref<Component> with_normals(const Ref<Component>& shader) const {
     const SurfaceTexture& t = s_.normals->texture;
     Ref<Component> tilted = part("NormalMapShader");
@@ -239,7 +240,7 @@ class SurfaceMaker {
   const Surface& s_;
   Location at_;
   SurfaceMaps maps_;
-  Ref<Component> opacity_;  // none: it is the same everywhere
+  Ref<Component> opacity_;  // null: the opacity is constant
 };
 
 }  // namespace

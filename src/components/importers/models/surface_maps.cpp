@@ -29,8 +29,8 @@ Ref<Component> SurfaceMaps::color(const SurfaceColor& c) const {
   return all;
 }
 
-// A surface of which only a part is there shines with that part: L = alpha * colour, channel by channel, and what is behind it
-// comes through the rest (glTF 2.0, 3.9.4: alpha is coverage).
+// A surface of partial coverage emits L = alpha * colour, channel by channel; what is behind it is seen through the rest (glTF
+// 2.0, 3.9.4: alpha is coverage).
 Ref<Component> SurfaceMaps::emitted(const SurfaceColor& c, const Ref<Component>& opacity) const {
   const Ref<Component> colors = color(c);
   if (!opacity) return colors;
@@ -43,14 +43,14 @@ Ref<Component> SurfaceMaps::emitted(const SurfaceColor& c, const Ref<Component>&
   return all;
 }
 
-// A grey image is one whose red, green and blue are the same.
+// In a grey image (fewer than three channels, none of this name) any of R, G, B stands for the grey value.
 std::string SurfaceMaps::channel_there(const std::string& file, const std::string& channel) const {
   if (channel != "R" && channel != "G" && channel != "B") return channel;
   try {
     const std::vector<std::string>& all = channels_of_image(importing_, file);
     return all.size() < 3 && std::ranges::count(all, channel) == 0 ? "" : channel;
   } catch (const Error&) {
-    return channel;  // whoever opens it tells
+    return channel;  // reported when the image is opened
   }
 }
 
@@ -69,7 +69,7 @@ Ref<Component> SurfaceMaps::image(const SurfaceTexture& t, const std::string& ch
   const auto pair = [](const std::array<double, 2>& p) { return Numbers{{p[0], p[1]}, 1, Dimension::none}; };
   std::array<double, 2> shift = t.shift, scale = t.scale;
   for (double& x : scale)
-    if (x == 0) x = 1e-6;  // one row or column of the image: maps need an inverse
+    if (x == 0) x = 1e-6;  // reads a single row or column; 0 would make the map's transform singular
   if (t.wrap == "repeat" && !differ && std::abs(t.angle) < 1e-9)
     for (double& x : shift)
       if (std::abs(x - std::round(x)) < 1e-9) x = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers and colours of surfaces as maps.
+// SurfaceMaps: converts the numbers and colours of a Surface to maps.
 
 #include "surface.h"
 
@@ -9,16 +9,16 @@ class SurfaceMaps {
  public:
   SurfaceMaps(Importing& importing, Location at) : importing_(importing), at_(at) {}
 
-  /// None: it is the same everywhere.
+  /// Null: the value is constant.
   Ref<Component> color(const SurfaceColor&) const;
   Ref<Component> number(const SurfaceNumber&) const;
-  /// A surface's opacity, above and below its cutoff.
+  /// The map of a surface's opacity, thresholded if there is a cutoff.
   Ref<Component> opacity(const Surface&) const;
-  /// The opacity where it is the same everywhere.
+  /// The opacity where it is constant.
   static double same_opacity(const Surface&);
-  /// A colour as light that becomes less where there is less of the surface; none: it is the same everywhere.
+  /// The emitted radiance, the colour times the opacity; null: constant.
   Ref<Component> emitted(const SurfaceColor&, const Ref<Component>& opacity) const;
-  /// A channel of an image, or its colours ("").
+  /// A channel of an image, or its colours (channel "").
   Ref<Component> image(const SurfaceTexture&, const std::string& channel, bool linear) const;
 
  private:

@@ -1,4 +1,4 @@
-// Cameras.
+// Converts cameras.
 
 #include <fmt/format.h>
 
@@ -14,9 +14,9 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Places our camera so that its axes, to the left, up and forward, lie in pbrt's camera coordinates as `inner` says, where +x
-/// is to the right, y up and z forward. A camera that is not mirrored against ours, as of files that begin with "Scale -1 1 1",
-/// is said by three points, another by a transform that mirrors. Returns how many units of the world one of the camera's is.
+/// Places the camera so that its axes, left, up and forward, have the orientation `inner` in pbrt's camera space, where +x is
+/// right, y up and z forward. An unmirrored camera, as in files that begin with "Scale -1 1 1", is given by `from`, `to` and
+/// `up`; any other by a transform that mirrors. Returns the length of a unit of camera space in world units.
 double set_placement(Reader& reader, Component& camera, const Transform& inner) {
   const Location at = reader.camera.parameters.at;
   std::vector<AnimatedTransform::Key> keys;
@@ -36,7 +36,7 @@ double set_placement(Reader& reader, Component& camera, const Transform& inner) 
     scale = length[2];
     for (size_t r = 0; r < 3; ++r)
       for (size_t c = 0; c < 3; ++c) m[4 * r + c] /= length[c];
-    // At right angles exactly, from the viewing direction on.
+    // Makes the axes orthogonal, starting from the viewing direction.
     const DoubleVector3 z{m[2], m[6], m[10]}, up{m[1], m[5], m[9]}, left{m[0], m[4], m[8]};
     DoubleVector3 x = cross(up, z);
     const double l = std::sqrt(x.x * x.x + x.y * x.y + x.z * x.z);
@@ -60,15 +60,15 @@ double set_placement(Reader& reader, Component& camera, const Transform& inner) 
   return scale;
 }
 
-/// Of cameras with a plane as their picture.
+/// For cameras with a planar image.
 const Transform to_the_left = Transform::scale({-1, 1, 1});
 
-/// What is seen of the screen, whose units are distances for an orthographic camera; of another the screen is at the distance
-/// 1 / tan(fov / 2).
+/// The visible part of the screen. Its units are distances for an orthographic camera; for a perspective camera the screen is
+/// at the distance 1 / tan(fov / 2).
 struct Window {
-  double x = 0, y = 0;  ///< its middle
+  double x = 0, y = 0;  ///< centre
   double half_width = 1, half_height = 1;
-  bool plain = true;  ///< the shorter side is 2 long, and the middle in the middle
+  bool plain = true;  ///< the default window: the shorter side has length 2, and the centre is the origin
 };
 Window window_of(Reader& reader) {
   const Parameters& p = reader.camera.parameters;
@@ -131,9 +131,9 @@ Ref<Component> perspective(Reader& reader) {
   return camera;
 }
 
-// v4's "spherical" of the mapping "equirectangular" and v3's "environment" look, at (u, v) of the picture, towards
-// (sin(pi v) cos(2 pi u), cos(pi v), sin(pi v) sin(2 pi u)): the middle is -x, what is a little to the right of it -z. v4's
-// "equalarea", its default, is Clarberg's square with y in the middle, x to the right and z downwards.
+// v4's "spherical" with the mapping "equirectangular" and v3's "environment" map the image point (u, v) to the direction
+// (sin(pi v) cos(2 pi u), cos(pi v), sin(pi v) sin(2 pi u)): the centre is -x, and the direction a little to the right of it
+// turns to -z. v4's default, "equalarea", is Clarberg's equal-area square with y at the centre, x to the right and z downwards.
 Ref<Component> spherical(Reader& reader, bool environment) {
   const Parameters& p = reader.camera.parameters;
   const Ref<Component> camera = reader.make("SphericalCamera", p.at);
@@ -146,12 +146,12 @@ Ref<Component> spherical(Reader& reader, bool environment) {
   set_placement(reader, *camera,
                 Transform(square ? M{-1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0} : M{0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0}));
   if (square) set_member(*camera, "mapping", "equal_area", p.at);
-  p.ignore({"lensradius", "focaldistance", "frameaspectratio", "screenwindow"});  // as pbrt does
+  p.ignore({"lensradius", "focaldistance", "frameaspectratio", "screenwindow"});  // pbrt ignores them too
   return camera;
 }
 
-// Film at the origin, the lens before it. A pixel is the irradiance of the film: v4 weighs by cos^4 over the density on the
-// exit pupil and the square of its distance.
+// The film is at the origin, the lens in front of it. A pixel measures the irradiance of the film: v4 weights samples by cos^4
+// / (pdf on the exit pupil * its squared distance).
 Ref<Component> realistic(Reader& reader) {
   const Parameters& p = reader.camera.parameters;
   const double stop = p.number("aperturediameter", 1), focus = p.number("focusdistance", 10);

@@ -1,4 +1,4 @@
-// The directives of a pbrt file, one after the other.
+// Reads the directives of a pbrt file in order.
 
 #include <filesystem>
 

@@ -1,5 +1,5 @@
 #pragma once
-// The directives of pbrt files, each a function that reads what follows its name.
+// The directives of pbrt files; each has a function that reads its arguments.
 
 #include <fmt/format.h>
 
@@ -8,16 +8,16 @@
 
 namespace etendue::pbrt {
 
-/// A file that is being read.
+/// An open file.
 struct Source {
   std::string path, folder;
   std::shared_ptr<FileContents> contents;
   std::unique_ptr<Lexer> lexer;
-  bool import = false;  ///< v4's Import: what it sets is forgotten at its end
-  size_t nested = 0;    ///< how many states were kept when it began
+  bool import = false;  ///< opened by v4's Import: settings are restored at its end
+  size_t nested = 0;    ///< number of saved states when the file began
 };
 
-/// Goes through a file and those it includes.
+/// Reads a file and the files that it includes.
 class Directives {
  public:
   explicit Directives(Reader& reader) : r(reader) { r.state.space = &rgb_space("srgb"); }
@@ -44,15 +44,15 @@ class Directives {
 
   std::string unknown() const;
 
-  /// A text that is read for this version, and whose errors name `path`.
+  /// A lexer for a text in the syntax of the reader's version; its errors name `path`.
   std::unique_ptr<Lexer> lexer_of(std::string_view text, const std::string& path);
 
-  /// Goes on at the next directive, if the text can still be taken apart.
+  /// Continues at the next directive after an error, if the text can still be split into tokens.
   void recover(bool lexing);
 
   void end_source();
 
-  // What follows a directive.
+  // Read the arguments of a directive.
   template <size_t count>
   std::array<double, count> numbers() {
     const bool list = lexer().peek().is(Token::Kind::open);

@@ -1,4 +1,4 @@
-// What stands before WorldBegin.
+// Directives before WorldBegin.
 
 #include "directives.h"
 
@@ -35,7 +35,7 @@ void Directives::sampler() { set(r.sampler); }
 void Directives::integrator() { set(r.integrator); }
 
 void Directives::without_effect() {
-  // What finds intersections and how: the same picture.
+  // Accelerators: they do not change the image.
   const std::string type = text();
   parameters(type).forget();
 }
@@ -80,7 +80,7 @@ void Directives::world_begin() {
 
 void Directives::world_end() {
   need_world();
-  // Nothing else counts: v3 takes what follows for another scene.
+  // The rest is ignored: v3 would read it as another scene.
   while (!lexer().peek().end()) {
     const Token t = lexer().next();
     if (!told_rest_) r.importing.inexact("what stands after WorldEnd is left out", lexer().place(t));

@@ -1,4 +1,4 @@
-// What is kept and given back: attributes, objects, and other files.
+// Directives that save and restore the state: attributes, objects, included files.
 
 #include <fmt/format.h>
 
@@ -65,7 +65,7 @@ void Directives::attribute() {
     throw Error(fmt::format("Attribute is of shape, light, material, medium or texture, not '{}'", target), at_);
   Parameters p = parameters(target);
   auto& list = r.state.defaults[size_t(found - attribute_targets.begin())];
-  // The newest first: it is what is found, and stands for older ones of its name.
+  // Newest first, because lookups return the first match; older parameters of the same name and type are dropped.
   if (list) {
     const size_t fresh = p.own.size();
     for (const Parameter& old : *list)
@@ -73,7 +73,7 @@ void Directives::attribute() {
                                [&](const Parameter& q) { return q.name == old.name && q.type == old.type; }))
         p.own.push_back(old);
   }
-  constexpr size_t most = 200;  // every shape, light, … that follows looks at them
+  constexpr size_t most = 200;  // each following shape, light, … searches the list
   if (p.own.size() > most) throw Error(fmt::format("more than {} attributes are given to every {}", most, target), at_);
   list = std::make_shared<const std::vector<Parameter>>(std::move(p.own));
 }

@@ -18,8 +18,7 @@ void Directives::put(const std::array<Transform, 2>& to) {
 
 Transform Directives::matrix() {
   const auto m = numbers<16>();
-  // By columns. The last row should leave points what they are; directions, of which a light at infinity is made, do not know
-  // it.
+  // Column-major. The last row should be (0, 0, 0, 1); it does not affect directions, and so not the lights at infinity.
   if (std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) > 1e-9 * std::abs(m[15]) || m[15] == 0)
     r.importing.inexact("the last row of a matrix, which makes a perspective, is left out: for directions nothing is changed",
                         at_);
@@ -53,7 +52,7 @@ void Directives::look_at() {
   const auto length = [](const DoubleVector3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); };
   if (!(length(side) > 1e-12 * length(up) * length(way)))
     throw Error("LookAt needs two different points and an up direction that is not along the view", at_);
-  // The same matrix as ours, though pbrt's +x is to the right in the picture and ours to the left.
+  // The same matrix as in this program, although pbrt's +x points to the right in the image and ours to the left.
   apply(Transform::look_at({n[0], n[1], n[2]}, {n[3], n[4], n[5]}, up).inverse());
 }
 

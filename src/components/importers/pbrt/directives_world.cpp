@@ -1,4 +1,4 @@
-// Materials, textures, shapes, lights and media.
+// Directives for materials, textures, shapes, lights and media.
 
 #include "directives.h"
 
@@ -27,7 +27,7 @@ void Directives::make_named_material() {
 
 void Directives::named_material() {
   const std::string before = std::exchange(r.state.named_material, text());
-  // v3 may give a name to another material later; v4 may give it for the first time.
+  // In v3 the name may be given to another material later; in v4 the material may be defined later.
   if (const auto found = r.named_materials.find(r.state.named_material); found != r.named_materials.end()) {
     r.state.material = found->second;
     if (r.version == 3) r.state.named_material.clear();

@@ -1,4 +1,4 @@
-// Light from infinitely far away.
+// Infinite lights.
 
 #include <fmt/format.h>
 
@@ -10,15 +10,15 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// From our environment's coordinates, where y is up, to pbrt's light's, where z is. v4's images are squares that this
-/// program unfolds so that it is but a turn. v3's are in longitude and latitude, with longitude from +x to +y where ours goes
-/// from -z to +x, seen from outside instead of inside: it mirrors.
+/// From the space of this program's environment, with y up, to that of pbrt's light, with z up. v4's images are equal-area
+/// squares that this program unfolds in such a way that a rotation remains. v3's are in longitude and latitude; its longitude
+/// runs from +x to +y and ours from -z to +x, with opposite handedness, so that the transform also mirrors.
 Transform to_light(bool square) {
   using M = Transform::DoubleMatrix;
   return Transform(square ? M{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0} : M{0, 0, -1, 0, 1, 0, 0, 0, 0, 1, 0, 0});
 }
 
-/// An environment can be turned and mirrored, but what stretches it is left out, as pbrt does with directions.
+/// An environment's transform without translation and overall scale, since pbrt applies it to directions only.
 Transform directions_only(Reader& reader, const Transform& inner, Location at) {
   const Transform whole = reader.of_light(inner, at);
   if (!whole.valid()) throw Error("the light's transform cannot be inverted", at);
@@ -33,7 +33,7 @@ Transform directions_only(Reader& reader, const Transform& inner, Location at) {
   return Transform(m);
 }
 
-/// How many times brighter than its image v3's "L" and either version's "scale" make it.
+/// The factor of the image from v3's "L" and either version's "scale".
 double image_scale(Reader& reader, const Parameters& p) {
   double scale = reader.exposure;
   for (const char* name : {"L", "scale"}) {
@@ -62,17 +62,17 @@ void make_environment(Reader& reader, const Parameters& p) {
   const char* name = p.has("mapname") ? "mapname" : "filename";
   const double lux = v3 ? -1 : p.number("illuminance", -1);
   const std::optional<FilePath> file = p.has(name) ? image_file(reader, p, name) : std::nullopt;
-  // Where the image is missing, version 3 goes on with the light alone.
+  // If the image is missing, version 3 continues with the constant light.
   if (p.has(name) && !file && !v3) return p.forget();
   if (file) {
     set_member(*emission, "file", *file, p.place(name));
     if (!v3) set_member(*emission, "layout", "equal_area", at);
     set_member(*emission, "scale", image_scale(reader, p), at);
-    // The scale counts beside an illuminance too. pbrt adds up texels as if all of them were 2 pi instead of 4 pi, and gets
-    // twice the illuminance that is asked for.
+    // The scale also multiplies a given illuminance. pbrt sums texels as if they covered 2 pi instead of 4 pi, and so produces
+    // twice the requested illuminance.
     if (lux > 0) set_member(*emission, "illuminance", 2 * lux * luminous_unit * image_scale(reader, p), at);
   } else {
-    // What shines through a portal is an image of one texel, whose light is not divided by its luminance.
+    // With a portal pbrt uses an image of one texel, whose light is not divided by its luminance.
     const Light light = light_of(reader, p, "L", p.has("portal") ? Use::coefficient : Use::light);
     set_member(*emission, "radiance", light.color, at);
     set_member(*emission, "scale", light.scale * (lux > 0 ? lux / pi : 1), at);

@@ -12,7 +12,7 @@ namespace etendue::pbrt {
 
 namespace {
 
-/// Whether the image has an alpha that is not 1 everywhere.
+/// Whether the image has an alpha channel that is not 1 everywhere.
 bool transparent(Reader& reader, const FilePath& file) {
   try {
     const std::vector<std::string>& names = reader.importing.image_channels(file.resolved());
@@ -23,7 +23,7 @@ bool transparent(Reader& reader, const FilePath& file) {
     if (alpha == all) return false;
     for (size_t i = alpha; i < image.values.size(); i += all)
       if (image.values[i] != 1) return true;
-  } catch (const Error&) {  // told by the map
+  } catch (const Error&) {  // reported by the map
   }
   return false;
 }
@@ -36,7 +36,7 @@ void set_wrap(Reader& reader, Component& map, const Parameters& p) {
     reader.importing.inexact(fmt::format("wrap '{}' is not known: the image repeats", wrap), p.place("wrap"));
 }
 
-/// Of v3: whether an image's numbers are decoded. Exporters for older versions gave an exponent, which pbrt passes over.
+/// Whether v3 decodes the image's values from sRGB. Exporters for older versions wrote an exponent, which pbrt ignores.
 bool decoded(Reader& reader, const Parameters& p) {
   const Parameter* gamma = p.find("gamma");
   if (!gamma || gamma->is("bool")) return p.boolean("gamma", true);
@@ -54,7 +54,7 @@ void set_encoding(Reader& reader, Component& map, const Parameters& p) {
     reader.importing.inexact(fmt::format("the encoding '{}' is taken for sRGB", encoding), p.place("encoding"));
 }
 
-/// A formula of red, green and blue, which is the same number for whom it is asked for, colours too.
+/// A formula of the red, green and blue channels; the result is a grey value, for number and colour textures alike.
 Ref<Component> of_channels(Reader& reader, const Component& map, const Parameters& p, const std::string& text, bool decoded) {
   std::vector<std::pair<std::string, Value>> parts;
   for (const auto& [name, channel] : {std::pair("r", "R"), std::pair("g", "G"), std::pair("b", "B")}) {
@@ -66,7 +66,7 @@ Ref<Component> of_channels(Reader& reader, const Component& map, const Parameter
   return formula(reader, p.at, text, parts);
 }
 
-/// v3 makes a number of a colour before it is decoded: y of what the file holds.
+/// v3 converts a colour to a number before decoding: the luminance y of the values stored in the file.
 Ref<Component> luminance(Reader& reader, const Component& map, const Parameters& p, const std::string& path) {
   const std::string y = "(0.212671 * r + 0.71516 * g + 0.072169 * b)";
   if (!decoded(reader, p) || !(path.ends_with(".png") || path.ends_with(".tga"))) return of_channels(reader, map, p, y, false);
@@ -86,8 +86,8 @@ bool colored(const FilePath& file) {
   return false;
 }
 
-// As a number, an image of v4 is its alpha where it has one that is not 1 everywhere, else the mean of its colours; an image of
-// v3 is its luminance.
+// Read as a number, an image of v4 is its alpha if that is not 1 everywhere, else the mean of its colours; an image of v3 is
+// its luminance.
 Ref<Component> image_texture(Reader& reader, const Parameters& p, bool spectrum) {
   const Location at = p.at;
   const auto file = image_file(reader, p, "filename");
@@ -101,14 +101,14 @@ Ref<Component> image_texture(Reader& reader, const Parameters& p, bool spectrum)
   set_member(*map, "file", *file, p.place("filename"));
   const std::string filter = p.text("filter", reader.version == 4 ? "bilinear" : "trilinear");
   if (filter == "point") set_member(*map, "interpolation", "nearest", at);
-  p.ignore({"maxanisotropy", "trilinear", "noiseaware"});  // how it is averaged over a pixel
+  p.ignore({"maxanisotropy", "trilinear", "noiseaware"});  // filtering within a pixel
   set_wrap(reader, *map, p);
   set_encoding(reader, *map, p);
   const double scale = p.number("scale", 1);
   const bool inverted = p.boolean("invert", false);
   if (spectrum) {
     if (scale == 1 && !inverted) return map;
-    // Of its red, green and blue, before they become a spectrum.
+    // Applied to red, green and blue before they become a spectrum.
     const Ref<Component> product = reader.make("RgbProductMap", at);
     const double factor = inverted ? -scale : scale, offset = inverted ? 1 : 0;
     set_member(*product, "first", map, at);
@@ -117,7 +117,7 @@ Ref<Component> image_texture(Reader& reader, const Parameters& p, bool spectrum)
     return product;
   }
   Ref<Component> result = map;
-  // v4's lookups of single texels take the first channel.
+  // v4's filters that read single texels use the first channel.
   const bool texels = filter == "point" || filter == "ewa" || filter == "EWA";
   if (reader.version == 4 && !texels && transparent(reader, *file))
     set_member(*map, "channel", "A", at);

@@ -1,4 +1,4 @@
-// Integrators: which renderer finds the same light, and what of its settings is pbrt's.
+// Converts integrators to the renderers that estimate the same light, with their settings.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 struct Algorithm {
   const char *type, *renderer;
-  bool media;  ///< whether pbrt's finds its way through media
+  bool media;  ///< whether pbrt's integrator handles participating media
 };
 constexpr Algorithm algorithms[] = {
     {"path", "PathTracer", false},
@@ -24,7 +24,7 @@ constexpr Algorithm algorithms[] = {
     {"lightpath", "LightTracer", false},
     {"mlt", "MultiplexedMetropolis", true},
     {"sppm", "ProgressivePhotonMapper", false},
-    // Direct light and what mirrors and glass show: version 3's two ways to find it, one without combined strategies.
+    // Direct light and what specular chains show: version 3 has two such integrators, one without multiple importance sampling.
     {"directlighting", "DirectRenderer", false},
     {"whitted", "DirectRenderer", false},
     {"ao", "AmbientOcclusionRenderer", false},
@@ -38,9 +38,9 @@ void set_depth(Reader& reader, Component& renderer, const Parameters& p) {
   if (!direct && !renderer.class_info().find("max_depth")) return;
   const int bounces = p.integer("maxdepth", 5);
   if (bounces < 0) throw Error(fmt::format("'maxdepth' must not be negative"), p.place("maxdepth"));
-  if (!direct)  // pbrt counts where light is scattered, here the segments between: one more
+  if (!direct)  // pbrt counts scattering events, this program segments, one more
     return set_member(renderer, "max_depth", std::min(bounces, 99'999) + 1, p.at);
-  // Version 3 counts the surfaces that are seen, from the camera from mirror to mirror; each gets the light of all luminaires.
+  // Version 3 counts the surfaces along the camera's specular chains; at each of them all luminaires are sampled.
   constexpr int deepest = 64;
   if (bounces > deepest) reader.importing.inexact(fmt::format("'maxdepth' is at most {} here", deepest), p.place("maxdepth"));
   set_member(renderer, "mirrors", "surfaces", p.at);
@@ -61,7 +61,7 @@ void set_light_sampler(Reader& reader, Component& renderer, const Parameters& p)
     reader.importing.inexact(fmt::format("the light sampler '{}' is not known", type), given->at);
 }
 
-/// The number nearest to one of pbrt's that a member may have; told when it is another.
+/// Sets a member to pbrt's value, clamped to the member's range; warns if the value changes.
 void set_within(Reader& reader, Component& renderer, const char* member, const Parameters& p, const char* name) {
   if (!p.has(name)) return;
   const Range range = renderer.class_info().find(member)->range.value_or(Range{});
@@ -70,18 +70,18 @@ void set_within(Reader& reader, Component& renderer, const char* member, const P
   set_member(renderer, member, value, p.place(name));
 }
 
-/// The chains of "mlt", which is Hachisuka's multiplexed Metropolis in both versions (pbrt-v3, MLTIntegrator). Gives the
-/// samples of a pixel that have as many mutations as it asks for.
+/// The Markov chains of "mlt", which is Hachisuka's multiplexed Metropolis light transport in both versions (pbrt-v3,
+/// MLTIntegrator). Returns the samples per pixel that give the requested number of mutations.
 int set_chains(Reader& reader, Component& renderer, const Parameters& p) {
   set_within(reader, renderer, "large_steps", p, "largestepprobability");
   set_within(reader, renderer, "deviation", p, "sigma");
   set_within(reader, renderer, "chains", p, "chains");
-  p.ignore({"bootstrapsamples"});  // a share of all samples here
+  p.ignore({"bootstrapsamples"});  // a fraction of all samples here
   const int each = int(get(renderer, "mutations_per_sample").as<Number>()->value);
   return (std::clamp(p.integer("mutationsperpixel", 100), 1, 1 << 30) + each - 1) / each;
 }
 
-/// pbrt's is dark where the camera sees nothing, and looks about true normals. Version 3 has not divided by pi.
+/// pbrt's ambient occlusion is black where no surface is seen, and uses geometric normals. Version 3 does not divide by pi.
 void set_openness(Reader& reader, Component& renderer, const Parameters& p) {
   if (const double distance = p.number("maxdistance", 0); distance > 0 && distance < 1e30)
     set_member(renderer, "distance", distance, p.at);
@@ -92,7 +92,7 @@ void set_openness(Reader& reader, Component& renderer, const Parameters& p) {
   p.ignore({"cossample", "nsamples"});
 }
 
-/// Whether a material scatters light in one direction alone, as far as its parameters say so.
+/// Whether a material may have only delta lobes, judging by its parameters.
 bool may_be_smooth(const Material& m) {
   for (const char* smooth : {"mirror", "thindielectric"})
     if (m.type == smooth) return true;
@@ -106,7 +106,7 @@ bool may_be_smooth(const Material& m) {
   return false;
 }
 
-/// Directions that the surface has no part in: of mirrors and smooth glass pbrt then finds nothing.
+/// Warns when directions are sampled independently of the BSDF: pbrt then finds no light by mirrors and smooth glass.
 void tell_blind_walks(Reader& reader, const Parameters& p) {
   if (std::ranges::any_of(reader.materials, may_be_smooth))
     reader.importing.inexact(
@@ -116,7 +116,7 @@ void tell_blind_walks(Reader& reader, const Parameters& p) {
         p.at);
 }
 
-/// The integrator that a scene has; null: it is not known.
+/// The scene's integrator; null: it is unknown.
 const Algorithm* algorithm_of(const Reader& reader) {
   std::string_view type = reader.integrator.type;
   if (type.empty()) type = reader.version == 4 ? "volpath" : "path";
@@ -156,7 +156,7 @@ Integrator make_integrator(Reader& reader, int samples) {
   } else if (!light) {
     set_openness(reader, *renderer, p);
   } else if (s.type == "directlighting") {
-    const std::string strategy = p.text("strategy", "all");  // whether one luminaire is asked or each, for the same mean
+    const std::string strategy = p.text("strategy", "all");  // sampling one luminaire or each has the same mean
     if (strategy != "all" && strategy != "one")
       reader.importing.inexact(fmt::format("there is no strategy '{}'", strategy), p.place("strategy"));
   } else if (s.type == "randomwalk" || s.type == "simplevolpath" ||

@@ -1,4 +1,4 @@
-// Integrator and sampler.
+// Converts the sampler, and sets the renderer of the job.
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@ namespace etendue::pbrt {
 
 namespace {
 
-/// Samples of each pixel.
+/// Samples per pixel.
 int samples(Reader& reader) {
   const Parameters& p = reader.sampler.parameters;
   const std::string& type = reader.sampler.type;
@@ -31,7 +31,7 @@ Ref<Component> sampler(Reader& reader) {
   if (std::ranges::none_of(known, [&](const char* k) { return s.type == k; }))
     reader.importing.inexact(fmt::format("the sampler '{}' is not known: Sobol points are taken", s.type), s.parameters.at);
   if (s.parameters.has("seed")) reader.seed = s.parameters.integer("seed", 0);
-  // Which points they are makes no difference to the picture that is converged to.
+  // The choice of points does not change the image that rendering converges to.
   s.parameters.ignore({"randomization", "dimensions", "samplepixelcenter"});
   return reader.make(independent ? "IndependentSampler" : "SobolSampler", s.parameters.at);
 }

@@ -74,7 +74,7 @@ void Lexer::numbers(std::vector<double>& to) {
     double value = 0;
     const auto [rest, error] = std::from_chars(from, end_, value);
     if (error != std::errc() || !std::isfinite(value) || (rest != end_ && !ends_word(*rest))) {
-      // Too small a number is 0; anything else is no number.
+      // A number too small for a double becomes 0; anything else is no number.
       const char* stop = std::find_if(now_, end_, ends_word);
       const std::string_view word{now_, size_t(stop - now_)};
       if (!parse_number(word, value) && !beginning(word, value)) return;
@@ -90,7 +90,7 @@ bool Lexer::number(const Token& word, double& number) {
   return word.is(Token::Kind::word) && (parse_number(word.text, number) || beginning(word.text, number));
 }
 
-// strtof() stops at the first character that belongs to no number, and version 3 does not ask where it stopped.
+// Version 3 calls strtof(), which stops at the first character that is not part of a number, and ignores the rest.
 bool Lexer::beginning(std::string_view word, double& number) {
   if (!lenient || word.empty()) return false;
   const char *first = word.data() + (word.front() == '+' ? 1 : 0), *last = word.data() + word.size();
@@ -136,7 +136,7 @@ bool parse_number(std::string_view word, double& number) {
   const auto [rest, error] = std::from_chars(word.data() + (plus ? 1 : 0), word.data() + word.size(), number);
   if (rest != word.data() + word.size()) return false;
   if (error == std::errc::result_out_of_range) {
-    // from_chars does not tell the too large from the too small.
+    // from_chars does not distinguish overflow from underflow.
     number = std::strtod(std::string(word).c_str(), nullptr);
     return std::abs(number) < 1;
   }

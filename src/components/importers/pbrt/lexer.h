@@ -1,5 +1,5 @@
 #pragma once
-// The words of a pbrt file.
+// Splits a pbrt file into tokens.
 
 #include <string>
 #include <string_view>
@@ -9,39 +9,39 @@
 
 namespace etendue::pbrt {
 
-/// What stands next in a file. A word is a directive, a number, true or false.
+/// The next token of a file. A word is a directive, a number, true or false.
 struct Token {
   enum class Kind : unsigned char { end, word, string, open, close };
   Kind kind = Kind::end;
-  std::string_view text;     ///< of a string without its quotes, escapes as they are written
-  const char* at = nullptr;  ///< in the text, for Lexer::place
+  std::string_view text;     ///< of a string without quotes, escapes not replaced
+  const char* at = nullptr;  ///< position in the text, for Lexer::place
 
   bool is(Kind k) const { return kind == k; }
   bool end() const { return kind == Kind::end; }
 };
 
-/// Takes a text apart. It is not copied, so that lists of millions of numbers are read at the speed of their digits.
+/// Splits a text into tokens. The text is not copied, so that lists of millions of numbers are read fast.
 class Lexer {
  public:
   /// `file` is interned.
   Lexer(std::string_view text, const char* file);
 
-  /// Of version 3, which reads on where version 4 stops: whom it tells. Null: what is wrong is an Error.
+  /// Set for version 3, which tolerates syntax that version 4 refuses: receives the warnings. Null: such syntax throws Error.
   Importing* lenient = nullptr;
 
   const Token& peek();
   Token next();
-  /// Reads numbers as long as there are some.
+  /// Reads numbers up to the first token that is none.
   void numbers(std::vector<double>& to);
-  /// A word as a number; false: it is none. What stands behind the digits version 3 does not look at.
+  /// Converts a word to a number; false: it is none. For version 3 the characters after the number are ignored.
   bool number(const Token& word, double& number);
 
-  /// Where a token stands. Quick when asked in the order of the text.
+  /// The location of a token. Fast if called in the order of the text.
   Location place(const char* at);
   Location place(const Token& token) { return place(token.at); }
   const char* file() const { return file_; }
 
-  /// What a string with its escapes stands for.
+  /// The string with its escapes replaced.
   static std::string unescaped(std::string_view);
 
  private:

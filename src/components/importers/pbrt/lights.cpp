@@ -1,4 +1,4 @@
-// Lights, and surfaces that emit.
+// Converts lights and area emission.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ constexpr double pi = 3.14159265358979323846;
 
 }  // namespace
 
-// Version 3's scale is a spectrum, too.
+// Version 3's scale is a spectrum.
 Light light_of(Reader& reader, const Parameters& p, const char* name, Use use) {
   const Parameter* given = p.find(name);
   const Color color = given ? spectrum_of(reader, p, *given, use) : rgb_color(p.space ? p.space->name : "srgb", 1, 1, 1);
@@ -52,14 +52,14 @@ Transform Reader::of_light(const Transform& inner, Location at) {
 
 namespace {
 
-/// The same in one, times `more`.
+/// The colour of light_of multiplied by its scale and by `more`.
 Color scaled_light(Reader& reader, const Parameters& p, const char* name, double more = 1) {
   const Light light = light_of(reader, p, name, Use::light);
   const double scale = light.scale * more;
   return scale == 1 ? light.color : scaled_spectrum(scale, light.color);
 }
 
-/// Of v4's "power" in lumens, which takes the place of what the scale gives; `per_unit` is that of an intensity of 1.
+/// The factor for v4's "power" [lm], which replaces the power from the scale; `per_unit` is the power of an intensity of 1.
 double power_factor(const Parameters& p, double per_unit) {
   const double power = p.number("power", -1);
   return power > 0 ? power / per_unit : 1;
@@ -94,8 +94,7 @@ void point(Reader& reader, const Parameters& p) {
 
 void spot(Reader& reader, const Parameters& p) {
   const double outer = p.number("coneangle", 30);
-  // Only its cosine counts: where the cone is narrower than the border is wide, the border begins on the other side of the
-  // axis.
+  // pbrt uses only the cosine of the angle: if the border is wider than the cone, it begins on the other side of the axis.
   double inner = std::abs(outer - p.number("conedeltaangle", 5));
   if (!(outer > 0 && outer <= 180)) throw Error("'coneangle' must be more than 0 and at most 180", p.place("coneangle"));
   if (!(inner <= outer)) {
@@ -118,7 +117,7 @@ void spot(Reader& reader, const Parameters& p) {
 
 void distant(Reader& reader, const Parameters& p) {
   const Ref<Component> emission = reader.make("DiffuseEmission", p.at);
-  // An irradiance of 1 on a plane across the light; v4's "illuminance" says that it is so much.
+  // A radiance of 1 means an irradiance of 1 on a plane perpendicular to the light; v4's "illuminance" states it instead.
   const double lux = p.number("illuminance", -1);
   set_member(*emission, "radiance", scaled_light(reader, p, "L", lux > 0 ? lux : 1), p.at);
   const Ref<Component> object = placed(reader, "Distant", p);
@@ -126,14 +125,14 @@ void distant(Reader& reader, const Parameters& p) {
   add_light(reader, object, emission, p.at);
 }
 
-/// The integral over directions of an image's luminance, as pbrt has it: at the middles of texels, where the solid angle of an
-/// area on the plane at distance 1 is cos^3 of it.
+/// The integral of an image's luminance over directions as pbrt computes it: evaluated at texel centres, where an area on the
+/// plane at distance 1 covers cos^3 times as much solid angle.
 double projected_power(const FilePath& file, double fov) {
   LinearImage image;
   try {
     image = read_linear_image(file.resolved(), automatic_transfer);
   } catch (const Error&) {
-    return 0;  // told by the light
+    return 0;  // reported by the light
   }
   const double aspect = double(image.width) / image.height, half = std::tan(fov * pi / 360), a = half * std::max(aspect, 1.0),
                b = half * std::max(1 / aspect, 1.0);
@@ -147,7 +146,7 @@ double projected_power(const FilePath& file, double fov) {
   return sum * 4 * a * b / (double(image.width) * image.height);
 }
 
-/// pbrt's light looks along +z with the image's right towards +x and its top towards -y: half a turn from ours.
+/// pbrt's light faces +z with the image's right towards +x and its top towards -y: ours rotated by 180 degrees.
 void projection(Reader& reader, const Parameters& p) {
   const auto file = image_file(reader, p, p.has("mapname") ? "mapname" : "filename");
   if (!file) return;
@@ -167,8 +166,8 @@ void projection(Reader& reader, const Parameters& p) {
   add_light(reader, placed(reader, "Point", p, Transform::rotate(pi, {0, 0, 1})), emission, p.at);
 }
 
-// v4's image is a square of equal areas whose middle is +y, with x to the right and z downwards, of texels without anything
-// between; only the mean of its channels counts. v3's is in longitude, from +x over +z, and latitude, from +y.
+// v4's image is an equal-area square with +y at the centre, x to the right and z downwards, without interpolation between
+// texels; only the mean of its channels counts. v3's is in longitude, from +x over +z, and latitude, from +y.
 void goniometric(Reader& reader, const Parameters& p) {
   const bool v3 = reader.version == 3;
   const char* name = p.has("mapname") ? "mapname" : "filename";
@@ -223,7 +222,7 @@ Ref<Component> area_emission(Reader& reader, AreaLight& light, bool turned, size
     set_member(*emission, "radiance", scaled_light(reader, p, "L"), at);
   }
   if (power > 0) {
-    // pbrt has a light of this power, times its scale, for each triangle.
+    // In pbrt each triangle is a light of this power, times its scale.
     set_member(*emission, "luminous_flux", power * p.number("scale", 1) * luminous_unit * reader.exposure * double(pieces), at);
     if (pieces > 1)
       reader.importing.inexact("each triangle of a light has the power given in pbrt; here they have it together, by area", at);

@@ -1,4 +1,4 @@
-// What all materials have in common, and mixtures of them.
+// Common parts of all materials, and mixtures.
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ constexpr const char* v4_materials[] = {"diffuse",        "coateddiffuse",      
 constexpr const char* v3_materials[] = {"matte",  "plastic",     "uber",   "glass",   "metal",       "substrate",
                                         "mirror", "translucent", "disney", "fourier", "kdsubsurface"};
 
-/// pbrt's formula of v4: alpha is the root of the roughness; of v3, a polynomial of its logarithm.
+/// pbrt's remapping of roughness: in v4 alpha is its square root, in v3 a polynomial of its logarithm.
 Value alpha_of(Reader& reader, Location at, Value roughness, bool remap, bool v3) {
   if (!remap) return roughness;
   if (const Number* n = roughness.as<Number>())
@@ -44,7 +44,7 @@ Ref<Component> mix(Reader& reader, const Material& m) {
     set_member(*matte, "color", 0.5, p.at);
     return matte;
   };
-  // v3's amount is the share of the first, v4's of the second.
+  // v3's amount is the weight of the first material, v4's that of the second.
   set_map(*shader, v3 ? "second" : "first", Value(part(names[0])), p.at);
   set_map(*shader, v3 ? "first" : "second", Value(part(names[1])), p.at);
   if (v3) {
@@ -59,7 +59,7 @@ Ref<Component> mix(Reader& reader, const Material& m) {
   return shader;
 }
 
-/// Bumps and normals around a shader.
+/// Wraps a shader in its bump map and normal map.
 Ref<Component> with_relief(Reader& reader, const Parameters& p, Ref<Component> shader) {
   if (const Parameter* bump = p.first_of({"displacement", "bumpmap"})) {
     const Ref<Component> outer = reader.make("BumpShader", p.at);
@@ -82,7 +82,7 @@ Ref<Component> with_relief(Reader& reader, const Parameters& p, Ref<Component> s
   return shader;
 }
 
-/// One level more, as long as it lives.
+/// Increments a nesting level during its lifetime.
 class Deeper {
  public:
   explicit Deeper(int& level) : level_(level) { ++level_; }
@@ -94,7 +94,7 @@ class Deeper {
   int& level_;
 };
 
-/// Says that a material is being made, as long as it lives.
+/// Marks a material as being made during its lifetime.
 class Making {
  public:
   explicit Making(bool& making) : making_(making) { making_ = true; }
@@ -115,8 +115,8 @@ double brightness_of(Reader& reader, const SpectralFunction& color, const std::s
   return std::min(1.0, double(to_xyz(color, ColorUse::reflectance, illuminant_spectrum("D65").get()).y));
 }
 
-// pbrt's index is that of one side against the other, whatever the path came through: boundaries between glass and water have
-// their quotient.
+// pbrt's eta is the relative index of the two sides, whatever media the path has entered: a boundary between glass and water
+// states the quotient of their indices.
 void set_index(const Reader& reader, Component& dielectric, const Value& eta, Location at) {
   set_map(dielectric, reader.turned ? "exterior" : "ior", eta, at);
   set_member(dielectric, reader.turned ? "ior" : "exterior", 1, at);
@@ -138,7 +138,8 @@ void set_roughness(Reader& reader, Component& shader, const Parameters& p, const
     return n && n->value == 0;
   };
   Value u = given(asked.u), v = given(asked.v);
-  // v4 is smooth at 0, along either direction; v3's glass at 0 of both, and its other materials nowhere: 0 is 0.001 there.
+  // v4 is smooth if the roughness along either direction is 0; v3's glass if both are 0, and its other materials never: there 0
+  // becomes 0.001.
   const bool smooth = asked.glass && zero(u) && zero(v);
   const auto alpha = [&](Value roughness) {
     if (zero(roughness) && (!v3 || smooth)) return roughness;
@@ -153,7 +154,7 @@ void set_roughness(Reader& reader, Component& shader, const Parameters& p, const
   set_map(shader, "roughness", along, p.at);
   if (write_value(u) != write_value(v)) set_map(shader, "roughness_v", alpha(v), p.at);
   set_member(shader, "multiple_scattering", false, p.at);
-  // pbrt's G of light that goes through is that of light that is reflected.
+  // pbrt uses the same height-correlated G for transmission as for reflection.
   const Number* n = along.as<Number>();
   if (shader.class_info().name == "Dielectric" && !(n && n->value == 0)) set_member(shader, "heights", "correlated", p.at);
 }
@@ -166,7 +167,7 @@ std::vector<std::string> material_names() {
 
 bool has_front(const Reader& reader, const Material& material) {
   std::vector<const Material*> open{&material};
-  std::set<const Material*> seen;  // mixtures may be of the same ones, and of themselves
+  std::set<const Material*> seen;  // mixtures may share parts, and contain themselves
   while (!open.empty()) {
     const Material& m = *open.back();
     open.pop_back();
@@ -213,7 +214,7 @@ Ref<Component> shader_of(Reader& reader, size_t index, Location used_at) {
 void make_with_present_textures(Reader& reader, size_t material) {
   try {
     shader_of(reader, material, reader.materials[material].parameters.at);
-  } catch (const Error&) {  // told when it is used, or at the end
+  } catch (const Error&) {  // reported where the material is used, or at the end
   }
 }
 

@@ -1,4 +1,4 @@
-// v3's materials that v4 has not.
+// Materials of v3 that v4 does not have.
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@ namespace etendue::pbrt {
 
 namespace {
 
-/// The largest component or value of what is no map; 1: of a map.
+/// The largest component or value of a number or colour; 1 for a map.
 double largest(const Value& v) {
   if (const Number* n = v.as<Number>()) return n->value;
   const Color* c = v.as<Color>();
@@ -23,7 +23,7 @@ Value divided(Reader& reader, Value v, double by, Location at) {
   if (const Number* n = v.as<Number>()) return Value(Number{n->value / by}, at);
   if (const Color* c = v.as<Color>()) {
     if (!((*c)->largest_component() > 0)) return Value(scaled_spectrum(1 / by, *c), at);
-    // Of RGB the numbers are divided, and their spectrum made anew: divided itself it would exceed 1 at the ends.
+    // RGB components are divided and upsampled again: the divided spectrum itself would exceed 1 at the ends.
     const Xyz xyz = to_xyz(**c, ColorUse::reflectance, illuminant_spectrum("D65").get());
     const auto& m = rgb_space("srgb").from_xyz;
     const auto component = [&](size_t i) {
@@ -34,10 +34,10 @@ Value divided(Reader& reader, Value v, double by, Location at) {
   return Value(formula(reader, at, fmt::format("{} * map", 1 / by), {{"map", v}}), at);
 }
 
-/// pbrt's sum of a matt surface and a dielectric's highlight, Kd / pi + Ks F D G / (4 cos cos). A mixture of both in which
-/// each has its colour divided by its share is the same sum, and can be made where the two together are at most 1; beyond,
-/// pbrt's surface may give back more light than it gets, and a coated one stands for it.
-/// `seen` is the index that pbrt computes the highlight with.
+/// pbrt's sum of a diffuse surface and a dielectric highlight, Kd / pi + Ks F D G / (4 cos cos). A mixture of both, in which
+/// each colour is divided by its weight, is the same sum, and is possible if the colours add up to at most 1. Otherwise pbrt's
+/// surface may reflect more light than it receives, and a coated surface replaces it. `seen` is the index for which pbrt
+/// computes the highlight.
 Ref<Component> plastic(Reader& reader, const Parameters& p, const Roughness& roughness, Value kd, Value ks, double eta,
                        double seen) {
   const Location at = p.at;
@@ -113,8 +113,9 @@ Ref<Component> uber(Reader& reader, const Parameters& p) {
   return shader;
 }
 
-/// FresnelBlend of Ashikhmin and Shirley with GGX's facets for their highlight: theirs here, as sharp about its peak. There GGX
-/// falls off as 1 - 2 tan^2 / alpha^2 and cos^n as 1 - (n / 2) tan^2, so that the exponent is n = 4 / alpha^2.
+/// pbrt's FresnelBlend is the model of Ashikhmin and Shirley with GGX microfacets. Here their own highlight is used, with the
+/// exponent that makes it equally sharp at the peak: there GGX falls off as 1 - 2 tan^2 / alpha^2 and cos^n as 1 - (n / 2)
+/// tan^2, so that n = 4 / alpha^2.
 Ref<Component> substrate(Reader& reader, const Parameters& p) {
   const Location at = p.at;
   const Ref<Component> shader = reader.make("AshikhminShirley", at);
@@ -198,7 +199,8 @@ Ref<Component> make_v3_shader(Reader& reader, const Material& m) {
     const Ref<Component> shader = reader.make(lambertian ? "Lambertian" : "OrenNayar", at);
     set_map(*shader, "color", color_map(reader, p, {"Kd"}, 0.5, Use::reflectance), at);
     if (!lambertian) {
-      // sigma is a slope's standard deviation in degrees; here 1 is as rough as it gets, which 60 degrees stand for.
+      // sigma is the standard deviation of the facets' slope angle in degrees; the largest roughness here, 1, stands for 60
+      // degrees.
       if (n)
         set_member(*shader, "roughness", std::clamp(n->value / 60, 0.0, 1.0), at);
       else
@@ -213,7 +215,7 @@ Ref<Component> make_v3_shader(Reader& reader, const Material& m) {
     return shader;
   }
   if (type == "plastic") {
-    // Its highlight is that of light from within, from 1.5 to 1: all of it beyond asin(1 / 1.5).
+    // pbrt computes its highlight for light from inside, from 1.5 to 1: with total internal reflection beyond asin(1 / 1.5).
     constexpr double index = 1.5;
     return plastic(reader, p, {{"roughness"}, {"roughness"}, 0.1}, color_map(reader, p, {"Kd"}, 0.25, Use::reflectance),
                    color_map(reader, p, {"Ks"}, 0.25, Use::reflectance), index, 1 / index);

@@ -1,4 +1,4 @@
-// v4's materials, and those that v3 has as well.
+// Materials of v4, also those that v3 shares.
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@ namespace etendue::pbrt {
 
 namespace {
 
-/// The clear layer between the two surfaces of a coated material: it absorbs as if its extinction were 1 per unit of length,
-/// of which "albedo" is scattered, whether or not there is any.
+/// The medium between the two interfaces of a coated material: in pbrt its extinction is 1 per unit of length, of which
+/// "albedo" is scattered, even if the albedo is 0.
 void set_layer(Reader& reader, Component& shader, const Parameters& p) {
   const Location at = p.at;
   set_map(shader, "thickness", number_map(reader, p, {"thickness"}, 0.01), at);
@@ -40,7 +40,7 @@ void set_layer(Reader& reader, Component& shader, const Parameters& p) {
   else
     reader.importing.inexact("a coat's g that a texture says is 0 here", at);
   set_member(shader, "medium", medium, at);
-  // How many events pbrt follows before it gives a walk up, and how many walks it makes: here none is given up.
+  // pbrt's limit of events in a walk between the interfaces, and its number of walks: here walks have no limit.
   p.ignore({"maxdepth"});
   p.ignore({"nsamples"});
 }
@@ -66,8 +66,8 @@ Ref<Component> conductor(Reader& reader, const Parameters& p, const std::string&
     set_member(*shader, "ior", metal_of(reader, p, prefix), p.at);
     return shader;
   }
-  // n = 1 and k = 2 sqrt(r) / sqrt(1 - r) reflect r straight on; pbrt uses them at all angles. Of r it takes 0.9999 at most;
-  // 0.9996 is what an extinction reflects that may be asked for here.
+  // n = 1 and k = 2 sqrt(r) / sqrt(1 - r) have the reflectance r at normal incidence; pbrt uses them at all angles. It clamps r
+  // to 0.9999; 0.9996 is the reflectance of the largest extinction coefficient that is allowed here.
   constexpr float most = 0.9996f;
   const auto extinction = [](float reflected) { return 2 * std::sqrt(reflected) / std::sqrt(1 - reflected); };
   if (reflectance->is("texture")) {
@@ -114,7 +114,7 @@ Ref<Component> hair(Reader& reader, const Parameters& p) {
   return shader;
 }
 
-/// v3's and v4's: coefficients, or a colour and a mean free path.
+/// The material of v3 and v4, given by coefficients, or by a colour and a mean free path.
 Ref<Component> subsurface(Reader& reader, const Parameters& p, bool kd) {
   const Location at = p.at;
   const Ref<Component> shader = reader.make("Subsurface", at);
@@ -147,9 +147,9 @@ Ref<Component> subsurface(Reader& reader, const Parameters& p, bool kd) {
       return named ? color : constant(name, color);
     };
     const Color a = coefficient("sigma_a", known.absorption), s = coefficient("sigma_s", known.scattering);
-    if (named) g = 0;  // its scattering is the reduced one already
-    // By similarity: the reduced albedo a' of an isotropic medium reflects about
-    // 1 - sqrt(1 - a') of ... van de Hulst's (1 - s)(1 - 0.139 s) / (1 + 1.17 s), s = sqrt((1 - a') / (1 - a' g')), g' = 0.
+    if (named) g = 0;  // measured scattering coefficients are reduced ones already
+    // By similarity, the medium is replaced by an isotropic one of the reduced albedo a', whose diffuse reflectance is van de
+    // Hulst's (1 - s)(1 - 0.139 s) / (1 + 1.17 s), s = sqrt((1 - a') / (1 - a' g')), g' = 0.
     const auto reduced = [&](float nm) { return s->at(nm, ColorUse::coefficient) * float(1 - g); };
     const auto extinction = [&](float nm) { return a->at(nm, ColorUse::coefficient) + reduced(nm); };
     set_member(*shader, "color", table([&](float nm) {

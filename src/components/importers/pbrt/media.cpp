@@ -1,4 +1,4 @@
-// Media.
+// Participating media.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ void homogeneous(Reader& reader, const std::string& name, const Parameters& p) {
   const Location at = p.at;
   const Ref<Component> medium = reader.make("HomogeneousVolume", at, name);
   const MeasuredMedium* const found = measured_medium(reader, p, "preset");
-  // Where nothing is said v3 takes whole milk, v4 the number 1; what is said beside a preset counts in v3 alone.
+  // Default coefficients are those of whole milk in v3, and 1 in v4; coefficients beside a preset count in v3 alone.
   const MeasuredMedium* const otherwise = found ? found : reader.version == 3 ? &whole_milk : nullptr;
   const double scale = p.number("scale", 1);
   const auto coefficient = [&](const char* parameter, const std::array<double, 3> MeasuredMedium::* part) {
@@ -40,7 +40,7 @@ double light_scale(const Reader& reader, const Parameters& p) {
   return scale;
 }
 
-// Per distance: pbrt's Le is a radiance, and what the medium adds is that times its absorption.
+// The emission per distance: pbrt's Le is a radiance, and the medium emits Le times its absorption coefficient.
 void set_emission_of_medium(Reader& reader, Component& medium, const Parameters& p, const Color& absorption) {
   const Parameter* const given = p.find("Le");
   if (!given) return;
@@ -88,7 +88,7 @@ Ref<Component> medium_for(Reader& reader, const std::string& name, const Animate
   if (placed == reader.grids.end() || !found->second) return found->second;
   if (object.animated())
     reader.importing.inexact("a medium that differs from place to place moves with the object it is in", at);
-  // Each object has a medium of its own, placed in its own coordinates.
+  // Each object gets its own copy of the medium, placed in object space.
   const Ref<Component> own = copy(*found->second);
   own->origin = std::make_unique<Component::Origin>();
   own->origin->location = at;

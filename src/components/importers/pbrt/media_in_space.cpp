@@ -1,4 +1,4 @@
-// Media that differ from place to place: grids and clouds.
+// Heterogeneous media: grids and clouds.
 
 #include <fmt/format.h>
 
@@ -15,12 +15,12 @@ struct Grid {
   std::array<int, 3> cells;
   DoublePoint3 p0, p1;
 
-  /// Reads what says how a grid lies.
+  /// Reads the resolution and box of a grid.
   Grid(const Reader& reader, const Parameters& p)
       : cells{p.integer("nx", 1), p.integer("ny", 1), p.integer("nz", 1)},
         p0(p.point("p0", {0, 0, 0})),
         p1(p.point("p1", {1, 1, 1})) {
-    // v3 mirrors a grid whose first corner is the upper one, v4 sorts them.
+    // If p0 is the upper corner, v3 mirrors the grid, and v4 sorts the coordinates.
     for (double DoublePoint3::* axis : {&DoublePoint3::x, &DoublePoint3::y, &DoublePoint3::z})
       if (reader.version != 3 && p0.*axis > p1.*axis) std::swap(p0.*axis, p1.*axis);
     for (const int n : cells)
@@ -28,13 +28,13 @@ struct Grid {
   }
   double count() const { return double(cells[0]) * cells[1] * cells[2]; }
   Numbers resolution() const { return {{double(cells[0]), double(cells[1]), double(cells[2])}, 1, Dimension::none}; }
-  /// From its unit cube to the world.
+  /// From its unit cube to world space.
   Transform placed(const Reader& reader) const {
     return reader.state.ctm[0] * Transform::translate({p0.x, p0.y, p0.z}) *
            Transform::scale(DoubleVector3{p1.x - p0.x, p1.y - p0.y, p1.z - p0.z});
   }
 
-  /// The numbers of a parameter, `width` for each cell; none: it is not there.
+  /// The numbers of a parameter, `width` for each cell; empty: it is not given.
   std::vector<double> take(Parameters& p, const char* name, size_t width = 1) const {
     std::vector<double> values = p.take_numbers(name, width);
     if (!values.empty() && double(values.size()) != count() * double(width))
@@ -59,7 +59,7 @@ void scale(std::vector<double>& values, double by) {
   for (double& v : values) v *= by;
 }
 
-/// sigma_a or sigma_s, the same everywhere.
+/// sigma_a or sigma_s, constant in space.
 Color coefficient(Reader& reader, const Parameters& p, const char* name, const std::array<double, 3>& in_v3) {
   const Parameter* const given = p.find(name);
   return given                 ? spectrum_of(reader, p, *given, Use::coefficient)
@@ -67,7 +67,7 @@ Color coefficient(Reader& reader, const Parameters& p, const char* name, const s
                                : flat_spectrum(1);
 }
 
-/// sigma_a and sigma_s of v4, times "scale".
+/// Sets sigma_a and sigma_s of v4, multiplied by "scale".
 void set_scaled_coefficients(Reader& reader, Component& medium, const Parameters& p) {
   const double scale = p.number("scale", 1);
   for (const auto& [member, parameter] : {std::pair("absorption", "sigma_a"), {"scattering", "sigma_s"}}) {
@@ -76,12 +76,12 @@ void set_scaled_coefficients(Reader& reader, Component& medium, const Parameters
   }
 }
 
-/// What is taken off a grid's temperatures, and what they are then multiplied by.
+/// The offset subtracted from a grid's temperatures, and the factor applied then.
 std::pair<double, double> temperatures_of(const Parameters& p) {
   return {p.number("temperatureoffset", p.number("temperaturecutoff", 0)), p.number("temperaturescale", 1)};
 }
 
-/// pbrt's black bodies have a highest value of 1. What they shine with is not divided by its luminance, as lights are.
+/// pbrt normalizes blackbody spectra to a maximum of 1. Unlike that of lights, this emission is not divided by its luminance.
 Ref<Component> blackbody(const Reader& reader, const Ref<Component>& temperature, double brightness, Location at) {
   const Ref<Component> glow = reader.make("BlackbodyMap", at);
   set_member(*glow, "temperature", temperature, at);
@@ -90,8 +90,8 @@ Ref<Component> blackbody(const Reader& reader, const Ref<Component>& temperature
   return glow;
 }
 
-/// The radiance that matter of a grid goes to where it is thick, which is pbrt's Le: by its temperatures, or one spectrum times
-/// a grid. Null: it has no light of this kind.
+/// The source radiance of a grid medium, pbrt's Le, to which its radiance tends where it is optically thick: from temperatures,
+/// or a spectrum times a grid. Null: it has neither.
 Ref<Component> glow_of(Reader& reader, const Grid& grid, Parameters& p) {
   std::vector<double> temperatures = grid.take(p, "temperature"), factors;
   if (const Parameter* given = p.find("Lescale"); given && given->numbers.size() > 1) factors = grid.take(p, "Lescale");
@@ -121,7 +121,7 @@ Ref<Component> glow_of(Reader& reader, const Grid& grid, Parameters& p) {
 
 }  // namespace
 
-// Density on a regular grid between p0 and p1 of the coordinates of its directive, nothing outside.
+// Density on a regular grid between p0 and p1, in the directive's coordinates; empty outside.
 void make_grid(Reader& reader, const std::string& name, Parameters& p) {
   const Location at = p.at;
   const Grid grid(reader, p);
@@ -147,7 +147,7 @@ void make_grid(Reader& reader, const std::string& name, Parameters& p) {
   reader.boxes[name] = grid.placed(reader);
 }
 
-// Each cell has coefficients and light of its own, in RGB.
+// Each cell has its own RGB coefficients and emission.
 void make_rgb_grid(Reader& reader, const std::string& name, Parameters& p) {
   const Location at = p.at;
   const Grid grid(reader, p);
@@ -157,7 +157,7 @@ void make_rgb_grid(Reader& reader, const std::string& name, Parameters& p) {
   if (absorption.empty() && !light.empty()) throw Error("a grid with 'Le' needs 'sigma_a'", p.place("Le"));
   const Ref<Component> medium = reader.make("MapVolume", at, name);
   set_member(*medium, "density", p.number("scale", 1), p.place("scale"));
-  // One of the two alone: the other is 1, within the box only.
+  // If only one of them is given, the other is 1 within the box.
   if (absorption.empty() || scattering.empty()) set_member(*medium, "limited", true, at);
   const auto coefficients = [&](const char* member, std::vector<double>& values, const char* parameter) {
     if (values.empty())
@@ -176,7 +176,7 @@ void make_rgb_grid(Reader& reader, const std::string& name, Parameters& p) {
   reader.boxes[name] = grid.placed(reader);
 }
 
-// Densities of a file, which lie where the file says, and light by its temperatures when it has some.
+// Density from a file, placed as the file states, and emission from its temperatures, if present.
 void make_nanovdb(Reader& reader, const std::string& name, const Parameters& p) {
   const Location at = p.place("filename");
   const std::string path = reader.importing.file(p.text("filename"), at, p.folder);

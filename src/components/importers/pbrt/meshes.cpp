@@ -1,4 +1,4 @@
-// Meshes: written out, from files, of patches, subdivided.
+// Meshes: inline, from files, bilinear patches, subdivision surfaces.
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ Vertex across(const Vertex& a, const Vertex& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Vertices of a list, checked: whole numbers of vertices that there are.
+/// Checks the indices of a list: integers below the number of vertices.
 void check_indices(const Parameters& p, const std::vector<double>& indices, size_t vertices) {
   for (const double i : indices)
     if (!(i >= 0 && i < double(vertices) && i == std::floor(i)))
@@ -31,7 +31,7 @@ void check_indices(const Parameters& p, const std::vector<double>& indices, size
                     p.place("indices"));
 }
 
-/// pbrt's front is where the vertices' normals point; here it is where a triangle's corners run counter-clockwise.
+/// pbrt's front is the side of the vertex normals; here it is the side from which a triangle is counter-clockwise.
 void face_normals(const std::vector<double>& positions, const std::vector<double>& normals, std::vector<double>& indices) {
   for (size_t t = 0; t + 2 < indices.size(); t += 3) {
     const size_t a = size_t(indices[t]), b = size_t(indices[t + 1]), c = size_t(indices[t + 2]);
@@ -43,8 +43,8 @@ void face_normals(const std::vector<double>& positions, const std::vector<double
   }
 }
 
-/// Whether any of the faces, of this many corners in the order of their rows, has an area, as what is made of them will see it.
-/// That none has is told.
+/// Whether any face, of this many corners in row order, has a nonzero area at the precision in which it is stored. Adds a
+/// warning if none has.
 bool has_area(Reader& reader, const std::vector<double>& p, const std::vector<double>& indices, size_t corners, Location at) {
   std::vector<DoublePoint3> positions;
   for (size_t i = 0; i + 2 < p.size(); i += 3) positions.push_back({p[i], p[i + 1], p[i + 2]});
@@ -111,7 +111,7 @@ Shape triangle_mesh(Reader& reader, Parameters& p) {
   return object_of(reader, std::move(mesh), p.at);
 }
 
-/// A file's triangles written out: where the way they face matters, which the file's own normals say.
+/// Copies a file's triangles into an inline mesh: needed where the file's normals determine the front.
 Mesh written_out(const MeshData& data) {
   Mesh mesh;
   for (const Point3& q : data.positions)
@@ -123,7 +123,7 @@ Mesh written_out(const MeshData& data) {
   return mesh;
 }
 
-/// Whether a triangle's corners run clockwise around its normals.
+/// Whether any triangle is clockwise as seen from its vertex normals.
 bool against_normals(const MeshData& data) {
   if (data.normals.empty()) return false;
   return std::ranges::any_of(data.triangles, [&](const auto& t) {
@@ -134,7 +134,7 @@ bool against_normals(const MeshData& data) {
   });
 }
 
-/// The file of a mesh. Version 3 goes on without the mesh where there is none.
+/// The file of a mesh. If it is missing, version 3 continues without the mesh.
 std::string mesh_file(const Reader& reader, const Parameters& p) {
   const std::string named = p.text("filename");
   if (named.empty()) throw Error(fmt::format("{} needs 'filename'", p.of), p.at);
@@ -176,7 +176,7 @@ Shape ply_mesh(Reader& reader, const Parameters& p) {
   return {object, {}, false, triangles};
 }
 
-/// Whether the coordinates of each patch are those that a patch without any has.
+/// Whether each patch has the default texture coordinates.
 bool corners_of_square(const std::vector<double>& uvs, const std::vector<double>& indices) {
   for (size_t i = 0; i < indices.size(); ++i) {
     const size_t v = 2 * size_t(indices[i]);
@@ -245,7 +245,7 @@ Shape loop_subdivision(Reader& reader, Parameters& p) {
   return {object, {}, reader.state.reversed};
 }
 
-/// Heights over the unit square, of two triangles for each cell.
+/// A height field over the unit square, with two triangles for each cell.
 Shape height_field(Reader& reader, Parameters& p) {
   const int nu = p.integer("nu", -1), nv = p.integer("nv", -1);
   const std::vector<double> heights = p.take_numbers("Pz");

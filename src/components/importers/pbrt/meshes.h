@@ -1,5 +1,5 @@
 #pragma once
-// Meshes that are written out.
+// Meshes given inline.
 
 #include <vector>
 
@@ -11,7 +11,7 @@ struct Mesh {
   std::vector<double> positions, normals, uvs, indices;
 };
 
-/// Turned over when the state says so.
+/// Reversed if the state's orientation is reversed.
 Shape object_of(Reader&, Mesh&&, Location at);
 
 }  // namespace etendue::pbrt

@@ -14,7 +14,7 @@ struct Type {
   std::string_view name;
   Holds holds;
 };
-// Of pbrt v3 and v4, with older spellings.
+// Types of pbrt v3 and v4, and older spellings.
 constexpr Type types[] = {{"float", Holds::numbers},   {"integer", Holds::numbers},  {"bool", Holds::truths},
                           {"string", Holds::strings},  {"texture", Holds::strings},  {"point", Holds::numbers},
                           {"point2", Holds::numbers},  {"point3", Holds::numbers},   {"vector", Holds::numbers},
@@ -22,7 +22,7 @@ constexpr Type types[] = {{"float", Holds::numbers},   {"integer", Holds::number
                           {"normal3", Holds::numbers}, {"rgb", Holds::numbers},      {"color", Holds::numbers},
                           {"xyz", Holds::numbers},     {"blackbody", Holds::either}, {"spectrum", Holds::either}};
 
-/// Null: version 3 does not know it, and leaves the parameter out.
+/// Null: the type is unknown and version 3 ignores the parameter.
 const Type* type_of(const Parameter& p, Importing* lenient) {
   std::vector<std::string> known;
   for (const Type& t : types) {
@@ -38,7 +38,7 @@ const Type* type_of(const Parameter& p, Importing* lenient) {
   throw Error(fmt::format("there is no parameter type '{}'{}", p.type, suggestion(p.type, known)), p.at);
 }
 
-/// "float radius" into its two words.
+/// Splits "float radius" into type and name.
 void name_parameter(Parameter& p, std::string_view declaration) {
   const std::string_view space = " \t";
   const size_t begin = declaration.find_first_not_of(space);
@@ -57,7 +57,7 @@ void read_value(Lexer& lexer, Parameter& p, Holds holds) {
                             : fmt::format("\"{} {}\" needs {}, not '{}'", p.type, p.name, wanted, token.text.substr(0, 60)),
                 lexer.place(token));
   };
-  const bool any = lexer.lenient != nullptr;  // what does not fit is told with the whole list
+  const bool any = lexer.lenient != nullptr;  // fits_version_3 checks the complete list
   if (token.is(Token::Kind::string) && (any || holds != Holds::numbers)) {
     const std::string text = Lexer::unescaped(token.text);
     if (!any && holds == Holds::truths && text != "true" && text != "false") wrong("true or false");
@@ -73,7 +73,7 @@ void read_value(Lexer& lexer, Parameter& p, Holds holds) {
   }
 }
 
-/// How many numbers of a type belong together; 1: each stands for itself.
+/// The number of values that form one item of a type.
 size_t width_of(std::string_view type) {
   if (type == "point2" || type == "vector2" || type == "spectrum") return 2;
   for (const char* three : {"point", "point3", "vector", "vector3", "normal", "normal3", "rgb", "color", "xyz"})
@@ -81,7 +81,7 @@ size_t width_of(std::string_view type) {
   return 1;
 }
 
-/// Version 3 leaves out a parameter whose values are none of its type, and of a list what is too much. False: it is left out.
+/// Version 3 ignores a parameter with values of another type, and surplus values of a list. False: the parameter is ignored.
 bool fits_version_3(Parameter& p, Holds holds, Importing& importing) {
   const auto leave_out = [&](const char* why) {
     importing.inexact(fmt::format("\"{} {}\" {}: it is left out, as by version 3 of pbrt", p.type, p.name, why), p.at);
@@ -138,7 +138,7 @@ Parameters Parameters::read(Lexer& lexer, std::string of, Location at) {
 }
 
 void Parameters::add(Parameter p) {
-  constexpr size_t most = 1000;  // of which the largest have some 30
+  constexpr size_t most = 1000;  // the largest directives have about 30
   if (own.size() + overridden.size() >= most) throw Error(fmt::format("{} has more than {} parameters", of, most), p.at);
   if (const auto earlier = std::ranges::find(own, p.name, &Parameter::name); earlier != own.end()) {
     overridden.emplace_back(p.name, earlier->at);

@@ -1,7 +1,7 @@
 // PbrtImporter: scenes of pbrt, versions 3 and 4.
 //
-// Conventions are those of Pharr, Jakob & Humphreys 2016 and 2023, Physically Based Rendering, third and fourth edition, and of
-// their pages "pbrt-v3 Input File Format" and "pbrt-v4 Input File Format".
+// The conventions are those of Pharr, Jakob & Humphreys 2016 and 2023, Physically Based Rendering, third and fourth edition,
+// and of the pages "pbrt-v3 Input File Format" and "pbrt-v4 Input File Format".
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace etendue {
 
 namespace {
 
-/// Comments often keep a line of another version.
+/// Comments are removed since they often contain a directive of another version.
 std::string without_comments(std::string_view text) {
   std::string kept;
   bool quoted = false, comment = false;
@@ -25,7 +25,7 @@ std::string without_comments(std::string_view text) {
   return kept;
 }
 
-/// 3 or 4, by what a file uses. The film says it in nearly every file; where it does not, words that only one of them has.
+/// The version, 3 or 4. In nearly every file the film's type decides; otherwise words that exist only in one version.
 int version_of(std::string_view whole) {
   const std::string text = without_comments(whole.substr(0, size_t(4) << 20));
   for (size_t film = text.find("Film"); film != text.npos; film = text.find("Film", film + 4)) {

@@ -1,4 +1,4 @@
-// Parts of spheres, paraboloids and hyperboloids, which are made of triangles.
+// Partial spheres, paraboloids and hyperboloids, as triangle meshes.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace etendue::pbrt {
 
 namespace {
 
-/// A curve in the plane turned around the z axis, with what its tangents say of the surface's normals.
+/// A point of a profile curve that is revolved around the z axis, with the surface normal.
 struct Profile {
   double radius, z, normal_radius, normal_z;  ///< the normal points outwards
 };
@@ -50,7 +50,7 @@ Shape make_revolved(Reader& reader, const std::string& type, const Parameters& p
       if (type == "hyperboloid") {
         const double qx = (1 - v) * p1[0] + v * p2[0], qy = (1 - v) * p1[1] + v * p2[1];
         x = qx * c - qy * s, y = qx * s + qy * c, z = (1 - v) * p1[2] + v * p2[2];
-        // dp/du x dp/dv, with dp/du = (-y, x, 0).
+        // n = dp/du x dp/dv, with dp/du = (-y, x, 0).
         const double dx = p2[0] - p1[0], dy = p2[1] - p1[1], tx = dx * c - dy * s, ty = dx * s + dy * c, tz = p2[2] - p1[2];
         nx = x * tz, ny = y * tz, nz = -y * ty - x * tx;
       } else {

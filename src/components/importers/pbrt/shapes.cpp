@@ -1,4 +1,4 @@
-// Shapes of pbrt that are no meshes.
+// Shapes of pbrt other than meshes.
 
 #include <fmt/format.h>
 
@@ -71,7 +71,7 @@ std::array<double, 3> between(const std::array<double, 3>& a, const std::array<d
   return {(1 - t) * a[0] + t * b[0], (1 - t) * a[1] + t * b[1], (1 - t) * a[2] + t * b[2]};
 }
 
-/// Segments of degree 2 as Bézier curves of degree 3, which run through the same places.
+/// Raises the segments of degree 2 to cubic Bézier curves with the same points.
 Points cubic(const Points& points, bool bezier) {
   Points all;
   const size_t step = bezier ? 2 : 1;
@@ -111,8 +111,8 @@ Shape curve(Reader& reader, const Parameters& p) {
   if (w0 == w1)
     radii = {w0 / 2};
   else
-    // The width changes evenly from end to end, which the same numbers at the control points give: for a B-spline counted from
-    // the second to the last but one, which its ends are nearest to.
+    // The width changes linearly from end to end, which control values in linear steps produce. For a B-spline the steps are
+    // counted from the second to the last but one control point, which are nearest to its ends.
     for (size_t i = 0; i < points.size(); ++i) {
       const double t = spline ? (double(i) - 1) / double(points.size() - 3) : double(i) / double(points.size() - 1);
       radii.push_back(std::max(0.0, ((1 - t) * w0 + t * w1) / 2));
@@ -133,7 +133,7 @@ Shape curve(Reader& reader, const Parameters& p) {
   const std::vector<double>& normals = p.numbers("N", 3);
   if (type == "ribbon" && normals.size() >= 6) {
     set_member(*object, "form", "ribbon", at);
-    // One at either end; between them a plain mixture, not pbrt's turn.
+    // One normal at either end, interpolated linearly in between, not by a rotation as in pbrt.
     std::vector<double> list;
     for (size_t i = 0; i < points.size(); ++i)
       for (size_t c = 0; c < 3; ++c) {
@@ -167,7 +167,7 @@ Shape make_shape(Reader& reader, const std::string& type, Parameters& p) {
   else
     return make_mesh(reader, type, p);
   if (!shape.object) return shape;
-  // What is made of triangles was turned over already.
+  // Triangle meshes were reversed already.
   shape.turned = reader.state.reversed && shape.object->class_info().name != "TriangleMesh";
   return shape;
 }

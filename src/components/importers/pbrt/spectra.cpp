@@ -1,4 +1,4 @@
-// Spectra as pbrt writes them: RGB, lists, names, black bodies.
+// Converts pbrt's spectra: RGB, lists, names, black bodies.
 
 #include <fmt/format.h>
 
@@ -12,13 +12,13 @@ namespace etendue::pbrt {
 
 namespace {
 
-/// pbrt's names of glasses, and what they are here. It says "F5", "F10" and "F11" for SF5, SF10 and SF11.
+/// pbrt's names of glasses, and the names here. pbrt's "F5", "F10" and "F11" are SF5, SF10 and SF11.
 constexpr std::pair<const char*, const char*> glasses[] = {
     {"BK7", "N-BK7"}, {"BAF10", "N-BAF10"}, {"FK51A", "N-FK51A"}, {"LASF9", "N-LASF9"}, {"F5", "N-SF5"},
     {"SF5", "N-SF5"}, {"F10", "N-SF10"},    {"SF10", "N-SF10"},   {"F11", "N-SF11"},    {"SF11", "N-SF11"},
 };
 
-/// Why there is no spectrum of a name that begins as pbrt's own do.
+/// Throws Error for an unknown name with one of pbrt's prefixes.
 [[noreturn]] void fail_unknown_spectrum(const std::string& name) {
   std::vector<std::string> known;
   for (const auto& [theirs, ours] : glasses) known.push_back(std::string("glass-") + theirs);
@@ -28,8 +28,8 @@ constexpr std::pair<const char*, const char*> glasses[] = {
   throw Error(fmt::format("the spectrum '{}' is not known here{}", name, suggestion(name, known)));
 }
 
-/// From pairs of wavelength [nm] and value. v3 goes on with the first and last value, v4 with nothing.
-/// v3 takes them in any order.
+/// From pairs of wavelength [nm] and value. Outside their range v3 continues the first and last value, v4 is 0. v3 accepts them
+/// in any order.
 Color from_pairs(const Reader& reader, const Parameter& p) {
   if (p.numbers.empty() || p.numbers.size() % 2 != 0)
     throw Error(fmt::format("'{}' must be pairs of a wavelength and a value", p.name), p.at);
@@ -47,7 +47,8 @@ Color from_pairs(const Reader& reader, const Parameter& p) {
   return table_spectrum(wavelengths, values);
 }
 
-/// A file of wavelengths and values. v3 goes on with black where there is none; an index of 0 would be none.
+/// A file of wavelengths and values. If it is missing, v3 continues with black; for an index of refraction 0 is invalid, so
+/// this throws Error.
 Color from_file(Reader& reader, const Parameters& parameters, const Parameter& p, Use use) {
   try {
     return file_spectrum(FilePath{reader.importing.file(p.strings[0], p.at, parameters.folder), {}});
@@ -58,7 +59,7 @@ Color from_file(Reader& reader, const Parameters& parameters, const Parameter& p
   }
 }
 
-/// With a highest value of 1, wherever that lies.
+/// Normalized to a maximum of 1.
 Color normalized_blackbody(double kelvin, Location at) {
   if (!(kelvin > 0)) throw Error("a black body's temperature must be more than 0 K", at);
   return scaled_spectrum(1 / highest_planck(kelvin), blackbody_spectrum(kelvin));
@@ -74,7 +75,7 @@ void tell_cut(Reader& reader, const Parameter& p) {
   reader.importing.inexact(fmt::format("'{}' is at most 1 here: more light would leave than arrives", p.name), p.at);
 }
 
-/// At most 1 at every wavelength.
+/// Clamps to at most 1 at every wavelength.
 Color cut_reflectance(Reader& reader, const Color& color, const Parameter& p) {
   if (range_of(*color, ColorUse::reflectance).most <= 1.0001) return color;
   tell_cut(reader, p);
@@ -112,7 +113,7 @@ Color located(const Parameter& p, const auto& make) {
   }
 }
 
-/// With a luminance of 1, as v4 makes every light's spectrum.
+/// Normalized to a luminance of 1, as v4 does for every light.
 Color with_unit_luminance(const Color& color, const Parameter& p) {
   const double y = double(to_xyz(*color, ColorUse::radiance).y);
   if (!(y > 0)) throw Error(fmt::format("the light of '{}' has no brightness, by which pbrt divides it", p.name), p.at);
@@ -127,8 +128,8 @@ Color named_spectrum(const std::string& name) {
     for (const auto& [theirs, ours] : glasses)
       if (glass == theirs) return glass_index(ours);
   }
-  // D60 as the ACES state it, of the chromaticity (0.32168, 0.33767): 0.728 of the way from D50 to D65, which comes within
-  // 0.0007.
+  // The ACES D60 illuminant has the chromaticity (0.32168, 0.33767); 0.728 of the way from D50 to D65 comes within 0.0007 of
+  // it.
   if (name == "illum-acesD60") {
     const Color d50 = illuminant_spectrum("D50"), d65 = illuminant_spectrum("D65");
     std::vector<float> wavelengths, power;
@@ -160,14 +161,14 @@ Color spectrum_of(Reader& reader, const Parameters& parameters, const Parameter&
       if (p.numbers.empty() || !p.strings.empty() || p.numbers.size() > 2)
         throw Error(fmt::format("'{}' must be a temperature in kelvins", p.name), p.at);
       color = normalized_blackbody(p.numbers[0], p.at);
-      // v3 has a scale as a second number.
+      // v3 has an optional scale as a second number.
       if (p.numbers.size() == 2 && p.numbers[1] != 1) color = scaled_spectrum(p.numbers[1], color);
     } else if (p.is("spectrum") && !p.strings.empty()) {
       color = by_name(reader, parameters, p, use);
     } else if (p.is("spectrum")) {
       color = from_pairs(reader, p);
     } else if (p.is("float") && p.numbers.size() == 1) {
-      // A number where a spectrum is expected is the same at all wavelengths.
+      // A number instead of a spectrum is constant over wavelengths.
       color = flat_spectrum(float(p.numbers[0]));
     } else {
       throw Error(fmt::format("'{}' of {} must be a spectrum, not a {}", p.name, parameters.of, p.type), p.at);
@@ -212,7 +213,7 @@ Color metal_of(Reader& reader, const Parameters& parameters, const std::string& 
       return imaginary ? copper->imaginary() : copper;
     }
   };
-  // A metal whose n and k are both named is that metal, by its name.
+  // If n and k name the same metal, that metal is used by its name.
   const auto named = [](const Parameter* p, const char* ending) {
     const std::string name = !p ? std::string("metal-Cu") + ending : p->strings.size() == 1 ? p->strings[0] : std::string();
     const std::string_view end = ending;
@@ -223,7 +224,7 @@ Color metal_of(Reader& reader, const Parameters& parameters, const std::string& 
     if (metal == known && named(k, "-k") == known) return metal_index(known);
   const auto real = [](Color c) {
     if (!c->imaginary()) return c;
-    // The real part alone, as a table.
+    // Only the real part, as a table.
     std::vector<float> wavelengths, n;
     for (int nm = 360; nm <= 830; nm += 5) {
       wavelengths.push_back(float(nm));

@@ -1,4 +1,4 @@
-// Which media lie on the sides of surfaces, and around the camera.
+// The media on the two sides of surfaces, and around the camera.
 
 #include "components/importers/surroundings.h"
 

@@ -1,4 +1,4 @@
-// Textures, and parameters that may name one.
+// Converts textures, and parameters that may refer to one.
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@ namespace etendue::pbrt {
 
 namespace {
 
-/// 2D textures look at (s, t), which "mapping" makes of (u, v) or of a place: the map is put behind such a projection.
+/// 2D textures are evaluated at (s, t), which "mapping" computes from (u, v) or a position: wraps the map in that mapping.
 Ref<Component> mapped(Reader& reader, const Parameters& p, Ref<Component> map) {
   const std::string mapping = p.text("mapping", "uv");
   const auto within = [&](const char* class_name) {
@@ -43,7 +43,7 @@ Ref<Component> mapped(Reader& reader, const Parameters& p, Ref<Component> map) {
     const DoubleVector3 a{v1.x, v1.y, v1.z}, b{v2.x, v2.y, v2.z}, c = cross(a, b);
     const Transform projection(Transform::DoubleMatrix{a.x, a.y, a.z, du, b.x, b.y, b.z, dv, c.x, c.y, c.z, 0});
     if (!projection.valid()) throw Error("v1 and v2 must be two directions", p.place("v1"));
-    // v3 projects the places of the world themselves, whatever the directive's transform.
+    // v3 maps world-space positions, ignoring the directive's transform.
     const Ref<Component> outer = within("PlanarMap");
     if (reader.version != 3) return in_world(outer, projection.inverse());
     set_member(*outer, "world", true, p.at);
@@ -51,7 +51,7 @@ Ref<Component> mapped(Reader& reader, const Parameters& p, Ref<Component> map) {
     return outer;
   }
   if (mapping == "spherical" || mapping == "cylindrical") {
-    // pbrt's s and t are (1 - v, u) of a SphericalMap, and (u + 1/2, v) of a CylindricalMap.
+    // pbrt's (s, t) is (1 - v, u) of a SphericalMap, and (u + 1/2, v) of a CylindricalMap.
     const bool sphere = mapping == "spherical";
     if (!sphere && reader.version == 3)
       reader.importing.inexact("t of a cylindrical mapping is the height, where v3 has the cosine of the angle to the axis",
@@ -70,7 +70,7 @@ Ref<Component> mapped(Reader& reader, const Parameters& p, Ref<Component> map) {
 Ref<Component> checkerboard(Reader& reader, const Parameters& p, const auto& value) {
   const Location at = p.at;
   const Value first = value({"tex1"}, 1.0), second = value({"tex2"}, 0.0);
-  p.ignore({"aamode"});  // how it is averaged over a pixel
+  p.ignore({"aamode"});  // filtering within a pixel
   if (p.integer("dimension", 2) == 2) {
     const Ref<Component> map = reader.make("CheckerMap", at);
     set_map(*map, "first", first, at);
@@ -78,7 +78,7 @@ Ref<Component> checkerboard(Reader& reader, const Parameters& p, const auto& val
     set_member(*map, "repeat", Numbers{{1, 1, 1}, 1, Dimension::none}, at);
     return mapped(reader, p, map);
   }
-  // Cubes of the texture's own coordinates, written out in those of the world.
+  // Cubes in texture space, written as a formula of world-space coordinates.
   const Transform from_world = reader.state.ctm[0].inverse();
   const auto& m = from_world.exact();
   const auto row = [&](size_t r) {
@@ -137,7 +137,7 @@ Ref<Component> noise(Reader& reader, const Parameters& p, const std::string& typ
   return outer;
 }
 
-/// How nearly the surface's normal runs along "dir" of the directive's coordinates, either way: its cosine.
+/// The absolute cosine between the surface normal and "dir", which is in the directive's coordinates.
 Ref<Component> along_direction(Reader& reader, const Parameters& p) {
   const DoublePoint3 given = p.point("dir", {0, 1, 0});
   const auto& m = reader.state.ctm[0].exact();
@@ -151,7 +151,7 @@ Ref<Component> along_direction(Reader& reader, const Parameters& p) {
   return cosine;
 }
 
-/// 1 within dots: in every other unit square, by chance, is one of radius 0.35, moved a little.
+/// 1 within dots: every other unit square, at random, contains a dot of radius 0.35, displaced a little.
 Ref<Component> dots(Reader& reader, const Parameters& p) {
   reader.importing.inexact("the texture 'dots' has the same character as pbrt's: its dots are in other squares", p.at);
   const auto chance = [](double a, double b) {
@@ -217,7 +217,7 @@ Ref<Component> make_map(Reader& reader, const std::string& type, bool spectrum, 
                 at);
 }
 
-/// Version 3 has only those that were made before, and otherwise what it takes without any.
+/// A texture that does not exist: version 3 uses the parameter's default.
 Value texture(Reader& reader, const Parameter& p, bool spectrum, double otherwise) {
   if (p.strings.size() != 1) throw Error(fmt::format("'{}' must name one texture", p.name), p.at);
   const auto& textures = spectrum ? reader.spectrum_textures : reader.float_textures;

@@ -1,4 +1,4 @@
-// Film and filter.
+// Converts film and filter.
 
 #include <fmt/format.h>
 
@@ -46,7 +46,7 @@ void set_filter(Reader& reader, Component& image) {
     make("TriangleFilter", 2);
   } else if (s.type == "gaussian") {
     make("GaussianFilter", v3 ? 2 : 1.5);
-    // v3: exp(-alpha r^2), v4: a normal distribution; both lowered to end at 0.
+    // v3: exp(-alpha r^2), v4: a normal distribution; both shifted down to reach 0 at the radius.
     const double deviation = v3 ? std::sqrt(1 / (2 * std::max(p.number("alpha", 2), 1e-3))) : p.number("sigma", 0.5);
     set_member(*filter, "deviation", std::clamp(deviation, 0.05, 16.0), p.at);
   } else if (s.type == "mitchell") {
@@ -84,7 +84,7 @@ void set_output(Reader& reader, Component& job) {
   const Parameters& p = reader.film.parameters;
   const std::string named = p.text("filename", "pbrt.exr");
   const Location at = p.place("filename");
-  // A scene says what its picture is called, not where on this machine it goes.
+  // Only the file name is used: a scene does not decide the folder on this machine.
   std::filesystem::path path = std::filesystem::path(named).filename();
   if (path != named) reader.importing.inexact(fmt::format("the picture is written as '{}' here", path.string()), at);
   const std::string ending = path.extension().string();
@@ -98,7 +98,7 @@ void set_output(Reader& reader, Component& job) {
   }
   const Ref<Component> written = reader.make(output, at);
   set_member(*written, "file", FilePath{path.string(), {}}, at);
-  // Its RGB are those of the colour space that was stated before the film.
+  // Its RGB values are in the colour space that was set before the film.
   if (p.space && p.space->name != "srgb") {
     if (written->class_info().find("color_space"))
       set_member(*written, "color_space", p.space->name, at);
@@ -140,13 +140,13 @@ void set_film(Reader& reader, Component& job) {
     reader.importing.inexact("the film of buckets of wavelengths is one of X, Y and Z", p.at);
     p.ignore({"nbuckets", "lambdamin", "lambdamax"});
   }
-  p.ignore({"savefp16", "diagonal"});  // the latter matters to one camera, which has asked
+  p.ignore({"savefp16", "diagonal"});  // "diagonal" matters only to the realistic camera, which has read it already
   for (const char* name : {"maxcomponentvalue", "maxsampleluminance"})
     if (p.has(name)) reader.importing.inexact(fmt::format("'{}' is left out: no light is cut off", name), p.place(name));
   set_output(reader, job);
   if (reader.film.given) p.tell_unused(reader.importing);
   set_member(job, "image", image, p.at);
-  // pbrt's pictures are clipped at 1 and encoded as sRGB, nothing else.
+  // pbrt's images are only clipped at 1 and encoded as sRGB.
   set_member(job, "tone_map", reader.make("ExposureToneMap", p.at), p.at);
 }
 

@@ -1,4 +1,4 @@
-// What stands in the world: objects, their materials and emission, instances.
+// Objects of the world, their materials and emission, instances.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,7 +28,7 @@ bool front_matters(const Reader& reader) {
 
 namespace {
 
-/// pbrt turns the normal of a quadric over where its transform mirrors, when a ray meets it but not when its light is sampled.
+/// If the transform mirrors, pbrt reverses the normal of a quadric at ray hits but not when its light is sampled.
 void tell_mirrored(Reader& reader, const std::string& type, Location at) {
   for (const char* turned : {"sphere", "cylinder", "disk", "cone", "curve"})
     if (type == turned && reader.state.ctm[0].flips() && reader.state.ctm[0] == reader.state.ctm[1] && front_matters(reader))
@@ -38,7 +38,7 @@ void tell_mirrored(Reader& reader, const std::string& type, Location at) {
           at);
 }
 
-/// How much of a shape is there: v3 leaves out nothing but what its alpha is 0 of.
+/// The opacity of a shape: in v3 it is 0 where alpha is 0, else 1.
 Value opacity_of(Reader& reader, const Parameters& p) {
   if (!p.has("alpha")) return {};
   Value alpha = number_map(reader, p, {"alpha"}, 1);
@@ -47,7 +47,7 @@ Value opacity_of(Reader& reader, const Parameters& p) {
   return Value(formula(reader, p.at, "step(0.00001, alpha)", {{"alpha", alpha}}), p.at);
 }
 
-/// The light of a shape with holes: none comes out of them.
+/// The emission of a shape with holes: multiplied by alpha.
 Ref<Component> with_holes(Reader& reader, const Ref<Component>& emission, const Value& alpha, Location at) {
   if (alpha.none()) return emission;
   if (const Number* n = alpha.as<Number>(); n && n->value >= 1) return emission;
@@ -58,7 +58,7 @@ Ref<Component> with_holes(Reader& reader, const Ref<Component>& emission, const 
   return own;
 }
 
-/// Whether pbrt makes no light of a shape that should emit.
+/// Whether pbrt creates no light for a shape that should emit.
 bool leaves_light_out(Reader& reader, Location at) {
   const State& state = reader.state;
   if (reader.version == 3) {
@@ -74,8 +74,8 @@ bool leaves_light_out(Reader& reader, Location at) {
   return true;
 }
 
-/// A light whose alpha is the number 0 is in the way of none of pbrt's rays, and lights what surfaces choose it for: the lamp
-/// that is not in the picture.
+/// In pbrt no ray hits a light whose alpha is the constant 0, but surfaces still sample it by next event estimation: a lamp
+/// that is invisible in the image.
 void light_unseen(Reader& reader, Component& object, const Ref<Component>& emission, Location at) {
   set_emission(object, emission, at);
   set_member(object, "shader", reader.make("PassThrough", at), at);
@@ -88,10 +88,10 @@ void light_unseen(Reader& reader, Component& object, const Ref<Component>& emiss
 
 }  // namespace
 
-// v3 asks a shape's parameters before those of its material, whatever the material asks for.
+// In v3 a shape's parameters override those of its material, for any parameter that the material reads.
 size_t Reader::material_for(const Parameters& shape) {
   if (version != 3) return state.material;
-  constexpr std::string_view of_shapes[] = {"alpha", "shadowalpha", "filename", "type", "scheme"};  // whatever a material asks
+  constexpr std::string_view of_shapes[] = {"alpha", "shadowalpha", "filename", "type", "scheme"};  // stay with the shape
   const Parameters& of = materials[state.material].parameters;
   std::vector<const Parameter*> said;
   for (const Parameter& p : shape.own)
@@ -99,7 +99,7 @@ size_t Reader::material_for(const Parameters& shape) {
   if (said.empty()) return state.material;
   std::string key = std::to_string(state.material);
   Material changed{materials[state.material].type, {}, of, {}};
-  changed.parameters.forget();  // what nothing reads of it was told
+  changed.parameters.forget();  // unused parameters of the original were reported already
   changed.parameters.overridden.clear();
   for (const Parameter* p : said) {
     p->used = true;
@@ -153,7 +153,7 @@ void Reader::add_shape(const std::string& type, Parameters&& p) {
     unseen ? light_unseen(*this, object, emission, at) : set_emission(object, with_holes(*this, emission, alpha, at), at);
   }
   if (unseen) return add(made.object);
-  // What is inside is where the normal does not point.
+  // The interior is the side that the normal does not point to.
   const std::string &inside = made.turned ? state.outside : state.inside, &outside = made.turned ? state.inside : state.outside;
   if (!inside.empty())
     if (const Ref<Component> medium = medium_for(*this, inside, transform, at)) set_member(object, "interior", medium, at);
@@ -209,7 +209,7 @@ Ref<Component> Reader::shader_for(const Waiting& w) {
   Ref<Component> shader =
       w.named_material.empty() ? shader_of(*this, w.material, w.at) : shader_named(*this, w.named_material, w.at);
   if (w.alpha.none()) return shader;
-  // A mask for each material and opacity, however many shapes have them.
+  // One mask for each pair of material and opacity, shared by all shapes with them.
   const auto* map = w.alpha.as<Ref<Component>>();
   const std::string key = map ? fmt::format("{}", static_cast<const void*>(map->get())) : write_value(w.alpha);
   Ref<Component>& mask = masked_[{shader.get(), key}];
@@ -243,7 +243,7 @@ void Reader::finish_materials() {
     }
   if (!errors.empty()) throw Errors(std::move(errors));
   turned = false;
-  // What nothing has may still be wrong, which is worth a note and no more.
+  // Mistakes in materials that no object uses are only warnings.
   for (size_t i = 0; i < materials.size(); ++i) try {
       if (!materials[i].shaders[1]) shader_of(*this, i, materials[i].parameters.at);
     } catch (const Error& e) {

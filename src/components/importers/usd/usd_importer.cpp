@@ -1,5 +1,5 @@
-// UsdImporter: Universal Scene Description, read by Pixar's own library in a process of its own (a Python program beside this
-// library), which gives a .glb: what is read here is always glTF, and checked as such.
+// UsdImporter: Universal Scene Description, read by Pixar's own library in a process of its own (a Python program installed
+// beside this library), which converts the file to .glb; that output is read and checked like any other glTF file.
 
 #include <cstdlib>
 

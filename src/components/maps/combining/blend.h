@@ -1,5 +1,5 @@
 #pragma once
-// What maps share that mix two others by a number computed from the point.
+// Base classes of maps that mix two other maps by a number computed from the point.
 
 #include "components/maps/footprint.h"
 #include "components/maps/noise.h"
@@ -33,13 +33,13 @@ class BlendMap : public ObjectMap, public BoundedMap {
 
  protected:
   BlendMap(float a, float b) : first(etendue::constant(a)), second(etendue::constant(b)) {}
-  /// In [0, 1]; the mean over the footprint.
+  /// The weight of the second map in [0, 1], averaged over the footprint.
   virtual float fraction(const SurfacePoint&) const = 0;
   virtual const char* first_name() const { return "first"; }
   virtual const char* second_name() const { return "second"; }
 };
 
-/// A texture that is cut out of a solid block.
+/// A solid texture: a function of the position in space.
 class SolidMap : public BlendMap {
  public:
   float size = 1;

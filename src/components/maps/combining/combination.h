@@ -1,12 +1,12 @@
 #pragma once
-// What maps share that compute with other maps.
+// Base class and helpers of maps that compute with other maps.
 
 #include "components/volumes/bounded_map.h"
 #include "etendue/object_map.h"
 
 namespace etendue {
 
-/// Each value, or 0 where it is infinite or no number.
+/// Each value, or 0 where the value is infinite or NaN.
 inline Spectrum finite_or_zero(const Spectrum& s) {
   const detail::Lanes v = s.lanes(), zero{};
   return Spectrum((v - v) == zero ? v : zero);  // NOLINT(misc-redundant-expression): an infinity less itself is not 0
@@ -15,21 +15,21 @@ inline Spectrum finite_or_zero(const Spectrum& s) {
 /// a / b, and 0 where b is 0.
 inline Spectrum safe_quotient(const Spectrum& a, const Spectrum& b) { return finite_or_zero(a / b); }
 
-/// A power that is 0 for a negative base and where it would be infinite.
+/// The power, or 0 for a negative base and where the power would be infinite.
 inline float safe_power(float base, float exponent) {
   if (!(base >= 0)) return 0;
   const float x = std::pow(base, exponent);
   return std::isfinite(x) ? x : 0;
 }
 
-/// What a computed spectrum may be for a use: between 0 and 1 as a reflectance, and never negative.
+/// Clamps a computed spectrum to the range of its use: to [0, 1] as a reflectance, else to values that are not negative.
 inline Spectrum as_used(const Spectrum& s, ColorUse use) {
   const detail::Lanes v = finite_or_zero(s).lanes(), zero{}, one = zero + 1.0f, low = v > zero ? v : zero;
   return Spectrum(use == ColorUse::reflectance ? (low < one ? low : one) : low);
 }
 
-/// Two maps, or three where the operation is associative. Of colours it acts on the spectra, at the path's wavelengths; of
-/// numbers, on the maps' numbers.
+/// An operation on two maps, or on three where it is associative. color() applies the operation to the maps' spectra at the
+/// path's wavelengths, scalar() to the maps' numbers.
 class CombinedMap : public ObjectMap, public BoundedMap {
  public:
   void prepare() override {
@@ -56,13 +56,13 @@ class CombinedMap : public ObjectMap, public BoundedMap {
  protected:
   CombinedMap(float a, float b) : first(etendue::constant(a)), second(etendue::constant(b)) {}
   virtual Spectrum apply(const Spectrum&, const Spectrum&) const = 0;
-  /// Of what `apply` gives, from those of what it is given.
+  /// Upper bound of the result of `apply`, from the upper bounds of its arguments.
   virtual float bound(float, float) const { return infinity; }
-  /// What the maps after the first are asked for as.
+  /// The ColorUse with which the maps after the first are evaluated.
   virtual ColorUse use_of_others(ColorUse use) const { return use; }
 };
 
-/// For factors: a light times a light would have the white's spectrum twice.
+/// The ColorUse of a factor: the product of two radiances would contain the spectrum of the white twice.
 inline ColorUse use_of_factor(ColorUse use) { return use == ColorUse::radiance ? ColorUse::coefficient : use; }
 
 template <class Map>

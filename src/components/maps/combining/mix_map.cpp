@@ -26,7 +26,7 @@ class MixMap final : public BlendMap {
  private:
   float fraction(const SurfacePoint& p) const override {
     const float t = amount->scalar(p);
-    return t > 0 ? std::min(t, 1.0f) : 0;  // what is no number becomes 0
+    return t > 0 ? std::min(t, 1.0f) : 0;  // NaN becomes 0
   }
 };
 

@@ -9,8 +9,8 @@ namespace {
 enum class Along : std::uint8_t { u, v, input };
 enum class Interpolation : std::uint8_t { step, linear, smooth };
 
-// Between two positions the weight of the second colour is h(t), and the mean over [a, b] follows from its integral H(t): 0,
-// t^2 / 2, or t^3 - t^4 / 2 for h = 0, t and 3 t^2 - 2 t^3.
+// Between two positions the weight of the second colour is h(t). Its mean over [a, b] follows from its integral H(t), which is
+// 0, t^2 / 2 or t^3 - t^4 / 2 for h = 0, t and 3 t^2 - 2 t^3.
 class RampMap final : public ObjectMap {
  public:
   static void describe(Description<RampMap>& d) {
@@ -43,7 +43,7 @@ class RampMap final : public ObjectMap {
   Spectrum color(const SurfacePoint& p, const Wavelengths& w, ColorUse use) const override {
     Spectrum sum;
     weigh(p, [&](size_t i, float weight) { sum += weight * colors[i]->color(p, w, use); });
-    return use == ColorUse::reflectance ? clamp(sum, 0, 1) : sum;  // weights add up to 1 but for rounding
+    return use == ColorUse::reflectance ? clamp(sum, 0, 1) : sum;  // by rounding the sum of weights may exceed 1
   }
   float scalar(const SurfacePoint& p) const override {
     float sum = 0;
@@ -58,7 +58,7 @@ class RampMap final : public ObjectMap {
   Interpolation interpolation = Interpolation::linear;
 
  private:
-  /// Gives every colour that counts with its weight.
+  /// Calls use(i, weight) for every colour of positive weight.
   template <class Use>
   void weigh(const SurfacePoint& p, Use use) const {
     float x = 0, width = 0;
@@ -83,7 +83,7 @@ class RampMap final : public ObjectMap {
       if (second > 0) use(i + 1, second);
       return;
     }
-    float before = std::max(0.0f, std::min(high, positions[0]) - low) / width;  // of the colour at i, so far
+    float before = std::max(0.0f, std::min(high, positions[0]) - low) / width;  // weight of colour i from before position i
     for (size_t i = 0; i < last; ++i) {
       const float length = positions[i + 1] - positions[i];
       const float a = clamp((low - positions[i]) / length, 0, 1), b = clamp((high - positions[i]) / length, 0, 1);

@@ -1,4 +1,4 @@
-// A map's range onto another.
+// RemapMap: maps one range of a map's values linearly to another range.
 
 #include "combination.h"
 

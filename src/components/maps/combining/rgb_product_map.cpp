@@ -1,4 +1,4 @@
-// RgbProductMap: red, green and blue of two maps, multiplied before they become a spectrum.
+// RgbProductMap: the product of two maps in RGB, before it is converted to a spectrum.
 
 #include <algorithm>
 
@@ -8,9 +8,9 @@
 namespace etendue {
 namespace {
 
-// Formats that count in red, green and blue (glTF, MTL, UsdPreviewSurface) mean r = f_r * a_r * b_r + g_r by "a factor times a
-// texture". A spectrum made of the product has the product's colour; the product of the three spectra has it only where they
-// are grey, since a spectrum's colour is not linear in factors that differ by wavelength.
+// In formats that compute in RGB (glTF, MTL, UsdPreviewSurface) "a factor times a texture" means r = f_r * a_r * b_r + g_r. A
+// spectrum made from this product has the product's colour. The product of the three spectra has this colour only if they are
+// grey, since the RGB of a product of spectra is not the product of their RGB.
 class RgbProductMap final : public ObjectMap, public RgbSource {
  public:
   static void describe(Description<RgbProductMap>& d) {
@@ -58,7 +58,7 @@ class RgbProductMap final : public ObjectMap, public RgbSource {
       out[i] = x > 0 ? x : 0;
     }
   }
-  /// Not known (0) when it is not known of a part.
+  /// 0 (not known) if the largest number of one of the two maps is not known.
   float largest() const override {
     const float most = first_.largest() * second_.largest() * std::max({factor.x, factor.y, factor.z, 0.0f});
     return most > 0 && std::isfinite(most) ? most + std::max({offset.x, offset.y, offset.z, 0.0f}) : 0;
@@ -69,7 +69,7 @@ class RgbProductMap final : public ObjectMap, public RgbSource {
   std::string color_space = "srgb";
 
  private:
-  /// A map as three numbers.
+  /// One of the two maps, evaluated as RGB: from its RgbSource, its constant colour, or its number as a grey.
   class Part {
    public:
     void take(const ObjectMap& map, const RgbSpace& space) {
@@ -82,7 +82,7 @@ class RgbProductMap final : public ObjectMap, public RgbSource {
         std::fill_n(constant_, 3, same->at(550, ColorUse::coefficient));
         return;
       }
-      // A colour's numbers in this space are what its white looks like when it is reflected.
+      // The RGB of a colour in this space: that of the colour as a reflectance under the space's white.
       const Xyz xyz = to_xyz(*same, ColorUse::reflectance, space.illuminant.get());
       for (size_t i = 0; i < 3; ++i)
         constant_[i] = float(space.from_xyz[3 * i] * double(xyz.x) + space.from_xyz[3 * i + 1] * double(xyz.y) +

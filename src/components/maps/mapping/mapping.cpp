@@ -4,20 +4,21 @@
 
 namespace etendue {
 
-// In the tangent plane, with a and b the gradients of u and v there and n the normal, the steps that change u by 1 and leave v
-// are along b x n: the dual basis is (b x n) / (n . (a x b)) and (n x a) / (n . (a x b)).
+// Let a and b be the gradients of u and v, projected onto the tangent plane, and n the normal. The step that changes u by 1 and
+// keeps v is along b x n: the tangents are the dual basis (b x n) / (n . (a x b)) and (n x a) / (n . (a x b)).
 void set_uv(SurfacePoint& p, const Projected& to) {
   p.uv = to.uv;
   const Vector3 n(p.normal);
   Vector3 a = to.gradient_u - dot(to.gradient_u, n) * n, b = to.gradient_v - dot(to.gradient_v, n) * n;
   float aa = dot(a, a), bb = dot(b, b), d = dot(n, cross(a, b));
-  if (!(aa + bb > 0) || !std::isfinite(aa + bb)) {  // the coordinates do not change here: any very long steps will do
+  if (!(aa + bb > 0) || !std::isfinite(aa + bb)) {  // (u, v) is constant here: any very long tangents
     const Frame frame(p.normal);
     p.dpdu = 1e6f * frame.s;
     p.dpdv = 1e6f * frame.t;
     return;
   }
-  // Where the surface is seen edge-on, one combination of u and v does not change along it: as if it changed a little.
+  // Where the projection grazes the surface, a and b are parallel, as one combination of u and v is constant along the surface.
+  // The shorter gradient is then replaced by a small one perpendicular to the other.
   constexpr float least = 1e-4f;
   if (!(std::abs(d) > least * std::max(aa, bb))) {
     if (aa >= bb)
@@ -48,7 +49,7 @@ SurfacePoint ProjectionMap::seen_at(const SurfacePoint& point) const {
   Transform scratch, object_scratch;
   const Transform& t = placed(transform, p.time, scratch);
   Projected to = project(Point3(t.back(world ? world_position(p) : DoublePoint3(p.object_position))) - Point3{});
-  // Gradients go out like normals.
+  // Gradients are transformed like normals.
   const auto out = [&](const Vector3& gradient) {
     const Normal3 g = t(Normal3(gradient));
     return Vector3(world ? g : placement(point, object_scratch)(g));

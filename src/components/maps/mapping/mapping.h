@@ -1,25 +1,25 @@
 #pragma once
-// Maps that change where another map is looked up.
+// Base class and helpers of maps that evaluate another map at changed surface coordinates.
 
 #include "components/maps/footprint.h"
 #include "etendue/object_map.h"
 
 namespace etendue {
 
-/// Surface coordinates given by a point of space, and how they change with it.
+/// Surface coordinates computed from a point in space, and their gradients with respect to this point.
 struct Projected {
   Point2 uv;
   Vector3 gradient_u, gradient_v;  ///< [1/m]
 };
 
-/// Gives a point new surface coordinates, and the tangents that belong to them: dpdu and dpdv are the steps in the surface
-/// that change one of them by 1 and leave the other. Gradients are in the renderer's coordinates.
+/// Sets a point's surface coordinates and the corresponding tangents: dpdu and dpdv are the steps in the surface that change
+/// one coordinate by 1 and keep the other. Gradients are in the coordinates in which the renderer traces rays.
 void set_uv(SurfacePoint&, const Projected&);
 
 /// u = atan2(y, x) / (2 pi) in [0, 1), and its gradient.
 float turn_around_z(const Vector3&, Vector3& gradient);
 
-/// A map over surface coordinates that a projection through space gives.
+/// Evaluates a map at surface coordinates that are computed by a projection from space.
 class ProjectionMap : public ObjectMap {
  public:
   void prepare() override;
@@ -33,7 +33,7 @@ class ProjectionMap : public ObjectMap {
   bool world = false;
 
  protected:
-  /// In the projector's own coordinates.
+  /// (u, v) and gradients at a point, all in the coordinates of the projection.
   virtual Projected project(const Vector3&) const = 0;
 
  private:

@@ -1,12 +1,12 @@
 #pragma once
-// Numbers of a point shown as colours.
+// ShownGeometry: base class of maps that show geometric quantities of a point as colours.
 
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
 
 namespace etendue {
 
-/// A map that is red, green and blue of sRGB by three numbers in [0, 1].
+/// A map whose colour is given by three numbers in [0, 1] as linear RGB with the primaries of sRGB.
 class ShownGeometry : public ObjectMap {
  public:
   void prepare() override { space_ = &rgb_space("srgb"); }
@@ -21,7 +21,7 @@ class ShownGeometry : public ObjectMap {
 
  protected:
   virtual Vector3 shown(const SurfacePoint&) const = 0;
-  /// What is no number becomes 0.
+  /// Clamps to [0, 1]; NaN becomes 0.
   static float fraction(float x) { return x > 0 ? std::min(x, 1.0f) : 0; }
 
  private:

@@ -5,7 +5,7 @@
 namespace etendue {
 namespace {
 
-// v = 1/2 + asin(z / r) / pi = 1/2 + atan2(z, R) / pi with R^2 = x^2 + y^2: it grows by (-z x / R, -z y / R, R) / (pi r^2).
+// v = 1/2 + asin(z / r) / pi = 1/2 + atan2(z, R) / pi with R^2 = x^2 + y^2; its gradient is (-z x / R, -z y / R, R) / (pi r^2).
 class SphericalMap final : public ProjectionMap {
  public:
   static void describe(Description<SphericalMap>& d) {

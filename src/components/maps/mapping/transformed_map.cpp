@@ -1,4 +1,4 @@
-// A map on a surface that is moved.
+// TransformedMap: evaluates a map as if the surface were transformed.
 
 #include "components/volumes/bounded_map.h"
 #include "geometry/geometry.h"
@@ -7,9 +7,9 @@
 namespace etendue {
 namespace {
 
-// All of a point goes along, in both systems of coordinates: positions, tangents and the axes of the footprint by the
-// transform, normals by its inverse transpose. What a map does with it is then what it would do on an object of that shape in
-// that place. The surface coordinates are not changed.
+// All members of the surface point are transformed, in object space and in world space: positions, tangents and the axes of the
+// footprint by the transform, normals by its inverse transpose. So the map returns what it would return on an object of the
+// transformed shape and position. The surface coordinates (u, v) are not changed.
 class TransformedMap final : public ObjectMap, public BoundedMap {
  public:
   static void describe(Description<TransformedMap>& d) {
@@ -35,7 +35,7 @@ class TransformedMap final : public ObjectMap, public BoundedMap {
   bool world = false;
 
  private:
-  /// In the coordinates of the world as the renderer counts them.
+  /// The transform in world coordinates with the origin at `centre`, as the renderer uses them.
   Transform counted_in(const DoublePoint3& centre, float time) const {
     AnimatedTransform counted = transform.written(time);
     counted.count_from(centre, centre);
@@ -51,7 +51,7 @@ class TransformedMap final : public ObjectMap, public BoundedMap {
     if (far) scratch = counted_in(p.object->world_centre, p.time);
     const Transform& t = far ? scratch : placed(transform, p.time, scratch);
     const Transform& place = placement(point, place_scratch);
-    // A vector, a normal or a position, in the renderer's and in the object's coordinates.
+    // Transform a vector, a normal or a position: `outside` one in the renderer's coordinates, `inside` one in object space.
     const auto outside = [&](const auto& x) { return world ? t(x) : place(t(place.back(x))); };
     const auto inside = [&](const auto& x) { return world ? place.back(t(place(x))) : t(x); };
     const auto normal_outside = [&](const Normal3& n) { return normalize(world ? t(n) : place(t(normal_into(place, n)))); };

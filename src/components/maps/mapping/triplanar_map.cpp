@@ -6,8 +6,8 @@
 namespace etendue {
 namespace {
 
-// The three projections are weighted by |n_x|^s, |n_y|^s and |n_z|^s of the shading normal. Each is mirrored where the normal
-// points back, so that from outside none is.
+// The three projections are weighted by |n_x|^s, |n_y|^s and |n_z|^s of the shading normal. A projection is flipped where the
+// normal points along the negative axis, so that the map never appears mirrored from outside.
 class TriplanarMap final : public ObjectMap {
  public:
   static void describe(Description<TriplanarMap>& d) {

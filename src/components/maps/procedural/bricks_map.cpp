@@ -6,9 +6,9 @@
 namespace etendue {
 namespace {
 
-// In units of a brick with half of the joint around it, row j is where floor(y) = j, and brick is where
-// frac(x - j shift) and frac(y) both keep half a joint away from 0 and 1. The mean over a box is a sum over the rows it
-// touches: for each the mean along x, times the part of its bricks' height that lies in the box.
+// In units of a brick with half of the joint around it, row j is where floor(y) = j, and a brick is where frac(x - j shift) and
+// frac(y) are both at least half a joint away from 0 and 1. The mean over a box is a sum over the rows that the box overlaps:
+// for each row the mean along x, times the part of the bricks' height that lies in the box.
 class BricksMap final : public BlendMap {
  public:
   BricksMap() : BlendMap(0.6f, 0.3f) {}
@@ -27,7 +27,7 @@ class BricksMap final : public BlendMap {
       fail("repeat", "must be positive, finite numbers");
     if (!std::isfinite(shift)) fail("shift", "must be a finite number");
     half_y_ = 0.5f * joint;
-    half_x_ = std::min(half_y_ * repeat.x / repeat.y, 0.5f);  // as thick, when u and v are
+    half_x_ = std::min(half_y_ * repeat.x / repeat.y, 0.5f);  // equal thickness along u and v if their scales are equal
   }
 
   Vector2 repeat{8, 24};
@@ -40,14 +40,14 @@ class BricksMap final : public BlendMap {
   float fraction(const SurfacePoint& p) const override {
     const Vector2 box = uv_box(p);
     const float x = p.uv.x * repeat.x, y = p.uv.y * repeat.y, width = box.x * repeat.x, height = box.y * repeat.y;
-    if (!(std::abs(x) < 1e6f && std::abs(y) < 1e6f)) return 0;  // there floats have no digits left for bricks
+    if (!(std::abs(x) < 1e6f && std::abs(y) < 1e6f)) return 0;  // beyond, floats do not resolve bricks
     const auto along = [&](float row) { return pulse_mean(x - row * shift, width, half_x_, 1 - half_x_); };
     if (!(height > 1e-4f)) {
       const float row = std::floor(y), t = y - row;
       return t >= half_y_ && t <= 1 - half_y_ ? along(row) : 0;
     }
     constexpr float most_rows = 16;
-    if (height > most_rows) {  // of so many, some stand for all
+    if (height > most_rows) {  // the mean of sixteen rows is taken for all
       float sum = 0;
       for (float row = 0; row < most_rows; ++row) sum += along(std::floor(y) + row);
       return sum / most_rows * (1 - joint);

@@ -7,8 +7,9 @@ namespace {
 
 enum class Measure : std::uint8_t { nearest, second_nearest, difference, cell };
 
-// Worley 1996: points are scattered through space, here one at random in each cube of a lattice, and F1 <= F2 <= … are the
-// distances from p to the nearest, the second nearest, … of them. F2 - F1 is 0 on the borders of the cells of F1.
+// Worley 1996: feature points are scattered through space, here one at a random position in each cube of a lattice, and
+// F1 <= F2 <= … are the distances from p to the nearest, the second nearest, … of them. F2 - F1 is 0 on the borders of the
+// Voronoi cells.
 class CellularMap final : public SolidMap {
  public:
   static void describe(Description<CellularMap>& d) {
@@ -48,8 +49,8 @@ class CellularMap final : public SolidMap {
     std::uint32_t cell = 0;
   };
 
-  // The cubes around p are visited ring by ring; those that lie farther away than the second point found are left out. Of a
-  // point in each cube, the second nearest is never farther than two cubes away.
+  // The cubes around p are visited ring by ring; cubes that are farther away than the second nearest point so far are skipped.
+  // As each cube contains a point, the second nearest point is never more than two cubes away.
   bool find(const Vector3& p, Nearest& n) const {
     constexpr float most = 1e9f;
     if (!(std::abs(p.x) < most && std::abs(p.y) < most && std::abs(p.z) < most)) return false;

@@ -8,8 +8,9 @@ namespace {
 
 enum class Space : std::uint8_t { uv, object };
 
-// The board is (1 - s(x) s(y) s(z)) / 2 of `second` with square waves s of period 2. Its mean over a box is that with the mean
-// of each wave over the box's side: exact for a footprint along the squares, and a box of the same second moments otherwise.
+// The weight of `second` is (1 - s(x) s(y) s(z)) / 2 with square waves s of period 2. Its mean over a box results from the
+// means of the waves over the box's sides. This is exact for a footprint along the squares; any other footprint is replaced by
+// a box of the same second moments.
 class CheckerMap final : public BlendMap {
  public:
   CheckerMap() : BlendMap(0.2f, 0.8f) {}
@@ -42,8 +43,8 @@ class CheckerMap final : public BlendMap {
     } else {
       Footprint seen;
       if (p.footprint > 0) seen = object_footprint(p);
-      // A surface that lies exactly between two layers of cubes would flicker by rounding: look a ten-thousandth of a
-      // cube below the surface.
+      // On a surface that lies exactly between two layers of cubes rounding would choose the layer at random: the point is
+      // moved below the surface by a ten-thousandth of a cube.
       for (int i = 0; i < 3; ++i)
         wave *= square_wave_mean(p.object_position[i] * repeat[i] - 1e-4f * p.object_normal[i],
                                  std::hypot(seen.longer[i], seen.shorter[i]) * std::abs(repeat[i]));

@@ -6,11 +6,12 @@ namespace etendue {
 namespace {
 
 // The density of the medium "cloud" of pbrt-v4 (Pharr, Jakob & Humphreys 2023, "Physically Based Rendering", section 11.4.6),
-// with other random numbers. With the noise n and its gradient g, places are first moved in two octaves,
+// with other random numbers. With the noise n and its gradient g, points are first displaced in two octaves,
 //     x_(i+1) = x_i + 0.05 w 2^-i g(10 1.99^i x_i),      x_0 = f p,
 // which draws bumps out into wisps; w is the wispiness, f the frequency. Then, with the altitude y,
 //     d(p) = clamp( clamp(4.5 (1 - y) a sum_(i<5) 2^-(i+1) n(1.99^i x_2)) + 2 max(0, 1/2 - y) ),
-// clamp: to [0, 1], and a the amount: solid up to the altitude 0, torn above a half of it, nothing from 1 on.
+// where clamp is to [0, 1] and a is the amount. The cloud is solid up to the altitude 0, only noise above 1/2, and empty from 1
+// on.
 class CloudMap final : public BlendMap {
  public:
   CloudMap() : BlendMap(0, 1) {}

@@ -1,4 +1,4 @@
-// Formulas: the render description language's own expressions, compiled for a stack machine.
+// Formulas: expressions of the render description language, compiled for a stack machine.
 
 #include "formula.h"
 
@@ -162,7 +162,8 @@ std::vector<std::string> Formula::function_names() {
 int Formula::arguments(std::uint8_t operation) { return operations[operation].arguments; }
 
 Formula::Formula(const std::string& text, const std::vector<std::string>& names, const char* text_name, int first_column) {
-  // A line's break counts as a blank: a formula is one line. Blanks before it put columns where they are in the file.
+  // Line breaks are replaced by blanks, so that the formula is one line. Blanks before the formula make the columns of errors
+  // equal to those in the file.
   language::Source source{text_name, {}, std::string(size_t(std::max(first_column, 1) - 1), ' ') + text};
   std::replace(source.text.begin(), source.text.end(), '\n', ' ');
   language::Diagnostics diagnostics;
@@ -179,7 +180,7 @@ Formula::Formula(const std::string& text, const std::vector<std::string>& names,
 
 Spectrum Formula::run(const Spectrum* values) const {
   Spectrum stack[deepest + 1];
-  Spectrum* top = stack;  // one behind the last value
+  Spectrum* top = stack;  // one past the last value
   for (const Step& step : steps_) {
     if (step.operation == Formula::push_number) {
       *top++ = Spectrum(step.number);

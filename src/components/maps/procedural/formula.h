@@ -9,13 +9,13 @@
 
 namespace etendue {
 
-/// A formula in numbers, names, + - * / and calls of functions. It is read once; running it allocates nothing, and gives
-/// finite values only: what is none, such as a division by zero, becomes 0 where it arises.
+/// A formula of numbers, names, + - * / and calls of functions. It is compiled once; running it allocates no memory. All values
+/// are finite: a result that is not, such as that of a division by zero, is replaced by 0 immediately.
 class Formula {
  public:
   Formula() = default;
-  /// `names` are what may stand in the formula, in the order of `run`'s values. What is wrong throws Error at its place: in
-  /// line 1 of a text of this name, counting columns from `first_column` on.
+  /// `names` are the names that may be used in the formula, in the order of `run`'s values. Throws Error with the location of
+  /// the mistake: line 1 of a text named `text_name`, with columns counted from `first_column`.
   Formula(const std::string& text, const std::vector<std::string>& names, const char* text_name = "formula",
           int first_column = 1);
 
@@ -27,7 +27,7 @@ class Formula {
   static std::vector<std::string> function_names();
   static constexpr int deepest = 32;  ///< values on the stack
 
-  /// What a step does: functions are in the order of function_names, from `first_function` on.
+  /// Operation codes of the steps. Functions are in the order of function_names, from `first_function` on.
   enum Code : std::uint8_t {
     push_number,
     push_value,
@@ -61,10 +61,10 @@ class Formula {
 
   struct Step {
     std::uint8_t operation;
-    std::uint16_t place = 0;  ///< of a name
+    std::uint16_t place = 0;  ///< index of the name, for push_value
     float number = 0;
   };
-  /// The program, for other machines than `run`: of intervals, say.
+  /// The program, for interpreters other than `run`, such as one for interval arithmetic.
   const std::vector<Step>& steps() const { return steps_; }
   /// How many values an operation takes off the stack.
   static int arguments(std::uint8_t operation);

@@ -42,7 +42,7 @@ class FormulaMap final : public ObjectMap {
         fail("names", "'" + names[i] + "' is a name already");
       known.push_back(names[i]);
     }
-    // In a file, the place in the formula is behind the quote; escapes would shift it.
+    // In a file the formula begins one column after the quote. With escape sequences the columns would not correspond.
     const Location at = location_of("formula");
     const bool plain = at.known() && formula.find_first_of("\"\\\n\t") == std::string::npos;
     try {

@@ -1,4 +1,4 @@
-// Hypertexture, as it shows on a surface.
+// Hypertexture, evaluated on a surface.
 
 #include "components/maps/combining/blend.h"
 
@@ -8,10 +8,11 @@ namespace {
 /// b(t) = t^(ln b / ln 1/2): keeps 0 and 1, and takes 1/2 to b (Perlin & Hoffert 1989, section 2.2).
 float biased(float t, float exponent) { return t > 0 ? std::pow(t, exponent) : 0; }
 
-// Perlin & Hoffert 1989: an object is a density D(x), 1 inside, 0 outside, falling in a soft region between, and functions
-// shape it. Here the object is a ball whose surface turbulence moves along the radius (their fractal sphere),
+// Perlin & Hoffert 1989: an object is a density D(x), 1 inside, 0 outside, falling in a soft region between, which is shaped by
+// functions. Here the object is a ball whose surface is displaced along the radius by turbulence (their fractal sphere),
 //   D(x) = density of the ball at x (1 + a sum_i gain^i |noise(lacunarity^i x)|),
-// then bias and gain act on the density. A surface shows what density it cuts: burnt or worn patches, a fringe of fire.
+// then bias and gain are applied to the density. The map is the density at the points of a surface: burnt or worn patches, a
+// fringe of fire.
 class HypertextureMap final : public FractalMap {
  public:
   HypertextureMap() { octaves = 6; }
@@ -46,7 +47,7 @@ class HypertextureMap final : public FractalMap {
   float fraction(const SolidPoint& p) const override {
     const Vector3 from_centre = size * p.at - (centre - Point3{});
     const float r = length(from_centre) * (1 + disturbance * noise().turbulence(p.at, p.width));
-    // Averaged over the footprint, the border is as wide as that at least.
+    // As a filter, the soft region is made at least as wide as the footprint.
     const float t = clamp(0.5f + (radius - r) / std::max(softness, size * p.width), 0, 1), b = biased(t, bias_);
     return b < 0.5f ? 0.5f * biased(2 * b, gain_) : 1 - 0.5f * biased(2 - 2 * b, gain_);
   }

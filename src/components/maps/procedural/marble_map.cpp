@@ -6,8 +6,8 @@ namespace etendue {
 namespace {
 
 // Perlin 1985: layers of colour(sin(x)), disturbed by x + turbulence(p). A layer is ((1 + sin(2 pi x)) / 2)^s, whose mean over
-// a period is Gamma(s + 1/2) / (sqrt(pi) Gamma(s + 1)); averaging over the footprint leaves of what differs from it what it
-// leaves of the sine.
+// a period is Gamma(s + 1/2) / (sqrt(pi) Gamma(s + 1)). Averaging over the footprint is taken to attenuate the difference from
+// this mean by the same factor as the sine (wave_remains).
 class MarbleMap final : public FractalMap {
  public:
   MarbleMap() {

@@ -6,8 +6,8 @@
 namespace etendue {
 namespace {
 
-// Rings around the z axis, disturbed by noise: a year begins light and darkens as frac(r)^s, the integral of which is
-// frac(r)^(s+1) / (s+1), so that the mean over the footprint is exact. Fibres are noise drawn out along the axis.
+// Rings around the z axis, disturbed by noise: a year's ring begins light and darkens as frac(r)^s, whose integral is
+// frac(r)^(s+1) / (s+1), so that the mean over the footprint is exact. Fibres are noise that is stretched along the axis.
 class WoodMap final : public FractalMap {
  public:
   WoodMap() {
@@ -32,14 +32,14 @@ class WoodMap final : public FractalMap {
 
  private:
   float fraction(const SolidPoint& p) const override {
-    // Along the trunk everything changes ten times more slowly.
+    // The noise is stretched by a factor of ten along the trunk.
     const Vector3 along{p.at.x, p.at.y, 0.1f * p.at.z};
     const float r = std::hypot(p.at.x, p.at.y) + disturbance * noise().fbm((1 / swell) * along, p.width / swell);
     const float ring = periodic_mean(
         r, p.width, 1 / (sharpness + 1), [this](float t) { return std::pow(t, sharpness); },
         [this](float t) { return std::pow(t, sharpness + 1) / (sharpness + 1); });
     if (!(fibre > 0)) return ring;
-    constexpr float finer = 12;  // fibres in a ring
+    constexpr float finer = 12;  // fibres per width of a ring
     const float remains = noise_remains(finer * p.width);
     const float grain = remains > 0 ? remains * perlin_noise(finer * Vector3{p.at.x, p.at.y, 0.03f * p.at.z}, seed + 1) : 0;
     return (1 - fibre) * ring + fibre * (0.5f + 0.5f * grain);

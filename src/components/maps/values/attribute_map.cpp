@@ -1,10 +1,10 @@
-// Numbers that belong to an object's surface, such as the colours of a mesh's vertices.
+// AttributeMap: values stored with an object's surface, such as the colours of a mesh's vertices.
 
 #include "components/maps/rgb_source.h"
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
 #include "etendue/scene_object.h"
-#include "etendue/shader.h"  // objects own shaders
+#include "etendue/shader.h"  // complete type for the Ref<Shader> of SceneObject
 
 namespace etendue {
 namespace {
@@ -42,7 +42,7 @@ class AttributeMap final : public ObjectMap, public RgbSource {
     float values[4];
     const int count = look_up(p, values);
     if (count == 0) return otherwise->scalar(p);
-    const int channels = std::min(count, 3);  // the fourth is no colour
+    const int channels = std::min(count, 3);  // a fourth value, alpha, is ignored
     float sum = 0;
     for (int i = 0; i < channels; ++i) sum += values[i];
     return sum / float(channels);

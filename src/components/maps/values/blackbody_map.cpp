@@ -1,4 +1,4 @@
-// The light of a black body at the temperature that a map says.
+// BlackbodyMap: the radiance of a black body at a temperature given by a map.
 
 #include "color/planck.h"
 #include "etendue/object_map.h"
@@ -36,7 +36,7 @@ class BlackbodyMap final : public ObjectMap {
   float scalar(const SurfacePoint& p) const override {
     const double t = double(temperature->scalar(p));
     if (!(t > 0)) return 0;
-    // The mean over the visible range, at the middle of each 47 nm.
+    // The mean over the visible range, by the midpoint rule with steps of 47 nm.
     constexpr int steps = 10;
     constexpr double width = double(wavelength_high - wavelength_low) / steps;
     double sum = 0;
@@ -49,7 +49,7 @@ class BlackbodyMap final : public ObjectMap {
   bool normalized = false;
 
  private:
-  /// No temperature makes an infinite number.
+  /// Upper limit of the result, so that it is finite at any temperature.
   static constexpr double most = 1e30;
   double scale_at(double t) const { return normalized ? double(factor) / highest_planck(t) : double(factor); }
 };

@@ -18,7 +18,7 @@ class ConstantMap final : public ObjectMap {
 
   void prepare() override {
     if (!value) fail("value", "a colour is needed");
-    // The mean over the visible range, at the middle of each 5 nm.
+    // The mean over the visible range, by the midpoint rule with steps of 5 nm.
     constexpr int steps = 94;
     double sum = 0;
     for (int i = 0; i < steps; ++i) sum += value->at(wavelength_low + 5 * (float(i) + 0.5f), ColorUse::coefficient);

@@ -11,8 +11,9 @@
 namespace etendue {
 namespace {
 
-// What is between cells is linear in their numbers, also in RGB: the spectrum is made of the colour at the point. As a
-// coefficient it nowhere exceeds twice the largest component (Jakob & Hanika 2019), and what is between cells is a mean.
+// Interpolation between cells is linear in their numbers, also for RGB: the spectrum is made from the interpolated RGB. As a
+// coefficient a spectrum nowhere exceeds twice its largest component (Jakob & Hanika 2019), and interpolated RGB is a mean of
+// the cells' RGB, so twice the largest number of all cells is an upper bound.
 class GridMap final : public ObjectMap, public RgbSource, public BoundedMap {
  public:
   static void describe(Description<GridMap>& d) {

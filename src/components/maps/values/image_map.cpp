@@ -13,15 +13,15 @@ namespace etendue {
 namespace {
 
 enum class Interpolation : std::uint8_t { nearest, bilinear };
-enum class WrapV : std::uint8_t { same, repeat, mirror, clamp, black };  // Wrap, behind one more
+enum class WrapV : std::uint8_t { same, repeat, mirror, clamp, black };  // the values of Wrap, after `same`
 enum class AsNumber : std::uint8_t { mean, luminance };
 
-// The image's numbers are decoded to linear ones before they are interpolated or averaged. A footprint asks for a mean over it:
-// that over the ellipse in which a pixel sees the surface. Squares that are wider than the ellipse is long are given as they
-// are.
+// The image's numbers are decoded to linear ones before they are interpolated or averaged. With a footprint the result is the
+// mean over the ellipse in which a pixel sees the surface. With `interpolation: nearest`, texels that are larger than the
+// ellipse are returned unfiltered.
 //
-// An RGB value becomes a spectrum at each lookup. That is not the spectrum between those of the texels, as the fit
-// is not linear, but it has the colour between theirs, which is what an image says.
+// The interpolated RGB is converted to a spectrum at each lookup. This differs from interpolating the texels' spectra, as the
+// conversion is not linear, but it has the interpolated colour, which is what the image defines.
 class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
  public:
   static void describe(Description<ImageMap>& d) {
@@ -124,7 +124,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
     cube_ = !tiled_ && tiles_.front()->from_cube();
   }
 
-  /// Returns how many channels the image has.
+  /// Writes the RGB at a point, and returns how many channels the image has.
   int look_up(const SurfacePoint& p, float rgb[3]) const {
     rgb[0] = rgb[1] = rgb[2] = 0;
     float u = p.uv.x * repeat.x, v = p.uv.y * repeat.y;
@@ -132,7 +132,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
     Wraps outside(wrap, wrap_v != WrapV::same ? Wrap(int(wrap_v) - 1) : (cube_ ? Wrap::clamp : wrap));
     if (tiled_) {
       float column = std::floor(u), row = std::floor(v);
-      // The far border of a square belongs to it where no other begins.
+      // The right and upper border of a tile belongs to this tile if no other tile is adjacent there.
       if (!tile(column, row)) {
         const bool left = u == column, low = v == row;
         if (left && tile(column - 1, row))
@@ -170,7 +170,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
   }
 
   const RgbSpace* space_ = nullptr;
-  float weights_[3] = {};  // of red, green and blue in a number
+  float weights_[3] = {};  // of red, green and blue in scalar()
   bool tiled_ = false, cube_ = false;
   std::vector<std::shared_ptr<const ImageTexture>> ahead_;
   std::vector<std::shared_ptr<const ImageTexture>> tiles_;  // the only one, or that of square (u, v) at 10 v + u

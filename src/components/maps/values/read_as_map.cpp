@@ -1,4 +1,4 @@
-// What a map's RGB stands for, whoever asks.
+// ReadAsMap: evaluates a map with a given ColorUse, whatever the ColorUse of the caller.
 
 #include "components/maps/combining/combination.h"
 #include "components/volumes/bounded_map.h"
@@ -7,8 +7,8 @@
 namespace etendue {
 namespace {
 
-// A colour given as RGB becomes a spectrum according to who asks (docs/decisions/003). Files of other programs sometimes mean
-// another one: a picture as light whose white is the same at every wavelength and not the white of its colour space.
+// RGB is converted to a spectrum according to the ColorUse that the caller passes (docs/decisions/003). Files of other programs
+// sometimes mean another use: an image as light whose white is constant over wavelengths and not the white of its colour space.
 class ReadAsMap final : public ObjectMap, public BoundedMap {
  public:
   static void describe(Description<ReadAsMap>& d) {

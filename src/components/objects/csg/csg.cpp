@@ -59,7 +59,7 @@ void Csg::prepare() {
   } else if (shader && contains_operand_shader(*shader)) {
     fail("shader", "an OperandShader must be the solid's own shader, not part of another");
   }
-  // Only a guess: what is very small beside its box may be missed, so that it stays.
+  // Only a warning: the test may miss a solid that is very small compared with its bounding box.
   if (!something_left()) warn(class_info().name + ": nothing seems to be left of its operands", location_of("operands"));
 }
 
@@ -83,7 +83,7 @@ void Csg::check_operand(SceneObject& operand) {
 
 namespace {
 
-/// Objects that do not say how many they have number some faces, or nothing.
+/// Upper bound of the number of parts of objects that are not NumberedParts: these number a few faces, or nothing.
 constexpr std::uint64_t few_parts = 16;
 
 }  // namespace
@@ -141,7 +141,7 @@ void Csg::combine_bounds() {
   bounds_ = own_bounds_;
   if (bounds_.empty()) return;
   bounds_ = transform.animated() ? swept(transform, own_bounds_) : transform.still()(own_bounds_);
-  // What rounding may put outside.
+  // Rounding may move points out of the exact box.
   const Vector3 margin = rounding_bound(8) * (bounds_.diagonal() + abs(bounds_.centre() - Point3{}));
   bounds_.low = bounds_.low - margin;
   bounds_.high = bounds_.high + margin;
@@ -213,8 +213,8 @@ void Csg::own_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const {
   p.object_normal = p.normal;
 }
 
-// A ray that leaves by the surface must begin on the same side of all surfaces that lie in the same place, each of which is
-// found within its own error.
+// A ray that leaves the surface must begin on the same side of all coincident surfaces, each of which is found only to within
+// its own error.
 float Csg::error_of_coincident(size_t operand, const SurfacePoint& p) const {
   const float largest = std::max({std::abs(p.position.x), std::abs(p.position.y), std::abs(p.position.z)});
   const float reach = 4 * p.error + rounding_bound(8) * largest;

@@ -9,9 +9,9 @@
 
 namespace etendue {
 
-/// What union, intersection and difference share. Operands are placed in the solid's own coordinates; each may move, and may be
-/// such a solid in turn. The surface of a solid consists of parts of its operands' surfaces, each with the surface coordinates
-/// it has there; on what was taken away the sides are exchanged, and u runs backwards.
+/// Base class of union, intersection and difference. Operands are placed in the solid's object space; each may move, and may be
+/// a CSG solid itself. The surface of a solid consists of parts of its operands' surfaces, each with the operand's surface
+/// coordinates; on the surface of a subtracted operand the sides are exchanged, and u is reversed.
 class Csg : public SceneObject {
  public:
   std::vector<Ref<SceneObject>> operands;
@@ -21,7 +21,7 @@ class Csg : public SceneObject {
   bool intersect(const Ray&, Hit&) const override;
   void all_hits(const Ray&, HitList&) const override;
   void surface_point(const Ray&, const Hit&, SurfacePoint&) const override;
-  void tangents(SurfacePoint&) const override {}  // every point comes with them
+  void tangents(SurfacePoint&) const override {}  // surface_point sets them for every point
   float area(float time) const override;
   float area_error(float time) const override;
   SurfaceSample sample_area(Point2 u, float time) const override;
@@ -32,13 +32,13 @@ class Csg : public SceneObject {
   int attribute(int number, const SurfacePoint&, float* values) const override;
   std::vector<SceneObject*> placed_within() const override;
 
-  /// The operand a point lies on. `there` becomes the point as one of the operand: with its primitive and its object
-  /// coordinates; the rest stays as it is on the solid.
+  /// The operand whose surface a point lies on. `there` receives the primitive, the object and the object coordinates of the
+  /// point on the operand; its other fields are unchanged.
   const SceneObject& operand_at(const SurfacePoint& p, SurfacePoint& there) const;
 
  protected:
-  /// A point is inside when the weights of the operands it is inside of add up to `least_weight` or, if that is 0, to the
-  /// number of operands. The first one's weight is 1.
+  /// A point is inside the solid if the weights of the operands that contain it add up to at least `least_weight` or, if that
+  /// is 0, to the number of operands. The first operand's weight is 1.
   Csg(int weight_of_others, int least_weight);
 
   template <class T>
@@ -47,8 +47,8 @@ class Csg : public SceneObject {
   }
 
  private:
-  /// Part of the operand, or of an operand of it in turn, as one number: the number of the innermost operand in the upper bits,
-  /// the number of its part in the lower ones.
+  /// Encodes a primitive of an operand in one number: the number of the innermost operand (leaf of the CSG tree) in the upper
+  /// bits, the number of its part in the lower ones.
   std::uint32_t encode(size_t operand, std::uint32_t primitive) const;
   size_t decode(std::uint32_t primitive, std::uint32_t& of_operand) const;
 
@@ -62,8 +62,8 @@ class Csg : public SceneObject {
 
   bool first_seen(const Point3& from, const Vector3& direction, float time, SurfacePoint&) const;
 
-  // Chords along the axes, for area and samples; see csg_sampling.cpp.
-  struct Place;  // where a chord passes, on a side of the bounds
+  // Chords: lines along the axes, for area and samples; see csg_sampling.cpp.
+  struct Place;  // position of a chord on a side of the bounding box
   Ray chord(const Place&, int axis, float time) const;
   static Place lattice_place(int i, int chords, int step);
   Place place_of(const Point3&, int axis) const;
@@ -75,18 +75,18 @@ class Csg : public SceneObject {
   const int weight_of_others_, given_least_weight_;
   int least_weight_ = 1;
   std::vector<CsgOperand> combined_;
-  std::vector<const Csg*> nested_;         // for each operand; null: it is none of these
-  std::vector<std::uint32_t> first_leaf_;  // the number of the first innermost operand in each
+  std::vector<const Csg*> nested_;         // for each operand; null if it is not a CSG solid
+  std::vector<std::uint32_t> first_leaf_;  // for each operand, the number of its first leaf
   std::uint32_t leaves_ = 0;
-  std::uint64_t most_parts_ = 1;  // of one among them
-  int shift_ = 32;                // bits of a primitive that number an innermost operand's own
-  std::vector<float> times_;      // of all keys among the operands
+  std::uint64_t most_parts_ = 1;  // largest number of parts of a leaf
+  int shift_ = 32;                // number of low bits of a primitive that hold the leaf's own primitive
+  std::vector<float> times_;      // times of all keys of the solid and its operands
   Bounds3 own_bounds_, bounds_;
 
-  // Made when first asked for: only luminaires need them.
+  // Computed at the first call, since only luminaires need them.
   struct Areas {
     std::once_flag made;
-    std::vector<float> times, values;  // so many between each two keys [s], [m^2]
+    std::vector<float> times, values;  // area samples [m^2] and their times [s], several between two keys
     float error = 0;
   };
   const Areas& areas() const;

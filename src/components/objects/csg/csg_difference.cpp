@@ -1,4 +1,4 @@
-// Difference: the first operand without the others.
+// Difference: the first operand minus all others.
 
 #include "csg.h"
 

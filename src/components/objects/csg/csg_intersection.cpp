@@ -1,4 +1,4 @@
-// Intersection: what lies in all operands.
+// Intersection: the space that lies in all operands.
 
 #include "csg.h"
 

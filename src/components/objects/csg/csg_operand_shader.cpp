@@ -8,7 +8,7 @@
 namespace etendue {
 namespace {
 
-/// The solid a point lies on, if it is one.
+/// The CSG solid on which a point lies; null for other objects.
 const Csg* solid_at(const SurfacePoint& p) { return dynamic_cast<const Csg*>(p.object); }
 
 }  // namespace
@@ -30,7 +30,7 @@ bool OperandShader::stand_for(const SceneObject& solid, const Shader* shader) {
 const Scatter* OperandShader::bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const {
   const Csg* const solid = solid_at(p);
   if (!solid) return nullptr;
-  SurfacePoint* const there = arena.make<SurfacePoint>(p);  // a Scatter may look back at it
+  SurfacePoint* const there = arena.make<SurfacePoint>(p);  // in the arena, because a Scatter may keep a reference to it
   const Shader* const shader = solid->operand_at(p, *there).shader.get();
   return shader ? bound(*shader, *there, w, arena) : nullptr;
 }

@@ -1,12 +1,12 @@
 #pragma once
-// OperandShader: lets every operand of a solid keep its own material.
+// OperandShader: gives each surface of a CSG solid the shader of its operand.
 
 #include "etendue/shader.h"
 
 namespace etendue {
 
-/// Looks up which operand of a Csg a point lies on and asks that operand's shader. It has no members; the solid that carries it
-/// tells it, each time it is prepared, what it stands for.
+/// Looks up the operand of a Csg on whose surface a point lies and delegates to the operand's shader. It has no members in
+/// descriptions; Csg::prepare registers the operands' shaders by stand_for.
 class OperandShader final : public Shader {
  public:
   static void describe(Description<OperandShader>&);
@@ -15,7 +15,8 @@ class OperandShader final : public Shader {
     shaders_.clear();
     solid_ = nullptr;
   }
-  /// Counts a shader of a solid among those asked; null: a black one. False: it stands for those of another solid already.
+  /// Registers the shader of an operand of `solid`; null stands for a black one. Returns false if shaders of another solid are
+  /// already registered.
   bool stand_for(const SceneObject& solid, const Shader* shader);
 
   const Scatter* bind(const SurfacePoint&, const Wavelengths&, Arena&) const override;
@@ -37,7 +38,7 @@ class OperandShader final : public Shader {
   }
 
   const SceneObject* solid_ = nullptr;
-  std::vector<const Shader*> shaders_;  // each once; null among them: there is a black one
+  std::vector<const Shader*> shaders_;  // without duplicates; contains null if an operand is black
 };
 
 }  // namespace etendue

@@ -1,34 +1,37 @@
-// The area of solids, and points on them.
+// The area of CSG solids, and area sampling of their surfaces.
 
 #include <bit>
 
 #include "csg.h"
 #include "geometry/geometry.h"
 
-// How much of its operands' surfaces a solid keeps has no formula, and points chosen on an operand may have been cut away. So
-// points are not chosen on operands but by chords: lines along one of the axes, through a point chosen on that side of the
-// bounds, on which one of the N crossings of the solid is taken. Of a surface whose normal has the component n_k along axis k
-// an area dA covers |n_k| dA of the side, so with axis k chosen by its side's area S_k, S their sum, the density [1/m^2] is
+// No formula gives the parts of the operands' surfaces that remain in a solid, and a point sampled on an operand may have been
+// cut away. So points are sampled by chords: lines along one of the axes, through a point sampled on that side of the bounding
+// box; one of the chord's N crossings with the solid is chosen. A surface element dA whose normal has the component n_k along
+// axis k projects to |n_k| dA on the side. With axis k chosen in proportion to its side's area S_k, and S the sum of these, the
+// pdf [1/m^2] is
 //     p(x) = sum_k S_k / S  1 / S_k  |n_k| / N_k(x)  =  1 / S  sum_k |n_k| / N_k(x),
-// where N_k is found by casting the chord along k through x. That holds for any operands, and is known wherever a ray may hit.
+// where N_k is found by tracing the chord along k through x. This holds for any operands and can be evaluated at any point.
 //
-// Chords that miss the solid would give no point. Then the next one is tried, at the place after it by a shift
+// A chord that misses the solid would give no point. Then the next chord is tried, whose position v on the side follows by a
+// shift
 //     T(v) = v + a   (mod the side),
-// which is one to one. A chord is thus come to from as many places as there are misses right before it under T, and itself:
+// which is a bijection. A chord is thus reached from its own position and from each position of the run of misses that precedes
+// it under T:
 //     p(x) = 1 / S  sum_k |n_k| (1 + m_k(x)) / N_k(x),
-// with m_k the length of the run of misses T^-1(v), T^-2(v), ... before x's place v on side k. The shift is that of the
-// two-dimensional sequence with the least gaps (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences"), so
-// runs are short, and places are integers, so that nothing is lost between T and its inverse.
+// with m_k the length of the run of misses T^-1(v), T^-2(v), ... before the position v of x on side k. The shift a is that of
+// the R2 low-discrepancy sequence (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences"), so runs are short.
+// Positions are integers, so that T and its inverse are exact.
 //
 // The area follows from the same chords. With w_k = |n_k| the weights sum_k |n_k| w_k are 1 everywhere, so
 //     A = sum_k int over side k of (sum of |n_k| at the chord's crossings).
-// It is summed over a Fibonacci lattice (Niederreiter & Sloan 1994, "Integration of nonperiodic functions of two variables by
-// Fibonacci lattice rules").
+// The integrals are computed by quadrature over a Fibonacci lattice (Niederreiter & Sloan 1994, "Integration of nonperiodic
+// functions of two variables by Fibonacci lattice rules").
 
 namespace etendue {
 namespace {
 
-/// Chords tried for a sample; with runs of misses this long nothing is found.
+/// Largest number of chords tried for a sample; after a run of misses this long the sample fails.
 constexpr int most_tries = 1 << 12;
 
 double unit_of(std::uint32_t n) { return (double(n) + 0.5) * 0x1p-32; }
@@ -41,7 +44,7 @@ float stretch_of_area(const Transform& t, const Normal3& n) {
 
 }  // namespace
 
-/// On the side of axis k, along the two axes after it.
+/// A position on the side of axis k, along the two axes after k.
 struct Csg::Place {
   // 2^32 times the inverses of the plastic number and of its square.
   static constexpr std::uint32_t along_x = 3242174889u, along_y = 2447445413u;
@@ -123,7 +126,7 @@ SurfaceSample Csg::sample_area(Point2 u, float time) const {
     n = crossings(ray);
   }
   if (n == 0) return s;
-  // Which of the crossings is left to the last bits of u, which say nothing of the place that could be seen.
+  // The crossing is chosen by a hash of all bits of u; the dependence on the position is too irregular to be visible.
   const std::uint64_t bits = std::uint64_t(std::bit_cast<std::uint32_t>(u.x)) << 32 | std::bit_cast<std::uint32_t>(u.y);
   const auto which = int(mix_bits(bits + 0x9e3779b97f4a7c15ull) % std::uint64_t(n));
   CsgWalk walk(combined_, least_weight_, ray);
@@ -169,7 +172,7 @@ double Csg::chord_area(const Transform& t, float time, int chords, int step) con
 const Csg::Areas& Csg::areas() const {
   Areas& areas = *areas_;
   std::call_once(areas.made, [&] {
-    // Two neighbours among the Fibonacci numbers each: so many chords, and the step from one to the next.
+    // Two consecutive Fibonacci numbers each: the number of chords, and the step of the lattice.
     struct Lattice {
       int chords, step;
     };
@@ -189,7 +192,7 @@ const Csg::Areas& Csg::areas() const {
       const Transform t = transform.at(time);
       const double value = own_bounds_.empty() ? 0 : chord_area(t, time, fine.chords, fine.step);
       areas.values.push_back(float(value));
-      if (i > 0) {  // between two times it may bend by some part of the difference
+      if (i > 0) {  // error of linear interpolation between two times, estimated from the difference
         const double larger = std::max(areas.values[i], areas.values[i - 1]);
         if (larger > 0)
           areas.error = std::max(areas.error, float(0.5 * std::abs(value - double(areas.values[i - 1])) / larger));
@@ -215,7 +218,7 @@ float Csg::area_error(float) const { return areas().error; }
 
 bool Csg::something_left() const {
   if (own_bounds_.empty()) return false;
-  // Few chords are enough for most; only where they find nothing does it take many to be sure.
+  // For most solids few chords suffice; only if they miss the solid, many are traced.
   for (const int chords : {89, 28657})
     for (size_t i = 0; i < std::max<size_t>(times_.size(), 1); ++i)
       for (int axis = 0; axis < 3; ++axis)

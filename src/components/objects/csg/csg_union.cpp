@@ -1,4 +1,4 @@
-// Union: all that lies in any of the operands.
+// Union: the space that lies in any of the operands.
 
 #include "csg.h"
 

@@ -1,16 +1,16 @@
-// Points on solids as they are seen from somewhere.
+// Sampling of CSG solids by solid angle from a reference point.
 
 #include "csg.h"
 #include "etendue/core/warp.h"
 #include "geometry/geometry.h"
 
-// A direction is chosen in the cone around the bounds, with the density 1 / (2 pi (1 - cos)) [1/sr], and the solid is looked
-// for there. What is seen has that density; what is hidden, by other parts of the solid, none.
+// A direction is sampled uniformly in the cone around the bounding sphere of the box, with the pdf 1 / (2 pi (1 - cos)) [1/sr],
+// and a ray is traced. Visible points of the solid have this pdf; points hidden by other parts of the solid have the pdf 0.
 
 namespace etendue {
 namespace {
 
-/// The directions in which a ball may be seen; from within, all.
+/// The cone of directions towards the bounding sphere; all directions from inside it.
 struct View {
   Frame frame;
   float one_minus_cosine = 2;
@@ -22,7 +22,7 @@ struct View {
     frame = Frame(Normal3(normalize(to)));
     one_minus_cosine = sin2 / (1 + std::sqrt(1 - sin2));
   }
-  /// Too small for directions of floats to tell one place from another.
+  /// The cone is too small for float directions to distinguish points of the solid.
   bool remote() const { return one_minus_cosine < 1e-9f; }
   float pdf() const { return warp::cone_pdf(one_minus_cosine); }
   Vector3 direction(Point2 u) const {
@@ -41,7 +41,7 @@ bool Csg::first_seen(const Point3& from, const Vector3& direction, float time, S
   Hit hit;
   if (!intersect(ray, hit)) return false;
   surface_point(ray, hit, p);
-  // From a point of the surface itself, which it does not see.
+  // A hit at the surface on which `from` itself lies is skipped.
   if (hit.distance * std::abs(dot(p.normal, direction)) > 4 * p.error) return true;
   p.leave(direction, ray);
   if (!intersect(ray, hit)) return false;

@@ -4,21 +4,21 @@
 
 #include "geometry/geometry.h"
 
-// Which operands a point of the ray is inside of follows from what lies ahead of it: an operand whose next crossing goes out of
-// it is one. Nothing is counted from the start, so an operand's crossing that rounding loses (at a silhouette, say) spoils
-// nothing behind its next one.
+// Whether a point of the ray is inside an operand follows from the operand's next crossing: it is inside if that crossing is an
+// exit. No count is kept from the ray's origin, so if rounding loses a crossing (at a silhouette, say), the state is correct
+// again behind the operand's next crossing.
 //
-// Coincident surfaces. Faces of operands often lie in one plane: two boxes that touch, a hole drilled flush with a face. Which
-// of them a ray meets first is then decided by rounding, and to take them one by one would find gaps and skins without
-// thickness. So crossings that lie in one place are made together, and only what is so before and after counts. Two surfaces
-// that are known to within e1 and e2 are in one place where the ray is within e1 + e2 of both: with cosines c1 and c2 to the
-// normals, where it goes less than (e1 + e2) / max(c1, c2) from one to the other. Of coincident surfaces the first operand's is
-// the one that is seen, everywhere alike.
+// Coincident surfaces. Faces of operands often lie in one plane: two boxes that touch, a hole drilled flush with a face.
+// Rounding then decides which of them a ray hits first, and processing them one by one would produce gaps and skins of zero
+// thickness. So coincident crossings are processed together: only the states before and after the group matter. Two surfaces
+// with errors e1 and e2 are coincident where the ray is within e1 + e2 of both: with the cosines c1 and c2 between ray and
+// normals, where the distance along the ray between them is less than (e1 + e2) / max(c1, c2). Of coincident surfaces the
+// visible one is always that of the first operand, so that the choice is the same everywhere.
 
 namespace etendue {
 namespace {
 
-/// Room for crossings, kept by each thread from ray to ray. Combinations nest, so rooms are taken as from a stack.
+/// Buffers for crossings, reused by each thread from ray to ray. Combinations nest, so the buffers form a stack.
 class Rooms {
  public:
   std::vector<CsgCrossing>& take() {
@@ -35,7 +35,7 @@ class Rooms {
 };
 thread_local Rooms rooms;
 
-/// Whether a ray comes within a box. Slabs (Kay & Kajiya 1986), a little wider than rounding asks for.
+/// Ray-box slab test (Kay & Kajiya 1986), with slabs slightly wider than the rounding error requires.
 bool meets(const Bounds3& box, const Ray& ray) {
   float enter = 0, leave = ray.maximum;
   for (int k = 0; k < 3; ++k) {
@@ -44,7 +44,7 @@ bool meets(const Bounds3& box, const Ray& ray) {
     if (inverse < 0) std::swap(t0, t1);
     t1 *= 1 + 2 * rounding_bound(3);
     t0 *= 1 - 2 * rounding_bound(3);
-    // Within a slab's plane and along it neither is a number, which limits nothing.
+    // For a ray that lies in a slab's plane t0 and t1 may be NaN; the comparisons then leave the interval unchanged.
     if (t0 > enter) enter = t0;
     if (t1 < leave) leave = t1;
   }
@@ -59,14 +59,14 @@ bool in_one_place(const CsgCrossing& a, const CsgCrossing& b) {
 
 CsgWalk::CsgWalk(std::span<const CsgOperand> operands, int least_weight, const Ray& ray)
     : ray_(ray), least_weight_(least_weight), crossings_(rooms.take()) {
-  int reachable = 0;  // the weight of what the ray may be inside of somewhere
+  int reachable = 0;  // largest weight sum that the ray can still reach
   for (const CsgOperand& operand : operands) reachable += std::max(operand.weight, 0);
   for (const CsgOperand& operand : operands) {
     if (meets(operand.bounds, ray)) {
       CsgCrossing& c = crossings_.emplace_back();
       c.operand = &operand;
       c.rest = ray;
-      c.rest.maximum = infinity;  // what is inside may show only behind the ray's end
+      c.rest.maximum = infinity;  // whether the ray starts inside may follow only from a crossing beyond its end
       find(c);
       if (c.t < infinity) continue;
       crossings_.pop_back();
@@ -124,7 +124,8 @@ CsgCrossing* CsgWalk::nearest() const {
 }
 
 const CsgCrossing* CsgWalk::next() {
-  // Each turn goes on by more than an error of a surface; the limit, of a whole walk, is for objects that do not keep to that.
+  // Each iteration should advance by more than the error of a surface; the limit on the iterations of a whole walk is for
+  // objects that violate this.
   const int most = (1 << 13) + 16 * int(crossings_.size());
   while (turns_++ < most) {
     for (CsgCrossing& c : crossings_)
@@ -132,7 +133,7 @@ const CsgCrossing* CsgWalk::next() {
     CsgCrossing* const first = nearest();
     if (!first || !(float(first->t) < ray_.maximum)) return nullptr;
     CsgCrossing* found = first;
-    if (crossings_.size() == 1) {  // an operand by itself
+    if (crossings_.size() == 1) {  // only one operand is hit
       first->passed = true;
     } else {
       for (CsgCrossing& c : crossings_)

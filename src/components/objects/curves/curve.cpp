@@ -45,7 +45,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
                               range(0.5, 45), Effect::rebuild, unless("basis", "linear"));
   }
 
-  /// Its shape alone takes time, and light changes nothing of it.
+  /// Only building the shape takes time, and changes of emission do not affect it.
   void prepare_again() override {}
   void prepare() override {
     check();
@@ -64,7 +64,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
                                                                : std::span<const Item>(list);
       };
       flat.clear();
-      // Of a tube there may be any number of normals, of which none counts.
+      // A tube may have any number of normals; they are ignored.
       const std::span<const Normal3> fronts = form == Form::ribbon ? part(normals) : std::span<const Normal3>();
       flatten({std::span<const Point3>(counted).subspan(first, n), part(radius), fronts}, basis, double(radians(turn)), flat);
       const size_t kept = clean(flat, i);
@@ -107,7 +107,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
   float own_area_error() const override { return area_error_; }
 
   float own_sample(Point2 u, OwnPoint& p) const override {
-    // Bits below a float's are filled, for there may be more pieces than it has steps.
+    // Adds pseudo-random bits below the float's precision: there may be more pieces than a float in [0, 1) has values.
     const std::uint64_t bits = (std::uint64_t(std::bit_cast<std::uint32_t>(u.x)) << 32) | std::bit_cast<std::uint32_t>(u.y);
     const double fine = double(u.x) + double(mix_bits(bits + 0x9e3779b97f4a7c15ull) >> 11) * 0x1p-77;
     const double x = fine * area_until_.back();
@@ -169,8 +169,8 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
       fail("counts", "they add up to " + std::to_string(sum) + ", but there are " + std::to_string(points.size()) + " points");
   }
 
-  /// Leaves out points that lie where the one before lies, as floats tell it, and pieces at either end without a radius.
-  /// Returns how many points are left; what follows them is of no use.
+  /// Removes points that coincide with the previous one in float precision, and pieces of radius zero at either end. Returns
+  /// the number of points left; the elements behind them are invalid.
   size_t clean(std::vector<StrandPoint>& s, size_t strand) const {
     const auto rounded = [](const StrandPoint& p) {
       return Point3{float(p.position[0]), float(p.position[1]), float(p.position[2])};
@@ -181,7 +181,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
         const Point3 a = rounded(s[kept - 1]), b = rounded(s[i]);
         const float size = std::max(max_component(abs(a - Point3{})), max_component(abs(b - Point3{})));
         if (!(distance(a, b) > 4e-7f * size)) continue;
-        if (s[kept - 1].radius == 0 && s[i].radius == 0) {  // nothing is between them
+        if (s[kept - 1].radius == 0 && s[i].radius == 0) {  // the piece between them is empty
           if (kept > 1) fail("radius", "strand " + std::to_string(strand) + " has a piece without a radius");
           --kept;
         }
@@ -208,7 +208,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
       fail("normals", "strand " + std::to_string(strand) + " runs along its normal at u = " + fmt::format("{:.3g}", s[bad].u));
     }
     if (vertices_.size() >= size_t(1) << 30) fail("points", "there are more than 2^30 pieces");
-    for (size_t i = first; i + 1 < vertices_.size(); ++i)  // none between two flat ends in one place
+    for (size_t i = first; i + 1 < vertices_.size(); ++i)  // no piece between two flat ends at one position
       if (vertices_[i].u < vertices_[i + 1].u) pieces_.push_back(std::uint32_t(i));
   }
 
@@ -261,7 +261,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
       tube(primitive / 4).point(TubePiece::Face(primitive % 4), u, v, basis != CurveBasis::linear, p);
   }
 
-  /// The density [1/m^2] of own_sample: a piece or its face is chosen in proportion to its area.
+  /// The pdf [1/m^2] of own_sample: a piece or its face is chosen in proportion to its area.
   float pdf(std::uint32_t primitive, float u, float v) const {
     const size_t i = primitive / 4;
     double area = area_until_[i] - (i > 0 ? area_until_[i - 1] : 0), there = 0;
@@ -280,7 +280,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
 
   std::vector<CurveVertex> vertices_;
   std::vector<std::uint32_t> pieces_;  // the first vertex of each
-  std::vector<double> area_until_;     // of the pieces up to each, with their flat ends
+  std::vector<double> area_until_;     // cumulative area of the pieces, with their flat ends
   std::unique_ptr<PieceHierarchy> hierarchy_;
   Bounds3 own_bounds_;
   float area_error_ = 0;

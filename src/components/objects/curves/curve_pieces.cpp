@@ -5,7 +5,7 @@
 namespace etendue {
 namespace {
 
-/// What callbacks need: Embree hands its address back to them.
+/// Data for the callbacks: Embree passes the address of the context to them.
 struct Context {
   RTCIntersectContext embree;
   const DoubleRay* ray;
@@ -57,9 +57,9 @@ PieceHierarchy::PieceHierarchy(const Pieces& pieces, std::uint32_t count) : scen
   rtcSetGeometryOccludedFunction(geometry, occluded);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_.get(), geometry);
-  rtcReleaseGeometry(geometry);  // the scene holds it
+  rtcReleaseGeometry(geometry);  // the scene keeps a reference to it
   check_embree("taking in pieces of curves");
-  // Isolated: a thread that waits here within a parallel loop must not take up another part of that loop.
+  // Isolated: a thread that waits here within a parallel loop must not execute other iterations of that loop.
   tbb::this_task_arena::isolate([this] { rtcCommitScene(scene_.get()); });
   check_embree("building over pieces of curves");
 }

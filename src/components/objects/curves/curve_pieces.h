@@ -1,12 +1,12 @@
 #pragma once
-// Many small pieces of one object, searched by a hierarchy of their own.
+// PieceHierarchy: a bounding volume hierarchy over the many small pieces of one shape.
 
 #include "geometry/embree_device.h"
 #include "geometry/placed_object.h"
 
 namespace etendue {
 
-/// What a hierarchy asks of the pieces it is over.
+/// Interface of the pieces that a PieceHierarchy is built over.
 class Pieces {
  public:
   virtual ~Pieces() = default;
@@ -15,7 +15,7 @@ class Pieces {
   virtual bool intersect_piece(std::uint32_t piece, const DoubleRay&, float maximum, Hit&) const = 0;
 };
 
-/// A bounding volume hierarchy over pieces, by Embree; refers to them and to itself by address, so it stays where it is.
+/// A bounding volume hierarchy over pieces, by Embree; not copyable, because Embree stores the address of the pieces.
 class PieceHierarchy {
  public:
   PieceHierarchy(const Pieces&, std::uint32_t count);

@@ -2,10 +2,10 @@
 
 namespace etendue {
 
-// With the ray moved to the origin, a point of it lies on the line from a(u) = p(u, 0) along e(u) = p(u, 1) - p(u, 0) where
+// With the ray's origin at 0, the ray intersects the line from a(u) = p(u, 0) along e(u) = p(u, 1) - p(u, 0) where
 //   (a(u) x d).e(u) = 0,
 // a quadratic in u (Reshetov 2019, "Cool patches: a geometric approach to ray/bilinear patch intersections"); then, with
-// n = d x e,  v = -(a x d).-n / n^2  and  t = (a x e).n / n^2.
+// n = d x e,  v = (a x d).n / n^2  and  t = (a x e).n / n^2.
 bool RibbonPiece::intersect(const DoubleRay& ray, float maximum, float& t, float& u, float& v) const {
   const Double3 d(ray.direction), o = Double3(ray.origin) - p_;
   const double start = dot(0.5 * axis_ - o, d) / dot(d, d);
@@ -16,10 +16,10 @@ bool RibbonPiece::intersect(const DoubleRay& ray, float maximum, float& t, float
   const double discriminant = qb * qb - 4 * qa * qc;
   if (!(discriminant >= 0)) return false;
   const double root = -0.5 * (qb + std::copysign(std::sqrt(discriminant), qb));
-  constexpr double slack = 1e-9;  // better find a place twice, once on each piece, than let a ray through between them
+  constexpr double slack = 1e-9;  // better to hit a point twice, once on each piece, than to let a ray through between them
   bool found = false;
   float nearest = maximum;
-  for (const double at : {root / qa, qc / root}) {  // one may be infinite or not a number: then all tests fail
+  for (const double at : {root / qa, qc / root}) {  // one may be infinite or NaN: then all tests fail
     if (!(at >= -slack && at <= 1 + slack)) continue;
     const Double3 a = a0 + at * da, e = e0 + at * de, n = cross(d, e);
     const double nn = dot(n, n), beside = dot(cross(a, d), n) / nn;
@@ -48,7 +48,7 @@ void RibbonPiece::point(float u, float v, OwnPoint& p) const {
   p.dpdv = Vector3(dv);
   p.u = u;
   p.v = v;
-  // Rounding of the position in any direction, for it may cross into the next piece, and of where it is moved to.
+  // Rounding of the position in any direction, since it may fall into the next piece, and of the offset ray origin.
   p.error = rounding_bound(3) * (length(p.position - Point3{}) + from_.radius + to_.radius);
 }
 
@@ -90,7 +90,7 @@ size_t append_ribbon(std::span<const StrandPoint> points, std::vector<CurveVerte
   for (size_t i = 0; i < n; ++i) {
     const Double3 before(points[i > 0 ? i - 1 : 0].position), here(points[i].position),
         after(points[std::min(i + 1, n - 1)].position);
-    // Across both pieces that meet here; where the strand turns back, across one of them.
+    // The width is perpendicular to the mean direction of both adjacent pieces; where the strand reverses, to one piece.
     Double3 along;
     if (i > 0) along = normalize(here - before);
     if (i + 1 < n) along = along + normalize(after - here);

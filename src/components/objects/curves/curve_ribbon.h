@@ -1,5 +1,5 @@
 #pragma once
-// Strands that are flat: chains of bilinear patches.
+// Flat strands: chains of bilinear patches.
 
 #include "curve_tube.h"
 
@@ -21,9 +21,9 @@ class RibbonPiece {
   void point(float u, float v, OwnPoint&) const;
   Bounds3 bounds() const;
 
-  /// By Gauss's rule with so many points along and across: 2 or 3.
+  /// The area by Gauss-Legendre quadrature with `points` (2 or 3) points along and across.
   double area(int points) const;
-  /// u and v of a point, and the density [1/m^2] of a point at them: u in proportion to the width.
+  /// Samples u and v, and the pdf [1/m^2] of a point at them: the pdf of u is proportional to the width.
   Point2 sample(Point2) const;
   double pdf(float u, float v) const;
 
@@ -36,8 +36,8 @@ class RibbonPiece {
   Double3 p_, axis_, side0_, side1_;
 };
 
-/// Appends the vertices of a ribbon whose front faces as far along the points' normals as its course allows. Returns the
-/// place of a point whose normal runs along the strand, or points.size() when there is none.
+/// Appends the vertices of a ribbon. Its front faces along the points' normals, made orthogonal to the strand. Returns the
+/// index of the first point whose normal is parallel to the strand, or points.size() if there is none.
 size_t append_ribbon(std::span<const StrandPoint>, std::vector<CurveVertex>& vertices);
 
 }  // namespace etendue

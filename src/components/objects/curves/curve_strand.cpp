@@ -10,7 +10,7 @@ namespace {
 constexpr size_t channels = 7;  // position, radius, normal
 using Channels = std::array<double, channels>;
 
-/// What interpolates at a control point.
+/// The interpolated channels at a control point.
 Channels control(const StrandControl& s, size_t i) {
   const Point3& p = s.points[i];
   const Normal3 n = s.normals.empty() ? Normal3{} : s.normals[s.normals.size() == 1 ? 0 : i];
@@ -34,7 +34,7 @@ struct Span {
   }
 };
 
-// Rows give the powers 1, t, t^2, t^3 of four control points (Catmull & Rom 1974; de Boor 1978).
+// Row k gives the coefficient of t^k from four control points (Catmull & Rom 1974; de Boor 1978).
 using Matrix = double[4][4];
 constexpr Matrix bezier = {{1, 0, 0, 0}, {-3, 3, 0, 0}, {3, -6, 3, 0}, {-1, 3, -3, 1}};
 constexpr Matrix b_spline = {
@@ -49,7 +49,7 @@ Span span_of(const Matrix& m, const std::array<Channels, 4>& c) {
   return s;
 }
 
-/// Pieces a span is cut into.
+/// The number of straight pieces into which a span is cut.
 int pieces_of(const Span& s, double turn) {
   constexpr int steps = 8, most = 256;
   double turned = 0;
@@ -62,7 +62,7 @@ int pieces_of(const Span& s, double turn) {
     if (i > 0) turned += std::atan2(std::sqrt(x * x + y * y + z * z), dot);
     before = now;
   }
-  // A chord of a function is off by at most 1/8 of its second derivative, times the square of the step.
+  // Linear interpolation of a function is off by at most 1/8 of its second derivative times the square of the step.
   const double bend = std::max(std::abs(2 * s.power[2][3]), std::abs(2 * s.power[2][3] + 6 * s.power[3][3]));
   const double largest = std::max({s.at(0)[3], s.at(0.5)[3], s.at(1)[3]});
   const double swell = bend > 0 && largest > 0 ? std::sqrt(bend / (8 * 0.01 * largest)) : 0;
@@ -87,7 +87,7 @@ void flatten(const StrandControl& s, CurveBasis basis, double turn, std::vector<
     for (size_t i = 0; i < n; ++i) out.push_back(point_of(control(s, i), double(i) / double(n - 1)));
     return;
   }
-  // Beyond its ends a Catmull-Rom spline goes on as far as it came, so that it runs through all of its points.
+  // A Catmull-Rom spline is extended by a mirrored control point at each end, so that it passes through all of its points.
   const auto mirrored = [&](size_t end, size_t inner) {
     const Channels a = control(s, end), b = control(s, inner);
     Channels r;

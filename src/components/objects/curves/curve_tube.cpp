@@ -39,7 +39,7 @@ TubePiece::Line TubePiece::line(double psi) const {
   return l;
 }
 
-// s depends on psi by n.e alone, and monotonically: its extremes lie at those of n.e.
+// s depends on psi only through n.e, and monotonically, so its extremes are at the extremes of n.e.
 bool TubePiece::extent(Extent& x) const {
   const auto cut = [&](const Double3& n, double o, double& first, double& last) {
     const double along = dot(n, a_), across = std::sqrt(std::max(0.0, 1 - along * along));
@@ -79,7 +79,7 @@ Bounds3 TubePiece::bounds() const {
 }
 
 bool TubePiece::intersect(const DoubleRay& ray, float maximum, float& t, Face& face, float& u, float& v) const {
-  // The ray from where it is nearest to the piece's middle, measured from the piece's beginning.
+  // The ray starts at its point nearest to the piece's middle; coordinates are relative to the piece's beginning.
   const Double3 d(ray.direction), o = Double3(ray.origin) - p_;
   const double start = dot(0.5 * length_ * a_ - o, d) / dot(d, d);
   const Double3 q = o + start * d;
@@ -100,10 +100,11 @@ bool TubePiece::intersect(const DoubleRay& ray, float maximum, float& t, Face& f
   const double qa = c2_ * dot(d_across, d_across) - dw * dw, qb = c2_ * dot(across, d_across) - dw * w,
                qc = c2_ * dot(across, across) - w * w;
   if (const double discriminant = qb * qb - qa * qc; discriminant >= 0) {
-    // The planes are moved a little: better find a place twice, once on each piece, than let a ray through between them.
+    // The planes are moved outwards by `slack`: better to hit a point twice, once on each piece, than to let a ray through
+    // between them.
     const double slack = 1e-7 * (r_ + double(to_.radius));
     const double root = -(qb + std::copysign(std::sqrt(discriminant), qb));
-    for (const double s : {root / qa, qc / root}) {  // one may be infinite or not a number: then all tests fail
+    for (const double s : {root / qa, qc / root}) {  // one may be infinite or NaN: then all tests fail
       const Double3 y = q + s * d;
       if (!(w + s * dw >= 0 && dot(n0_, y) >= o0_ - slack && dot(n1_, y) <= o1_ + slack) || !take(s, round)) continue;
       double psi = std::atan2(dot(y, e2_), dot(y, e1_));
@@ -136,7 +137,7 @@ void TubePiece::point(Face face, float u, float v, bool smooth, OwnPoint& p) con
     y = s * a_ + r * n;
     du = ((l.s1 - l.s0) / double(to_.u - from_.u)) * step;
     dv = (2 * M_PI) * ((l.ds0 + along * (l.ds1 - l.ds0)) * step + r * c_ * l.around);
-    if (smooth) {  // about the spline's tangent, which the planes stand across
+    if (smooth) {  // normal about the spline's tangent, which is interpolated from the normals of the planes
       const Double3 tangent = normalize((1 - along) * n0_ + along * n1_);
       shading = c_ * normalize(l.out - dot(l.out, tangent) * tangent) - k_ * tangent;
     }
@@ -156,7 +157,7 @@ void TubePiece::point(Face face, float u, float v, bool smooth, OwnPoint& p) con
   p.dpdv = Vector3(dv);
   p.u = u;
   p.v = v;
-  // Rounding of the position in any direction, for it may cross into the next piece, and of where it is moved to;
+  // Rounding of the position in any direction, since it may fall into the next piece, and of the offset ray origin;
   // intersection itself is in double.
   p.error = rounding_bound(3) * (length(p.position - Point3{}) + from_.radius + to_.radius);
 }
@@ -167,8 +168,8 @@ double TubePiece::round_area(int steps) const {
   return c2_ * sum * 2 * M_PI / steps;
 }
 
-// Of a smooth function of an angle, means over equal steps converge exponentially; of a cylinder, cut by planes, they are
-// exact already.
+// For a smooth periodic function of an angle the mean over equal steps converges exponentially; for a cylinder cut by planes it
+// is exact.
 double TubePiece::area(Face face) const {
   if (face != round) return M_PI * end_radius(face) * end_radius(face);
   return round_area(16);
@@ -200,7 +201,7 @@ double TubePiece::pdf(Face face, float, float v) const {
 size_t append_tube(std::span<const StrandPoint> points, double turned_by, std::vector<CurveVertex>& vertices) {
   constexpr double sharpest = -0.5;  // cosine of the turn beyond which a corner's tip would be too long: 120 degrees
   const size_t n = points.size();
-  // First two vertices for each place, flat ends all.
+  // First two vertices for each point, all with flat ends.
   std::vector<CurveVertex> ends(2 * n);
   for (size_t i = 0; i < 2 * n; ++i) {
     const StrandPoint& p = points[i / 2];
@@ -211,7 +212,7 @@ size_t append_tube(std::span<const StrandPoint> points, double turned_by, std::v
     ends[i].reference = {1, 0, 0};
   }
   const auto piece = [&](size_t i) { return TubePiece(ends[2 * i + 1], ends[2 * i + 2]); };
-  std::vector<double> tilt(n, 2);  // cosine between the plane and the pieces that meet there; 2: cut
+  std::vector<double> tilt(n, 2);  // least cosine between the plane's normal and the axes of the adjacent pieces; 2: cut
   Double3 e;
   for (size_t i = 0; i + 1 < n; ++i) {
     const TubePiece after = piece(i);
@@ -222,7 +223,8 @@ size_t append_tube(std::span<const StrandPoint> points, double turned_by, std::v
     } else {
       const TubePiece before = piece(i - 1);
       const Double3 a = before.axis(), half = a + b;
-      if (dot(half, half) > 1e-6) {  // reflected, so that v goes on (Wang et al. 2008, "Computation of rotation minimizing
+      if (dot(half, half) >
+          1e-6) {  // reflected, so that v is continuous (Wang et al. 2008, "Computation of rotation minimizing
         const Double3 m = normalize(half);  // frames")
         e = e - 2 * dot(e, m) * m;
       }
@@ -241,7 +243,7 @@ size_t append_tube(std::span<const StrandPoint> points, double turned_by, std::v
     e = normalize(e - dot(e, b) * b);
     ends[2 * i + 1].reference = Vector3(e);
   }
-  // Where a tube bends within its own radius planes would meet inside of it: it is cut at the one that leans most.
+  // Where a tube bends within its own radius, the planes would intersect inside it: it is cut at the plane that leans most.
   const auto cut = [&](size_t i) {
     ends[2 * i].flat = ends[2 * i + 1].flat = true;
     tilt[i] = 2;
@@ -250,7 +252,7 @@ size_t append_tube(std::span<const StrandPoint> points, double turned_by, std::v
     if ((ends[2 * i + 1].flat && ends[2 * i + 2].flat) || piece(i).proper()) continue;
     const size_t where = tilt[i] < tilt[i + 1] ? i : i + 1;
     cut(where);
-    i -= std::min<size_t>(i + 1, where == i ? 2 : 1);  // what was changed is looked at again
+    i -= std::min<size_t>(i + 1, where == i ? 2 : 1);  // changed pieces are tested again
   }
   size_t cuts = 0;
   for (size_t i = 0; i < n; ++i) {

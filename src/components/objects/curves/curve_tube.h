@@ -1,5 +1,5 @@
 #pragma once
-// Strands with a round cross-section: chains of cones, cut so that they fit.
+// Strands with a round cross-section: chains of cones, cut by planes so that they join without gaps.
 
 #include <span>
 #include <vector>
@@ -29,14 +29,14 @@ inline Double3 cross(const Double3& a, const Double3& b) {
 inline double length(const Double3& v) { return std::sqrt(dot(v, v)); }
 inline Double3 normalize(const Double3& v) { return (1 / length(v)) * v; }
 
-/// Where two pieces of a strand meet, or where it ends.
+/// A vertex of a strand: the joint of two pieces, or an end.
 struct CurveVertex {
   Point3 position;
   float radius = 0;
-  /// Of a tube: unit normal of the plane that divides the pieces. Of a ribbon: unit, across it.
+  /// For a tube: unit normal of the plane that separates the pieces. For a ribbon: unit vector across it.
   Vector3 across;
-  float offset = 0;   ///< of that plane from the position, along its normal
-  Vector3 reference;  ///< unit, across the axis of the tube's piece that begins here: where its v is 0
+  float offset = 0;   ///< signed distance of that plane from the position, along its normal
+  Vector3 reference;  ///< unit, perpendicular to the axis of the tube's piece that begins here: the direction of v = 0
   float u = 0;        ///< along the strand
   bool flat = false;  ///< a tube's flat end
 };
@@ -56,33 +56,33 @@ class TubePiece {
 
   /// The nearest intersection with a t that is positive as a float and below a maximum; u and v belong to the face.
   bool intersect(const DoubleRay&, float maximum, float& t, Face&, float& u, float& v) const;
-  /// u and v in [0, 1]: on the round face along the piece and around it, on flat ends across the disc.
-  /// Smooth: shading normals do not show that the tube is made of pieces.
+  /// u and v in [0, 1]: on the round face along the piece and around it, on flat ends across the disc. With `smooth`, shading
+  /// normals are interpolated along the spline, so that the pieces are not visible.
   void point(Face, float u, float v, bool smooth, OwnPoint&) const;
   Bounds3 bounds() const;
 
   double area(Face) const;
-  /// A bound of the relative error of the round face's area.
+  /// An estimate of the relative error of the round face's area.
   double area_error() const;
   bool has(Face f) const { return f == round || (f == begin ? from_.flat && r_ > 0 : to_.flat && to_.radius > 0); }
-  /// u and v of a point by area, and the density [1/m^2] of a point at them.
+  /// Samples u and v by area, and the pdf [1/m^2] of a point at them.
   Point2 sample(Face, Point2) const;
   double pdf(Face, float u, float v) const;
 
-  /// Whether the planes at both ends meet outside of the tube only.
+  /// Whether the planes at both ends intersect only outside the tube.
   bool proper() const;
   Double3 axis() const { return a_; }
   /// Change of the radius per length.
   double slope() const { return k_; }
 
  private:
-  /// The line on the cone at an angle, from plane to plane.
+  /// The line on the cone at the angle psi, from plane to plane.
   struct Line {
     Double3 out, around, normal;  // e, its derivative by psi, m
     double s0, s1, ds0, ds1;      // derivatives by psi
   };
   Line line(double psi) const;
-  /// Where along s the planes cut the cone.
+  /// The ranges of s in which the planes cut the cone.
   struct Extent {
     double first0, last0, first1, last1;
   };
@@ -95,12 +95,12 @@ class TubePiece {
   const CurveVertex &from_, &to_;
   Double3 p_, a_, e1_, e2_, n0_, n1_;  // e1, e2, -a are right-handed, so that dpdu x dpdv points outwards
   double length_, r_, k_, c2_, c_;
-  double o0_, o1_;  // both planes are n.y = o, measured from the piece's beginning
+  double o0_, o1_;  // both planes are n.y = o, with y relative to the piece's beginning
 };
 
-/// Appends the vertices of the tube along a chain of points, cutting it where it bends too sharply for its pieces to be
-/// fitted: there it has two flat ends. Points must be apart, and their radii may differ by less than their distance.
-/// Returns in how many places it was cut.
+/// Appends the vertices of the tube along a chain of points. Where the tube bends too sharply for its pieces to be joined, it
+/// is cut, with two flat ends. Consecutive points must be distinct, and their radii must differ by less than their distance.
+/// `turned_by` [rad] rotates the direction of v = 0 about the axis. Returns the number of cuts.
 size_t append_tube(std::span<const StrandPoint>, double turned_by, std::vector<CurveVertex>& vertices);
 
 }  // namespace etendue

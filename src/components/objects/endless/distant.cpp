@@ -1,4 +1,4 @@
-// Distant: a luminaire at infinity whose light all travels one way.
+// Distant: a delta luminaire at infinity whose light travels in a single direction (directional light).
 
 #include "geometry/geometry.h"
 #include "geometry/without_extent.h"
@@ -6,10 +6,10 @@
 namespace etendue {
 namespace {
 
-// A single direction stands for a disc of 1 sr at infinity, shrunk (SceneObject::delta): what its emission calls radiance
-// L [W m^-2 sr^-1 nm^-1] is, times 1 sr, the irradiance E [W m^-2 nm^-1] on a plane across the light, and the direction is
-// chosen with density 1 per sr. Through the disc of radius R that shades the whole scene goes the power pi R^2 E: with
-// area R^2 it is pi * area * L, as for any diffuse luminaire.
+// The single direction is the limit of a disc of 1 sr at infinity, shrunk at constant irradiance (SceneObject::delta): its
+// emission's radiance L [W m^-2 sr^-1 nm^-1], times 1 sr, is the irradiance E [W m^-2 nm^-1] on a plane perpendicular to the
+// light, and the direction is sampled with pdf 1 / sr. The power through the disc of radius R that shades the whole scene is pi
+// R^2 E: with area R^2 it is pi * area * L, as for any diffuse luminaire.
 class Distant final : public SceneObject {
  public:
   static void describe(Description<Distant>& d) {
@@ -22,7 +22,7 @@ class Distant final : public SceneObject {
   }
 
   void prepare() override {
-    // In double: the square of a direction's length may be too large or too small for a float.
+    // In double: the squared length of a direction may be too large or too small for a float.
     const double x = double(direction.x), y = double(direction.y), z = double(direction.z),
                  l = std::sqrt(x * x + y * y + z * z);
     if (!(l > 0 && std::isfinite(l))) fail("direction", "must be finite and not zero");
@@ -63,13 +63,13 @@ class Distant final : public SceneObject {
     fill(from, s.direction, time, s.point);
     return s;
   }
-  /// No direction is that of its light but by intention.
+  /// 0: the direction is a delta distribution, which no other sampling technique can generate.
   float visible_pdf(const Point3&, const Vector3&, const SurfacePoint&) const override { return 0; }
 
   Vector3 direction{0, -1, 0};
 
  private:
-  /// The light's place as seen from a point: outside the scene, as an Environment has it, but without a normal.
+  /// The light's point as seen from another point: outside the scene, as for an Environment, but without a normal.
   void fill(const Point3& from, const Vector3& towards, float time, SurfacePoint& p) const {
     p.position = from + (2 * radius_ + distance(from, centre_)) * towards;
     p.error = 0;
@@ -84,7 +84,7 @@ class Distant final : public SceneObject {
     p.u = p.v = 0;
   }
 
-  Vector3 travel_{0, -1, 0};  // unit, in the object's coordinates
+  Vector3 travel_{0, -1, 0};  // unit, in object space
   Point3 centre_{0, 0, 0};
   float radius_ = 1;
 };

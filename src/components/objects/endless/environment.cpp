@@ -1,4 +1,4 @@
-// Environment: a luminaire at infinity, all around.
+// Environment: a luminaire at infinity in all directions (environment map).
 
 #include "etendue/core/warp.h"
 #include "geometry/geometry.h"
@@ -30,7 +30,7 @@ class Environment final : public SceneObject {
   bool intersect(const Ray&, Hit&) const override { return false; }
   bool occludes(const Ray&) const override { return false; }
 
-  /// Where a ray that left the scene meets it: far outside the scene, facing the ray.
+  /// The point where a ray that left the scene hits the environment: far outside the scene, with its normal towards the ray.
   void surface_point(const Ray& ray, const Hit&, SurfacePoint& p) const override {
     fill(ray.origin, normalize(ray.direction), ray.time, p);
   }
@@ -42,8 +42,8 @@ class Environment final : public SceneObject {
     p.dpdv = frame.t;
   }
 
-  /// Of the sphere around the scene, through which its light enters [m^2]: the power of the light that does is
-  /// pi * area * radiance, as of any diffuse luminaire.
+  /// The area [m^2] of the scene's bounding sphere, through which the light enters: its power is pi * area * radiance, as for
+  /// any diffuse luminaire.
   float area(float) const override { return 4 * pi * radius_ * radius_; }
   /// There are no points with an area at infinity.
   SurfaceSample sample_area(Point2, float) const override { return {}; }

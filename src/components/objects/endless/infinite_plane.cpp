@@ -1,4 +1,4 @@
-// InfinitePlane: a floor without end.
+// InfinitePlane: an unbounded plane, such as a floor.
 
 #include "geometry/placed_object.h"
 
@@ -14,9 +14,10 @@ class InfinitePlane final : public PlacedObject {
   }
 
   void prepare() override {
-    // How far its own coordinates may go for points to stay within endless_box(), whatever the transform enlarges.
+    // Computes limit_, the largest object-space coordinate whose transformed point stays within endless_box().
     double reach = 1, shift = 0;
-    // It counts from beside where the scene does, so that the ground is as fine there as anywhere.
+    // Object-space coordinates are relative to the projection of the scene's origin onto the plane, so that floats are most
+    // precise near the camera.
     count_with_scene(transform);
     transform.count_from(transform.outer(), {transform.inner().x, transform.inner().y, 0});
     for (const AnimatedTransform::Key& key : transform.keys()) {
@@ -40,7 +41,7 @@ class InfinitePlane final : public PlacedObject {
   }
 
  protected:
-  Bounds3 own_bounds() const override { return {}; }  // not asked for: there are none
+  Bounds3 own_bounds() const override { return {}; }  // not called: the plane is unbounded
 
   bool own_intersect(const Ray& ray, Hit& hit) const override {
     const DoubleRay r(ray);
@@ -62,7 +63,7 @@ class InfinitePlane final : public PlacedObject {
     p.uv = {float(double(hit.u) + transform.inner().x), float(double(hit.v) + transform.inner().y)};
     p.dpdu = {1, 0, 0};
     p.dpdv = {0, 1, 0};
-    // z = 0 is exact; but a ray that starts there must not find it again by the rounding of its own coordinates.
+    // z = 0 is exact, but a ray that starts on the plane must not hit it again because of the rounding of its own coordinates.
     p.error = 1e-12f;
   }
 

@@ -1,4 +1,4 @@
-// Point: a luminaire without extent.
+// Point: a delta luminaire at a point (point light, spot light).
 
 #include "geometry/geometry.h"
 #include "geometry/without_extent.h"
@@ -6,13 +6,13 @@
 namespace etendue {
 namespace {
 
-// A point stands for a sphere with a cross section of 1 m^2, shrunk while its power is kept (SceneObject::delta):
-// its area is that of the sphere, 4 m^2, as a sphere of cross section pi r^2 has 4 pi r^2, and what its emission calls
-// radiance L [W m^-2 sr^-1 nm^-1] is, times 1 m^2, its intensity I [W sr^-1 nm^-1]. A DiffuseEmission of power
-// P = pi * area * L then has I = P / (4 pi).
+// A point is the limit of a sphere with a cross section of 1 m^2, shrunk at constant power (SceneObject::delta). Its area is
+// that of the sphere, 4 m^2, since a sphere of cross section pi r^2 has the area 4 pi r^2. Its emission's radiance L [W m^-2
+// sr^-1 nm^-1], times 1 m^2, is its intensity I [W sr^-1 nm^-1]. A DiffuseEmission of power P = pi * area * L then has I = P /
+// (4 pi).
 //
-// Seen from distance r, 1 m^2 of cross section fills the solid angle 1 / r^2, so one point per m^2 is r^2 points per sr:
-// the estimate L / r^2 of the irradiance across the light is I / r^2, as it must be.
+// Seen from distance r, 1 m^2 of cross section fills the solid angle 1 / r^2, so a pdf of 1 / m^2 is a pdf of r^2 / sr: the
+// estimate L / r^2 of the irradiance on a plane perpendicular to the light is I / r^2, as it must be.
 class Point final : public SceneObject {
  public:
   static void describe(Description<Point>& d) {
@@ -43,7 +43,7 @@ class Point final : public SceneObject {
   void surface_point(const Ray& ray, const Hit&, SurfacePoint& p) const override { fill(ray.time, p); }
   void tangents(SurfacePoint&) const override {}  // no surface: they stay zero
 
-  /// Of the sphere it stands for [m^2].
+  /// The area of the sphere whose limit the point is [m^2].
   float area(float) const override { return 4; }
   SurfaceSample sample_area(Point2, float time) const override {
     SurfaceSample s;
@@ -59,12 +59,12 @@ class Point final : public SceneObject {
     fill(time, s.point);
     s.delta = true;
     const Vector3 to = s.point.position - from;
-    s.pdf = length_squared(to);  // 0 at the point itself: from there it has no direction
+    s.pdf = length_squared(to);  // 0 from the point itself: there is no direction
     s.distance = std::sqrt(s.pdf);
     s.direction = s.distance > 0 ? to / s.distance : Vector3{0, 0, 1};
     return s;
   }
-  /// No direction is the point's but by intention.
+  /// 0: the direction is a delta distribution, which no other sampling technique can generate.
   float visible_pdf(const Point3&, const Vector3&, const SurfacePoint&) const override { return 0; }
 
   DoublePoint3 position{0, 0, 0};
@@ -74,7 +74,7 @@ class Point final : public SceneObject {
     Transform scratch;
     const Transform& t = placed(transform, time, scratch);
     p.position = t(Point3{});
-    p.error = 0;  // the point is where it was found to be: there is no surface it could be off
+    p.error = 0;  // there is no surface from which the position could deviate
     p.normal = p.shading_normal = p.object_normal = Normal3{};
     p.uv = {};
     p.dpdu = p.dpdv = {};

@@ -1,4 +1,4 @@
-// Surroundings: what all other objects stand in.
+// Surroundings: the medium around all other objects.
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 namespace etendue {
 namespace {
 
-// Its inside is all of space. Paths begin in it and never cross its surface, as there is none: MediumStack keeps it below all
-// objects that paths enter. A medium without end lets nothing come from infinity; one that has an end does, and is there within
-// a sphere around the scene alone, wherever a ray begins (transport/medium_interval.h).
+// Its inside is all of space. Paths begin in it and never cross its surface, since it has none: MediumStack keeps it below all
+// objects that paths enter. An unbounded medium blocks all light from infinity. A bounded one lets light through; it fills only
+// a sphere around the scene, wherever a ray begins (transport/medium_interval.h).
 class Surroundings final : public SceneObject {
  public:
   static void describe(Description<Surroundings>& d) {
@@ -44,7 +44,7 @@ class Surroundings final : public SceneObject {
 
   float surrounding_reach(const Ray& ray) const override {
     if (reach == 0) return infinity;
-    // The far end of the sphere, in double as Sphere's; of a ray that passes it by, nothing.
+    // The ray's exit from the sphere, computed in double as in Sphere; 0 for a ray that misses the sphere.
     double a = 0, b = 0, c = -double(radius_) * double(radius_);
     for (int k = 0; k < 3; ++k) {
       const double d = double(ray.direction[k]), o = double(ray.origin[k]) - double(centre_[k]);
@@ -70,7 +70,8 @@ class Surroundings final : public SceneObject {
   float reach = 0;
 
  private:
-  /// What shines without end and absorbs nothing would be endlessly bright.
+  /// Throws Error if the medium emits at a wavelength at which its extinction is zero: an unbounded medium would have infinite
+  /// radiance.
   void refuse_endless_light() const {
     for (int first = 360; first <= 830; first += spectrum_size) {
       Wavelengths w;

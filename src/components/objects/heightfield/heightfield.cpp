@@ -13,7 +13,7 @@
 namespace etendue {
 namespace {
 
-// A hit's primitive is the cell's number, u and v its place in the cell.
+// A hit's primitive is the cell's number, u and v are the hit's position in the cell.
 class Heightfield final : public PlacedObject {
  public:
   static void describe(Description<Heightfield>& d) {
@@ -43,7 +43,7 @@ class Heightfield final : public PlacedObject {
         .member<&Heightfield::smooth>("smooth", "", "shading normals hide that the surface is made of cells", Effect::rebuild);
   }
 
-  /// Its shape alone takes time, and light changes nothing of it.
+  /// Only building the shape takes time, and changes of emission do not affect it.
   void prepare_again() override {}
   void prepare() override {
     if (!(size.x > 0 && size.y > 0 && size.x < infinity && size.y < infinity)) fail("size", "must be positive and finite");
@@ -70,7 +70,7 @@ class Heightfield final : public PlacedObject {
     place();
   }
 
-  // From close by half of the samples are by direction: in points by area the nearest cells would hardly ever be found.
+  // Near the surface half of the samples are by direction: samples by area would rarely hit the nearest cells.
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
     const auto sample = [&](Point2 v, SurfaceSample& s) {
       OwnPoint own;
@@ -125,7 +125,7 @@ class Heightfield final : public PlacedObject {
   double own_area() const override { return area_; }
   float own_area_error() const override { return area_error_; }
 
-  // A row in proportion to its area, a cell of it likewise, and a place in it by x and y.
+  // Chooses a row in proportion to its area, then a cell of the row likewise, then a position uniform in the cell's x and y.
   float own_sample(Point2 u, OwnPoint& p) const override {
     const Table& table = this->table();
     const size_t wide = size_t(grid_.cells_x());
@@ -146,7 +146,7 @@ class Heightfield final : public PlacedObject {
   }
 
  private:
-  /// Made when first asked for: shares of the area, those of a cell in its row, summed up to each.
+  /// Computed at the first call: the cumulative area distribution of the rows, and of the cells in each row.
   struct Table {
     std::once_flag made;
     std::vector<float> rows, cells;
@@ -184,8 +184,8 @@ class Heightfield final : public PlacedObject {
     p.primitive = std::uint32_t(j) * std::uint32_t(grid_.cells_x()) + std::uint32_t(i);
     p.u = u;
     p.v = v;
-    // Rounding of the position in any direction, for it may cross into the next cell, of u and v across a step, and of
-    // where it is moved to; intersection itself is in double.
+    // Rounding of the position in any direction, since it may fall into the next cell; of u and v times the cell size; and of
+    // the offset ray origin. Intersection itself is in double.
     p.error = rounding_bound(3) * (length(p.position - Point3{}) + float(step_x_ + step_y_));
   }
 
@@ -203,7 +203,7 @@ class Heightfield final : public PlacedObject {
     return {float(-slope_x * s), float(-slope_y * s), float(s)};
   }
 
-  /// By slopes at the corners, interpolated.
+  /// The shading normal from slopes interpolated between the cell's corners.
   Normal3 smooth_normal(int i, int j, double u, double v) const {
     double x = 0, y = 0;
     for (int k = 0; k < 4; ++k) {
@@ -215,18 +215,19 @@ class Heightfield final : public PlacedObject {
     return normal_of(x / step_x_, y / step_y_);
   }
 
-  /// Area of the surface over one of the ground.
+  /// Area of the surface per area of the ground.
   double stretch(const HeightfieldGrid::Cell& c, double u, double v) const {
     const double x = c.slope_u(v) / step_x_, y = c.slope_v(u) / step_y_;
     return std::sqrt(1 + x * x + y * y);
   }
-  /// Mean stretch over a cell by Gauss's rule with two points each way.
+  /// Mean stretch over a cell by Gauss-Legendre quadrature with 2 x 2 points.
   double mean_stretch(const HeightfieldGrid::Cell& c) const {
     constexpr double a = 0.21132486540518713, b = 1 - a;
     return 0.25 * (stretch(c, a, a) + stretch(c, a, b) + stretch(c, b, a) + stretch(c, b, b));
   }
 
-  /// The area by Gauss's rule; Simpson's, which is off by more and the other way, bounds its error.
+  /// The area by Gauss-Legendre quadrature. The difference from Simpson's rule, whose error is larger and of opposite sign,
+  /// bounds its error.
   void measure() {
     std::vector<double> gauss(size_t(grid_.cells_y())), simpson(size_t(grid_.cells_y()));
     tbb::parallel_for(0, grid_.cells_y(), [&](int j) {
@@ -248,7 +249,7 @@ class Heightfield final : public PlacedObject {
   }
 
   const Table& table() const {
-    // Isolated: a thread that waits here within a parallel loop must not take up another part of that loop.
+    // Isolated: a thread that waits here within a parallel loop must not execute other iterations of that loop.
     std::call_once(table_->made, [this] { tbb::this_task_arena::isolate([this] { make_table(); }); });
     return *table_;
   }
@@ -268,7 +269,7 @@ class Heightfield final : public PlacedObject {
     for (size_t j = 0; j < high; ++j) table_->rows[j] = float((part += sums[j]) / sum);
   }
 
-  /// The density [1/m^2] of own_sample, with the shares as they were rounded.
+  /// The pdf [1/m^2] of own_sample, computed from the rounded distributions.
   float pdf(size_t i, size_t j, float u, float v) const {
     const Table& t = table();
     const float* row = t.cells.data() + j * size_t(grid_.cells_x());

@@ -44,10 +44,10 @@ std::pair<double, double> HeightfieldGrid::corner_slopes(int i, int j) const {
   return {(at(right, j) - at(left, j)) / (right - left), (at(i, above) - at(i, below)) / (above - below)};
 }
 
-// Squares of cells are entered front to back where the ray passes between their lowest and highest point (Tevs, Ihrke &
-// Seidel 2008, "Maximum mipmaps for fast, accurate, and scalable dynamic height field rendering"). Over a cell the ray's
-// height above the surface is a quadratic in t. Squares are taken a little too large: neighbours continue each other, so a
-// place found on both is the same, and none is missed between them.
+// Hierarchical traversal, front to back, of the squares whose range of heights the ray enters (Tevs, Ihrke & Seidel 2008,
+// "Maximum mipmaps for fast, accurate, and scalable dynamic height field rendering"). Over a cell the ray's height above the
+// surface is a quadratic in t. Squares are slightly enlarged, so that no hit is missed between neighbours; the surface is
+// continuous, so a point found in two neighbouring cells is the same.
 bool HeightfieldGrid::nearest(const double (&o)[3], const double (&d)[3], float maximum, Found& found) const {
   constexpr double margin = 1e-7;  // [cells]
   const double rise = 1e-7 * double(whole_.second - whole_.first) + 1e-12 * std::abs(double(whole_.second)) +
@@ -55,7 +55,7 @@ bool HeightfieldGrid::nearest(const double (&o)[3], const double (&d)[3], float 
   const double inverse[3] = {1 / d[0], 1 / d[1], 1 / d[2]};
   float best = maximum;
   bool any = false;
-  /// Limits t to a slab across axis k.
+  /// Clips the range of t to a slab across axis k.
   const auto clip = [&](int k, double low, double high, double& enter, double& leave) {
     if (d[k] == 0) return o[k] >= low && o[k] <= high;
     double t0 = (low - o[k]) * inverse[k], t1 = (high - o[k]) * inverse[k];
@@ -72,7 +72,7 @@ bool HeightfieldGrid::nearest(const double (&o)[3], const double (&d)[3], float 
     const double discriminant = qb * qb - 4 * qa * qc;
     if (!(discriminant >= 0)) return;
     const double root = -0.5 * (qb + std::copysign(std::sqrt(discriminant), qb));
-    for (const double s : {root / qa, qc / root}) {  // one may be infinite or not a number: then all tests fail
+    for (const double s : {root / qa, qc / root}) {  // one may be infinite or NaN: then all tests fail
       const float t = float(enter + s);
       if (!(s >= 0 && enter + s <= leave && t > 0 && t < best)) continue;
       best = t;
@@ -91,7 +91,7 @@ bool HeightfieldGrid::nearest(const double (&o)[3], const double (&d)[3], float 
     const Square s = stack[--size];
     const double wide = double(1 << s.level);
     const Range r = range_of(s.level, s.i, s.j);
-    // A little behind the origin as well: a float's t > 0 is what counts.
+    // The range includes t < 0: the test t > 0 is done on the rounded float.
     double enter = -infinity, leave = infinity;
     if (!clip(0, s.i * wide - margin, std::min((s.i + 1) * wide, double(cells_x())) + margin, enter, leave) ||
         !clip(1, s.j * wide - margin, std::min((s.j + 1) * wide, double(cells_y())) + margin, enter, leave) ||
@@ -103,7 +103,7 @@ bool HeightfieldGrid::nearest(const double (&o)[3], const double (&d)[3], float 
     }
     const int below_x = s.level > 1 ? levels_[size_t(s.level - 2)].nx : cells_x(),
               below_y = s.level > 1 ? levels_[size_t(s.level - 2)].ny : cells_y();
-    for (int k = 3; k >= 0; --k) {  // the nearest last, to be taken first
+    for (int k = 3; k >= 0; --k) {  // the nearest is pushed last, so that it is popped first
       const int i = 2 * s.i + ((k & 1) ^ flip_x), j = 2 * s.j + ((k >> 1) ^ flip_y);
       if (i < below_x && j < below_y) stack[size++] = {s.level - 1, i, j};
     }

@@ -1,5 +1,5 @@
 #pragma once
-// A surface z = h(x, y) over a grid, bilinear in each cell.
+// HeightfieldGrid: a surface z = h(x, y) over a regular grid, bilinear in each cell.
 
 #include <utility>
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace etendue {
 
-/// Heights [m] at the corners of cells. Places are told in cells: cell (i, j) is [i, i + 1] x [j, j + 1].
+/// Heights [m] at the corners of cells. x and y are in units of cells: cell (i, j) is [i, i + 1] x [j, j + 1].
 class HeightfieldGrid {
  public:
   HeightfieldGrid() = default;
-  /// Heights row by row, `nx` to a row; at least two each way.
+  /// Heights row by row, `nx` in a row; at least two rows and two columns.
   HeightfieldGrid(std::vector<float> heights, int nx, int ny);
 
   int cells_x() const { return nx_ - 1; }
@@ -31,16 +31,16 @@ class HeightfieldGrid {
     const double h00 = at(i, j), h10 = at(i + 1, j), h01 = at(i, j + 1), h11 = at(i + 1, j + 1);
     return {h00, h10 - h00, h01 - h00, h11 - h10 - h01 + h00};
   }
-  /// Slopes per cell at a corner, by central differences; at borders one-sided.
+  /// Slopes [m per cell] at a corner, by central differences, one-sided at borders.
   std::pair<double, double> corner_slopes(int i, int j) const;
 
-  /// Where a ray, given in cells and metres, first meets the surface.
+  /// A ray's first hit on the surface: cell, position in the cell and t.
   struct Found {
     int i, j;
     double u, v;
     float t;
   };
-  /// With t in (0, maximum) as a float.
+  /// The nearest hit with the float t in (0, maximum) of a ray whose x and y are in cells and whose z is in metres.
   bool nearest(const double (&origin)[3], const double (&direction)[3], float maximum, Found&) const;
 
  private:
@@ -51,12 +51,12 @@ class HeightfieldGrid {
     int nx, ny;
     std::vector<Range> ranges;
   };
-  /// Lowest and highest point over a square of 2^level cells.
+  /// Lowest and highest height over a square of 2^level x 2^level cells.
   Range range_of(int level, int i, int j) const;
 
   std::vector<float> heights_;
   int nx_ = 0, ny_ = 0;
-  std::vector<Level> levels_;  // from squares of two cells up to one that holds them all; of one cell, none are kept
+  std::vector<Level> levels_;  // from squares of 2 x 2 cells to one that covers the grid; ranges of single cells are not stored
   std::pair<float, float> whole_{0, 0};
 };
 

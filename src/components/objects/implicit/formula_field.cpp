@@ -1,12 +1,13 @@
-// Formulas as fields. Each function is written once for a number T, which is a double or an interval, and with its
-// derivative for a number with derivatives.
+// Evaluation of formulas as fields. Each function is implemented for a number type T, double or Interval, and for dual numbers
+// over T.
 
 #include "formula_field.h"
 
 namespace etendue {
 namespace {
 
-// ---- doubles: what is not finite is 0, as in maps -----------------------------------------------------------------------
+// ---- doubles: a result that is not finite becomes 0, as in maps
+// -----------------------------------------------------------------------
 
 double settled(double x) { return std::isfinite(x) ? x : 0; }
 Interval settled(const Interval& x) { return x; }
@@ -25,7 +26,7 @@ Interval round_down(const Interval& a) { return {std::floor(a.low), std::floor(a
 double whole_power(double x, int n) { return settled(std::pow(x, n)); }
 
 double power(double a, double b) { return a >= 0 ? settled(std::pow(a, b)) : 0; }
-/// a^b for a >= 0: monotone in each, so the extremes are at corners; below 0 it is 0.
+/// a^b for a >= 0 is monotonic in each argument, so the extremes are at the corners; for a < 0 it is 0.
 Interval power(const Interval& a, const Interval& b) {
   if (a.high < 0) return {0, 0};
   const double low = std::max(a.low, 0.0);
@@ -34,11 +35,11 @@ Interval power(const Interval& a, const Interval& b) {
   return a.low <= 0 ? hull(all, 0) : all;
 }
 
-/// t^2 (3 - 2 t), monotone in [0, 1].
+/// t^2 (3 - 2 t), monotonic in [0, 1].
 double eased(double t) { return t * t * (3 - 2 * t); }
 Interval eased(const Interval& t) { return Interval::around(eased(t.low), eased(t.high)); }
 
-// Which of two may be the smaller one.
+// Helpers of piecewise functions: which branch is certain, where a function is discontinuous, and the hull of both branches.
 bool surely_less(double a, double b) { return a < b; }
 bool surely_less(const Interval& a, const Interval& b) { return a.high < b.low; }
 bool jumps(double, double) { return false; }
@@ -51,7 +52,7 @@ Interval either(bool, const Interval& a, const Interval& b) { return hull(a, b);
 double undefined(double) { return 0; }
 Interval undefined(const Interval&) { return Interval::whole(); }
 
-// ---- numbers with derivatives -------------------------------------------------------------------------------------------
+// ---- dual numbers -------------------------------------------------------------------------------------------
 
 template <class T, int N>
 struct Dual {
@@ -154,7 +155,7 @@ FormulaField::FormulaField(const Formula& formula) {
     const auto pushes = [&](size_t i, std::uint8_t what) { return n >= i && steps_[n - i].operation == what; };
     if (step.operation == Formula::multiply && pushes(1, Formula::push_value) && pushes(2, Formula::push_value) &&
         steps_[n - 1].place == steps_[n - 2].place) {
-      steps_[n - 1] = {raise, 2, 0};  // x * x: intervals must know that both are the same
+      steps_[n - 1] = {raise, 2, 0};  // x * x: x^2 has tighter interval bounds than a product of independent factors
       continue;
     }
     if (step.operation == Formula::power && pushes(1, Formula::push_number) && std::abs(steps_[n - 1].number) <= 64 &&
@@ -169,7 +170,7 @@ FormulaField::FormulaField(const Formula& formula) {
 template <class T>
 T FormulaField::run(const std::array<T, 3>& x) const {
   std::array<T, Formula::deepest + 1> stack;
-  T* top = stack.data();  // one behind the last value
+  T* top = stack.data();  // one past the last value
   for (const Step& step : steps_) {
     if (step.operation == Formula::push_number) {
       *top++ = T(step.number);
@@ -207,7 +208,7 @@ T FormulaField::run(const std::array<T, 3>& x) const {
       case Formula::mix: a = a + c * (b - a); break;
       case Formula::smooth_step: a = eased(smaller(larger((c - a) / (b - a), T(0.0)), T(1.0))); break;
       case raise: a = whole_power(a, step.place); break;
-      default: break;  // the mean over wavelengths of one number
+      default: break;  // the mean over wavelengths, which of a single number is that number
     }
     a = settled(a);
     ++top;

@@ -1,5 +1,5 @@
 #pragma once
-// A formula of x, y and z as a field: its value, its gradient, and bounds of both.
+// FormulaField: a formula of x, y and z as a scalar field, with its value, its gradient and bounds of both.
 
 #include "components/maps/procedural/formula.h"
 #include "geometry/interval.h"
@@ -7,27 +7,28 @@
 
 namespace etendue {
 
-/// Runs a formula's program on other numbers: doubles, intervals, and either with derivatives (automatic differentiation).
-/// Unlike in maps, `pow` with a whole number as exponent takes a negative base, too.
+/// Evaluates a formula's program on other number types: doubles, intervals, and dual numbers of either (automatic
+/// differentiation). Unlike in maps, `pow` with an integer exponent accepts a negative base.
 class FormulaField {
  public:
   FormulaField() = default;
-  /// A formula of three names.
+  /// From a formula of the three variables x, y and z.
   explicit FormulaField(const Formula&);
 
   double value(const Place&) const;
-  /// Not finite where there is none.
+  /// Not finite where the gradient does not exist.
   Place gradient(const Place&) const;
-  /// Bounds in a box.
+  /// Bounds of the value in a box.
   Interval range(const std::array<Interval, 3>& box) const;
-  /// Bounds on a line through a box, and of the derivative along it; `direction` is the derivative of x, y and z.
+  /// Bounds of the value and of its derivative `slope` along a line within a box; `direction` is the derivative of (x, y, z)
+  /// along the line.
   Interval range(const std::array<Interval, 3>& box, const double (&direction)[3], Interval& slope) const;
 
  private:
   static constexpr std::uint8_t raise = Formula::operation_count;
   struct Step {
     std::uint8_t operation;
-    int place = 0;  // of x, y and z; the exponent
+    int place = 0;  // index of x, y or z; or the exponent
     double number = 0;
   };
   template <class T>

@@ -1,31 +1,32 @@
-// The area of an implicit surface, and points chosen on it evenly.
+// The area of an implicit surface, and uniform sampling of points on it.
 //
-// A surface element dS of unit normal n covers |n_k| dS of the cross section of lines along axis k. So with weights h_k(n)
-// that add up to 1 over the axes, the area is an integral over lines along the three axes,
+// A surface element dS with unit normal n projects to |n_k| dS on the cross section of lines along axis k. So with weights
+// h_k(n) that add up to 1 over the axes, the area is an integral over lines along the three axes (Cauchy-Crofton),
 //   A = sum_k integral over lines sum over crossings h_k(n) / |n_k|.
-// With h_k = n_k^2 a crossing counts |n_k|. With h_k = n_k^4 / sum_j n_j^4 it counts less the more the line grazes, and
-// nothing jumps at silhouettes: a regular grid of lines converges fast. (The first serves to judge the second.)
+// With h_k = n_k^2 a crossing contributes |n_k|. With h_k = n_k^4 / sum_j n_j^4 a crossing contributes less at grazing angles,
+// and the integrand is continuous at silhouettes: a regular grid of lines converges fast. (The difference between the two
+// estimates the error of the second.)
 //
-// The same gives points with density 1 / A exactly, whatever the error of A: choose an axis and a line evenly, and of its
-// crossings each with probability |n_k| / W, or else none and try again. Then the density is proportional to
-// sum_k |n_k| |n_k| = 1. W must be no less than the sum of |n_k| on any line. To try seldom in vain, lines are drawn cell
-// by cell where the surface may be, each cell with its own W, chosen with probability W * cross section, which leaves the
-// density as it is. W comes from lines through the cell and its neighbours, with a margin.
+// The same lines give samples with a pdf of exactly 1 / A, whatever the error of the computed A: choose an axis and a line
+// uniformly, and each of the line's crossings with probability |n_k| / W; otherwise reject and try again. Then the pdf is
+// proportional to sum_k |n_k| |n_k| = 1. W must be no less than the sum of |n_k| on any line. To reject seldom, lines are
+// sampled per cell that the surface may cross; each cell has its own W and is chosen with probability proportional to W * cross
+// section, which leaves the pdf unchanged. W is estimated from lines through the cell and its neighbours, with a margin.
 //
-// Faces at the border of the box are two-dimensional: points of a cell's face count when they are in the solid.
+// Faces at the border of the box are sampled in two dimensions: a point of a cell's face is accepted if it is in the solid.
 
 #include "implicit_area.h"
 
 namespace etendue {
 namespace {
 
-constexpr int lines = 3;        // through a cell, along each of two axes
-constexpr int face_lines = 12;  // over a cell's face
-constexpr int bins = 24;        // of normals, along the edges of each side of a cube
+constexpr int lines = 3;        // lines through a cell: this number squared for each axis
+constexpr int face_lines = 12;  // lines across a cell's face
+constexpr int bins = 24;        // bins of normals along the edge of a cube face
 
 double square(double x) { return x * x; }
 
-/// Adds up areas by their normals, in the cells of a cube's sides.
+/// Accumulates areas by normal, in bins on the faces of a cube.
 class NormalCells {
  public:
   void add(const Place& n, double area) {
@@ -108,15 +109,15 @@ void ImplicitObject::tabulate(Table& table) const {
       faces += area;
     });
   const double smooth = half[0] + half[1];
-  // Of nine lines five are even.
+  // Of nine lines, five have an even index.
   const double uneven = std::abs(half[0] * 9 / 5 - half[1] * 9 / 4) / 2;
   table.area = smooth + faces;
   table.error = table.area > 0 ? 1e-6 + (uneven + std::abs(smooth - other) + std::abs(faces_off)) / table.area : 0;
   normals.list(table.facing);
 }
 
-/// The solid's part of a cell's face [m^2], by the lengths of lines inside along both edges; to `off` comes how much the two
-/// differ.
+/// The area [m^2] of the part of a cell's face that is in the solid, from the lengths inside the solid of lines along both
+/// edges; half the difference of the two estimates is added to `off`.
 double ImplicitObject::face_area(const Cell& cell, int face, double& off) const {
   const int axis = face / 2;
   Place low, high;
@@ -150,7 +151,7 @@ double ImplicitObject::own_area() const { return lazy_ ? table().area : 0; }
 
 float ImplicitObject::own_pdf(const SurfacePoint&) const { return float(1 / table().area); }
 
-// The base's quadrature goes over own_sample, which leaps about.
+// Overridden because the base class integrates over own_sample, which is discontinuous here.
 float ImplicitObject::area(float time) const {
   const Transform t = transform.at(time);
   const Table& own = table();
@@ -193,10 +194,10 @@ float ImplicitObject::own_sample(Point2 u, OwnPoint& p) const {
   if (!lazy_) return 0;
   const Table& own = table();
   if (own.patches.empty()) return 0;
-  // The first try goes by u: its patch, and where across it. What else is random is hashed from it.
+  // The first try uses u for the patch and for one coordinate across it. Further random numbers are hashed from u.
   std::uint64_t state = mix_bits(std::uint64_t(std::bit_cast<std::uint32_t>(u.x)) << 32 | std::bit_cast<std::uint32_t>(u.y));
   const auto random = [&] { return double(mix_bits(state += 0x9e3779b97f4a7c15ull) >> 11) * 0x1p-53; };
-  constexpr int tries = 4000;  // one in three or so succeeds
+  constexpr int tries = 4000;  // about one in three succeeds
   for (int i = 0; i < tries; ++i) {
     const double place = i == 0 ? double(u.x) + 0x1p-24 * random() : random();
     const double across = i == 0 ? double(u.y) + 0x1p-24 * random() : random();

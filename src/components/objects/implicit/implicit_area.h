@@ -1,22 +1,22 @@
 #pragma once
-// What the area of an implicit surface and samples on it are found with.
+// Data for the area and the area sampling of an implicit surface; see implicit_area.cpp.
 
 #include "implicit_object.h"
 
 namespace etendue {
 
-/// Lines along an axis through a cell, or points of a cell's face at the border of the box.
+/// A stratum of samples: lines along an axis through a cell, or points of a cell's face at the border of the box.
 struct ImplicitObject::Patch {
   Cell cell;
-  std::uint8_t axis = 0;  ///< of the lines; 3 + face: the face
-  float bound = 1;        ///< of what the crossings of one line add up to, |n_axis| each
-  double until = 0;       ///< bound * cross section [m^2], added up to here
+  std::uint8_t axis = 0;  ///< axis of the lines, or 3 + face
+  float bound = 1;        ///< upper bound of the sum of |n_axis| over the crossings of one line
+  double until = 0;       ///< cumulative sum of bound * cross section [m^2]
 };
 
 struct ImplicitObject::Table {
-  double area = 0, error = 0;  ///< [m^2]; relative
+  double area = 0, error = 0;  ///< [m^2]; relative error
   std::vector<Patch> patches;
-  /// Normals with the area that faces there [m^2] (an extended Gaussian image, Horn 1984): area after a transform.
+  /// Normals with the area [m^2] facing along each (an extended Gaussian image, Horn 1984), for the area after a transform.
   std::vector<std::pair<Normal3, float>> facing;
 };
 
@@ -25,8 +25,8 @@ struct ImplicitObject::Lazy {
   Table table;
 };
 
-/// Calls visit(place, unit normal) for each crossing of a line along an axis through a cell; a and b in [0, 1] say where on
-/// the next two axes.
+/// Calls visit(position, unit normal) for each crossing of a line along an axis through a cell; a and b in [0, 1] give the
+/// line's position along the next two axes.
 template <class F>
 void ImplicitObject::visit_line(const Cell& cell, int axis, double a, double b, const F& visit) const {
   Place low, high;

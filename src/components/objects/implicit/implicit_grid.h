@@ -1,5 +1,5 @@
 #pragma once
-// Walking along a ray through the cells of a regular grid.
+// GridWalk: traverses the cells of a regular grid along a ray (3D DDA).
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,9 @@
 
 namespace etendue {
 
-/// The cells a line passes, in order (Amanatides & Woo 1987, "A fast voxel traversal algorithm"), or blocks of them where
-/// nothing is (Cohen & Sheffer 1994, "Proximity clouds"). Coordinates count cells; the line stays in the grid but for rounding.
+/// Visits the cells along a line in order (Amanatides & Woo 1987, "A fast voxel traversal algorithm"), skipping empty blocks of
+/// cells (Cohen & Sheffer 1994, "Proximity clouds"). Coordinates are in units of cells; the line must stay in the grid, up to
+/// rounding.
 class GridWalk {
  public:
   GridWalk(const Place& origin, const Place& direction, double from, double to, const int (&count)[3])
@@ -17,14 +18,15 @@ class GridWalk {
     for (int k = 0; k < 3; ++k) {
       count_[k] = count[k];
       cell[k] = int(std::clamp(std::floor(at(from, k)), 0.0, double(count[k] - 1)));
-      // Where it starts in a plane between two cells and goes down, the lower one is meant.
+      // If the line starts in the plane between two cells and its direction is negative, it starts in the lower cell.
       if (direction_[k] < 0 && cell[k] > 0 && at(from, k) <= cell[k]) --cell[k];
     }
   }
 
   double at(double t, int k) const { return origin_[k] + t * direction_[k]; }
 
-  /// Finds `leave`, where the line leaves the block of all cells that are no farther than `reach` from the cell.
+  /// Computes `leave`, the parameter at which the line leaves the block of all cells at most `reach` cells away from the
+  /// current one.
   void measure(int reach = 0) {
     reach_ = reach;
     leave = to_;
@@ -41,7 +43,7 @@ class GridWalk {
     leave = std::max(leave, enter);
   }
 
-  /// Goes on to the cell behind the block; false at the end.
+  /// Moves to the cell behind the block; returns false at the end of the line.
   bool next() {
     if (axis_ < 0) return false;
     for (int k = 0; k < 3; ++k) {

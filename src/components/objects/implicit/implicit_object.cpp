@@ -1,4 +1,4 @@
-// Surfaces f = 0 in a box: rays, points and the box. Areas and samples are in implicit_area.cpp.
+// Implicit surfaces f = 0 in a box: ray intersection, surface points and the box. Area and samples are in implicit_area.cpp.
 
 #include "implicit_object.h"
 
@@ -11,8 +11,8 @@ int next(int k) { return (k + 1) % 3; }
 
 Place at(const DoubleRay& r, double t) { return {r.at(t, 0), r.at(t, 1), r.at(t, 2)}; }
 
-/// Hits on the surface are part 0, hits on a face of the box part 1 + face, where face 2 k + s lies across axis k at its
-/// low (s = 0) or high (s = 1) end.
+/// Hits on the surface are part 0, hits on a face of the box part 1 + face, where face 2 k + s is perpendicular to axis k, at
+/// its low (s = 0) or high (s = 1) end.
 constexpr int surface = 0;
 
 }  // namespace
@@ -33,7 +33,7 @@ void ImplicitObject::cell_box(const Cell& cell, Place& low, Place& high) const {
   }
 }
 
-/// Halves a block of cells until the field has one sign in it or it is a single cell.
+/// Bisects a block of cells recursively until the field has one sign in it, or it is a single cell, which is stored.
 void ImplicitObject::find_cells(const std::array<int, 3>& from, const std::array<int, 3>& to) {
   Place low, high;
   int longest = 0;
@@ -53,7 +53,8 @@ void ImplicitObject::find_cells(const std::array<int, 3>& from, const std::array
   find_cells(begin, to);
 }
 
-/// Cells at the border of the box whose face there may have a part in the solid; the middle of the face is inside or not.
+/// Visits cells at the border of the box whose outer face may be partly in the solid; `inside` is the state at the face's
+/// centre.
 void ImplicitObject::visit_borders(const std::function<void(const Cell&, int face, bool inside)>& visit) const {
   for (int face = 0; face < 6; ++face) {
     const int k = face / 2, a = next(k), b = next(a);
@@ -73,7 +74,7 @@ void ImplicitObject::visit_borders(const std::function<void(const Cell&, int fac
   }
 }
 
-/// Lines through the cells, more and more of them, until one meets the surface.
+/// Traces more and more lines through the cells until one hits the surface.
 bool ImplicitObject::any_surface() const {
   for (const int lines : {1, 2, 5})
     for (const Cell& cell : crossed_)
@@ -118,14 +119,14 @@ void ImplicitObject::settle(const Point3& low, const Point3& high, bool capped, 
   closed_ = capped_ || !cut;
   if (!any_surface() && !(capped_ && face_inside)) fail(member, "there is no surface in the box");
 
-  lazy_.reset();  // place asks for no samples then
+  lazy_.reset();  // so that place() does not sample
   place();
   lazy_ = std::make_unique<Lazy>();
 }
 
 // ---- rays ---------------------------------------------------------------------------------------------------------------
 
-/// Calls visit(t, part) in order of t >= from until it says that this is enough.
+/// Calls visit(t, part) for crossings in order of t >= from, until it returns true.
 template <class F>
 void ImplicitObject::visit_crossings(const DoubleRay& r, double from, const F& visit) const {
   double enter = from, leave = r.maximum;
@@ -135,7 +136,7 @@ void ImplicitObject::visit_crossings(const DoubleRay& r, double from, const F& v
     double t0 = (low_[k] - r.origin[k]) * inverse, t1 = (high_[k] - r.origin[k]) * inverse;
     const bool backwards = inverse < 0;
     if (backwards) std::swap(t0, t1);
-    // Along a slab both are infinite, or not a number within a face, which limits nothing.
+    // For a ray parallel to a slab both are infinite; in the plane of a face they may be NaN, and the interval is unchanged.
     if (t0 > enter) enter = t0, in = 2 * k + backwards;
     if (t1 < leave) leave = t1, out = 2 * k + !backwards;
   }
@@ -144,7 +145,7 @@ void ImplicitObject::visit_crossings(const DoubleRay& r, double from, const F& v
   if (capped_ && inside && in >= 0 && visit(enter, 1 + in)) return;
   const double step = 1e-9 * (leave - enter);
   double begin = enter, t = 0;
-  // A bound, should the field be nothing but noise.
+  // The number of crossings is limited, in case the field is mere noise.
   for (int i = 0; i < 1000 && begin < leave && next_crossing(r, begin, leave, inside, t); ++i) {
     if (visit(t, surface)) return;
     begin = t + step;
@@ -161,7 +162,7 @@ bool ImplicitObject::own_intersect(const Ray& ray, Hit& hit) const {
     if (found) {
       hit.distance = near;
       hit.primitive = std::uint32_t(part);
-      hit.u = float(t - double(near));  // what the float lacks
+      hit.u = float(t - double(near));  // rounding error of the float distance
       hit.v = 0;
     }
     return true;
@@ -176,15 +177,15 @@ void ImplicitObject::own_point(const Ray& ray, const Hit& hit, OwnPoint& p) cons
   for (int k = 0; k < 3; ++k) x[k] = std::clamp(x[k], low_[k], high_[k]);
   double d2 = 0;
   for (int k = 0; k < 3; ++k) d2 += r.direction[k] * r.direction[k];
-  // t may be rounded as on a longer ray (of a solid this is part of).
+  // t may have the rounding error of a longer ray, if the object is an operand of a solid.
   point_at(x, int(hit.primitive), p, 0x1p-22 * t * std::sqrt(d2));
 }
 
 // ---- points -------------------------------------------------------------------------------------------------------------
 
-/// From a place near the surface, `off` from it by rounding, or near a face. Coordinates are those of the box's face whose side
-/// the normal points to: u and v go along the next two axes, u backwards on a low face, so that dpdu x dpdv is along the
-/// normal.
+/// Fills a surface point from a position near the surface (within the rounding error `off`) or near a face. Surface coordinates
+/// are those of the box's face towards which the normal points: u and v run along the next two axes, u reversed on a low face,
+/// so that dpdu x dpdv is along the normal.
 void ImplicitObject::point_at(Place x, int part, OwnPoint& p, double off) const {
   double n[3]{}, beyond = 0;
   if (part != surface) {
@@ -192,14 +193,14 @@ void ImplicitObject::point_at(Place x, int part, OwnPoint& p, double off) const 
     x[k] = face % 2 ? high_[k] : low_[k];
     n[k] = face % 2 ? 1 : -1;
   } else {
-    // Newton's steps along the gradient: the ray's t is a float, and x as far off as that one's rounding.
+    // Newton's method along the gradient: x is off by the rounding error of the ray's float t.
     double farthest = off;
     for (int k = 0; k < 3; ++k) farthest = std::max(farthest, 1e-4 * (high_[k] - low_[k]));
     Place g = gradient(x);
     for (int i = 0; i < 4; ++i) {
       const double g2 = g[0] * g[0] + g[1] * g[1] + g[2] * g[2], step = field(x) / g2;
       beyond = std::abs(step) * std::sqrt(g2);
-      if (!(beyond < farthest)) {  // at a cusp, where the gradient says little
+      if (!(beyond < farthest)) {  // at a cusp, where the gradient is unreliable
         beyond = off;
         break;
       }
@@ -235,7 +236,7 @@ void ImplicitObject::point_at(Place x, int part, OwnPoint& p, double off) const 
   p.dpdv = {float(dv[0]), float(dv[1]), float(dv[2])};
   p.primitive = std::uint32_t((part == surface ? 0 : 6) + 2 * k + high);
   p.u = p.v = 0;
-  // Rounding of the position and of the one a ray leaves from, and of the field in double.
+  // Rounding of the position, of an offset ray origin, and of the field in double.
   const double reach = std::max({high_[0] - low_[0], high_[1] - low_[1], high_[2] - low_[2]});
   const Vector3 here{std::abs(p.position.x), std::abs(p.position.y), std::abs(p.position.z)};
   p.error = rounding_bound(4) * along(p.normal, here) + float(1e-10 * reach + beyond);

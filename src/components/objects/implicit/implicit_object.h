@@ -1,5 +1,6 @@
 #pragma once
-// Surfaces f = 0 in a box, and the solids f < 0 they bound: what quadrics, metaballs, grids of distances and formulas share.
+// ImplicitObject: base class of implicit surfaces f = 0 in a box, and of the solids f < 0 that they bound: quadrics, metaballs,
+// signed distance grids and formulas.
 
 #include <array>
 #include <functional>
@@ -11,15 +12,15 @@
 
 namespace etendue {
 
-/// A point or a vector in an object's own coordinates [m]. Fields are computed in double.
+/// A point or a vector in object space [m]. Fields are computed in double.
 using Place = std::array<double, 3>;
 
-/// An object gives its field and says where along a line it changes sign; this class clips it by a box, closes the cuts
-/// with faces when asked, finds the surface's area and chooses points on it.
+/// A derived class implements the field and finds its sign changes along a line; this class clips the surface to a box,
+/// optionally caps the cuts with faces, and computes and samples the area.
 class ImplicitObject : public PlacedObject {
  public:
   ~ImplicitObject() override;
-  /// Its shape alone takes time, and light changes nothing of it.
+  /// Only building the shape takes time, and changes of emission do not affect it.
   void prepare_again() override {}
   bool closed() const override { return closed_; }
   float area(float time) const override;
@@ -28,19 +29,19 @@ class ImplicitObject : public PlacedObject {
  protected:
   ImplicitObject();
 
-  /// Negative in the solid. Defined in the box.
+  /// The field f: negative in the solid, defined in the box.
   virtual double field(const Place&) const = 0;
   virtual Place gradient(const Place&) const = 0;
-  /// The first t in [from, to] at which the ray, which at `from` is inside the solid or not, gets to the other side; then
-  /// `inside` is changed.
+  /// Finds the first t in [from, to] at which the ray crosses the surface. `inside` is the side at `from`, and is inverted if a
+  /// crossing is found.
   virtual bool next_crossing(const DoubleRay&, double from, double to, bool& inside, double& t) const = 0;
-  /// False when the field surely has one sign in a box.
+  /// A conservative test: false only if the field has the same sign everywhere in a box.
   virtual bool may_cross(const Place& low, const Place& high) const = 0;
-  /// Interpolated for shading; zero: the geometric one.
+  /// Shading normal; zero stands for the geometric one.
   virtual Normal3 shading_normal(const Place&, const Normal3& /*geometric*/) const { return {}; }
 
-  /// To be called at the end of prepare. `capped`: where the box cuts the solid, it has faces. Fails at the member when the
-  /// box is wrong or there is nothing in it.
+  /// To be called at the end of prepare. With `capped`, the solid has faces where the box cuts it. Throws Error, located at
+  /// `member`, if the box is invalid or contains no surface.
   void settle(const Point3& low, const Point3& high, bool capped, const char* member);
 
   Bounds3 own_bounds() const override { return own_bounds_; }
@@ -76,9 +77,9 @@ class ImplicitObject : public PlacedObject {
 
   Place low_{}, high_{};
   bool capped_ = false, closed_ = false;
-  int count_[3]{1, 1, 1};       // of cells along each axis
-  std::vector<Cell> crossed_;   // cells the surface may pass through
-  std::unique_ptr<Lazy> lazy_;  // what only area and samples need, found when they are first asked for
+  int count_[3]{1, 1, 1};       // number of cells along each axis
+  std::vector<Cell> crossed_;   // cells that the surface may cross
+  std::unique_ptr<Lazy> lazy_;  // data for area and samples, computed at the first use
   Bounds3 own_bounds_;
 };
 

@@ -1,18 +1,20 @@
-// ImplicitSurface: where a formula of x, y and z is 0.
+// ImplicitSurface: the surface where a formula of x, y and z is 0.
 
 #include "formula_field.h"
 
 namespace etendue {
 namespace {
 
-// Along a ray, interval arithmetic bounds f and f' over a range of t. A range where f cannot be 0 is left; where f' cannot be
-// 0 there is at most one root, found between ends of different sign; other ranges are halved (Mitchell 1990, "Robust ray
-// intersection with interval arithmetic"; Duff 1992, "Interval arithmetic and recursive subdivision for implicit functions
-// and constructive solid geometry"). f is bounded once more by its value in the middle and f'.
+// Along a ray, interval arithmetic bounds f and f' over a range of t. A range in which f cannot be 0 is discarded; a range in
+// which f' cannot be 0 has at most one root, which is bracketed if the ends have different signs; other ranges are bisected
+// (Mitchell 1990, "Robust ray intersection with interval arithmetic"; Duff 1992, "Interval arithmetic and recursive subdivision
+// for implicit functions and constructive solid geometry"). A second bound of f uses its value in the middle and the bounds of
+// f'.
 //
-// A formula may be so wild that its bounds say nothing anywhere. So that each ray ends, no more than `most_ranges` ranges are
-// halved in one search (usual ones take some tens, or hundreds along silhouettes); those still waiting then count as smallest:
-// of each the ends alone are compared. What is found is a crossing all the same, but others may lie before it.
+// A formula may be so irregular that its bounds are useless. To limit the cost of a ray, at most `most_ranges` ranges are
+// bisected in one search (typically some tens, or hundreds along silhouettes); the remaining ranges are then treated as
+// shortest ones: only the signs at their ends are compared. A root found in this way is a crossing, but earlier ones may have
+// been missed.
 class ImplicitSurface final : public ImplicitObject {
  public:
   static void describe(Description<ImplicitSurface>& d) {
@@ -43,7 +45,7 @@ class ImplicitSurface final : public ImplicitObject {
   }
 
   void prepare() override {
-    // In a file, the place in the formula is behind the quote; escapes would shift it.
+    // In a file, the formula starts after the quote; escape sequences would shift the column.
     const Location at = location_of("formula");
     const bool plain = at.known() && formula.find_first_of("\"\\\n\t") == std::string::npos;
     try {
@@ -78,7 +80,7 @@ class ImplicitSurface final : public ImplicitObject {
     Place g = field_.gradient(x);
     const double norm = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
     if (norm > 0 && std::isfinite(norm)) return g;
-    // Where the formula jumps: the direction over a short distance.
+    // Where the formula is discontinuous: central differences over a short distance.
     for (size_t k = 0; k < 3; ++k) {
       Place before = x, behind = x;
       before[k] -= shortest_;
@@ -89,14 +91,14 @@ class ImplicitSurface final : public ImplicitObject {
   }
 
   bool next_crossing(const DoubleRay& r, double from, double to, bool& inside, double& t) const override {
-    if ((value_at(r, from) < 0) != inside) {  // rounding moved the start across
+    if ((value_at(r, from) < 0) != inside) {  // rounding moved the start across the surface
       inside = !inside;
       t = from;
       return true;
     }
     double speed = 0;
     for (const double d : r.direction) speed += d * d;
-    // Preparing tries many lines, and shares a number of ranges among them.
+    // Preparation traces many lines, which share one limit of ranges.
     int ranges = preparing_ ? int(std::min<std::int64_t>(ranges_left_, most_ranges)) : most_ranges;
     const int allowed = ranges;
     const bool found = first_in({r, shortest_ / std::sqrt(speed), inside, ranges}, from, to, t);
@@ -113,19 +115,19 @@ class ImplicitSurface final : public ImplicitObject {
  private:
   struct Search {
     const DoubleRay& ray;
-    double shortest;  // range of t
+    double shortest;  // shortest range of t
     bool inside;      // before the crossing
-    int& ranges;      // that may still be halved
+    int& ranges;      // number of ranges that may still be bisected
   };
   static constexpr int most_ranges = 1 << 14;
-  static constexpr std::int64_t most_prepared = 1 << 22;  // while preparing, of all lines together
+  static constexpr std::int64_t most_prepared = 1 << 22;  // limit during preparation, for all lines together
 
-  /// Sends some lines through the box, and counts those that are not searched to the end.
+  /// Traces some lines through the box and warns if the search was cut short on any of them.
   void warn_of_long_searches() const {
     constexpr int lines = 64;
     int ended = 0;
     for (int i = 0; i < lines; ++i) {
-      // Through the middle of the box, or near it, in directions spread evenly (a Fibonacci spiral).
+      // Through or near the centre of the box, in uniformly distributed directions (a Fibonacci spiral).
       const double z = 1 - (2 * i + 1.0) / lines, r = std::sqrt(1 - z * z), phi = 2.399963229728653 * i;
       const double direction[3] = {r * std::cos(phi), r * std::sin(phi), z};
       Ray ray;
@@ -150,7 +152,7 @@ class ImplicitSurface final : public ImplicitObject {
 
   double value_at(const DoubleRay& r, double t) const { return field_.value({r.at(t, 0), r.at(t, 1), r.at(t, 2)}); }
 
-  /// The first crossing in [from, to], whose start is on the side told.
+  /// The first crossing in [from, to]; the start of the range is on the side `s.inside`.
   bool first_in(const Search& s, double from, double to, double& t) const {
     std::array<Interval, 3> box;
     for (int k = 0; k < 3; ++k) {
@@ -160,7 +162,7 @@ class ImplicitSurface final : public ImplicitObject {
     Interval slope;
     const Interval f = field_.range(box, s.ray.direction, slope);
     if (!f.contains(0)) return false;
-    // Where f is 0 all over, or at least: outside, to the last part. (What is wider than 0 by rounding alone counts as 0.)
+    // f >= 0 in the whole range: all of it is outside. (A lower bound that is negative only by rounding counts as 0.)
     if (f.low > -1e-200) {
       if (s.inside) t = from;
       return s.inside;
@@ -177,15 +179,15 @@ class ImplicitSurface final : public ImplicitObject {
     const double rounding = 1e-12 * std::max(std::abs(f.low), std::abs(f.high));
     if (std::abs(f_middle) > reach + rounding) return false;
     if (first_in(s, from, middle, t)) return true;
-    if ((f_middle < 0) != s.inside) {  // there by rounding alone
+    if ((f_middle < 0) != s.inside) {  // a root that the first half missed by rounding
       t = middle;
       return true;
     }
     return first_in(s, middle, to, t);
   }
 
-  /// Between ends of different sign: the secant, one end's weight halved when it stays (the Illinois method: Dowell & Jarratt
-  /// 1971), and halving when that is slow, as it is at a jump.
+  /// The root between ends of different sign: the Illinois method (Dowell & Jarratt 1971), a secant method that halves the
+  /// weight of an end which is retained, with bisection where it converges slowly, as at a discontinuity.
   double root(const Search& s, double left, double right) const {
     double f_left = value_at(s.ray, left), f_right = value_at(s.ray, right), width = right - left;
     int side = 0;
@@ -218,7 +220,7 @@ class ImplicitSurface final : public ImplicitObject {
   FormulaField field_;
   double shortest_ = 0;  // [m]
   bool preparing_ = false;
-  mutable std::int64_t ranges_left_ = 0;  // while preparing
+  mutable std::int64_t ranges_left_ = 0;  // during preparation
 };
 
 const Register<ImplicitSurface> registered;

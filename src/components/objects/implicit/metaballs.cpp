@@ -1,4 +1,4 @@
-// Metaballs: soft balls that flow together.
+// Metaballs: the isosurface of a sum of soft balls, which blend into each other.
 
 #include "geometry/bernstein.h"
 #include "geometry/own_centre.h"
@@ -8,9 +8,9 @@ namespace etendue {
 namespace {
 
 // Ball i adds s_i u^3 to the density at a distance r < R_i of its centre, u = 1 - r^2 / R_i^2 (Wyvill, McPheeters & Wyvill
-// 1986, "Data structure for soft objects", in the form with even powers alone); the surface is where the density is the
-// threshold. Along a ray u is quadratic in t, so between the ends of balls' reaches the density is a polynomial of degree
-// 6, whose first crossing is found by its Bernstein coefficients: no feature is too thin.
+// 1986, "Data structure for soft objects", in the form with even powers only); the surface is where the density equals the
+// threshold. Along a ray u is quadratic in t, so between the points where the ray enters or leaves a ball the density is a
+// polynomial of degree 6, whose first crossing is found from its Bernstein coefficients: no feature is too thin to be found.
 class Metaballs final : public ImplicitObject {
  public:
   static void describe(Description<Metaballs>& d) {
@@ -93,7 +93,7 @@ class Metaballs final : public ImplicitObject {
       const Cell& cell = cells_[cell_index(walk.cell[0], walk.cell[1], walk.cell[2])];
       if (cell.sign == Sign::mixed) {
         if (crosses_cell(cell, r, walk.enter, walk.leave, inside, t)) return true;
-      } else if ((cell.sign == Sign::inside) != inside) {  // rounding put the border on the other side
+      } else if ((cell.sign == Sign::inside) != inside) {  // by rounding, the start of the cell is on the other side
         inside = !inside;
         t = walk.enter;
         return true;
@@ -129,14 +129,14 @@ class Metaballs final : public ImplicitObject {
  private:
   struct Ball {
     Place centre;
-    double inverse_square, strength;  // of the radius [1/m^2]
+    double inverse_square, strength;  // 1 / radius^2 [1/m^2], strength
   };
   enum class Sign : std::uint8_t { mixed, inside, outside };
   struct Cell {
-    std::uint32_t begin = 0, end = 0;  // in listed_
+    std::uint32_t begin = 0, end = 0;  // range in listed_
     Sign sign = Sign::mixed;
   };
-  /// A ball's part of a ray.
+  /// The part of a ray within a ball.
   struct Piece {
     double begin, end;
     const Ball* ball;
@@ -164,7 +164,8 @@ class Metaballs final : public ImplicitObject {
 
   using Block = std::array<std::array<int, 2>, 3>;  // the first and the last cell along each axis
 
-  /// Cells that hold one ball each, if balls lie evenly; where they overlap so much that lists grow long, larger ones.
+  /// Chooses the cell size so that uniformly distributed balls would give about one ball per cell; larger cells if the balls
+  /// overlap so much that the lists would become long.
   void make_grid(const Bounds3& box) {
     constexpr double most_cells = 64;
     const double most_entries = double(size_t(1) << 22) + 256 * double(balls_.size());
@@ -178,7 +179,7 @@ class Metaballs final : public ImplicitObject {
     for (double entries = infinity; entries > most_entries; wanted *= 1.5) {
       for (size_t k = 0; k < 3; ++k) {
         const double number = std::ceil(edge[k] / wanted);
-        count_[k] = number > 1 ? int(std::min(number, most_cells)) : 1;  // 1 where it is no number
+        count_[k] = number > 1 ? int(std::min(number, most_cells)) : 1;  // 1 where it is NaN
         scale_[k] = edge[k] > 0 ? count_[k] / edge[k] : 0;
       }
       entries = 0;
@@ -201,7 +202,7 @@ class Metaballs final : public ImplicitObject {
         }
   }
 
-  /// Gives each cell the balls that reach into it, in their order: how many there are is counted first.
+  /// Lists, for each cell, the balls that overlap it, in their order; a first pass counts them.
   void list_balls() {
     cells_.assign(size_t(count_[0]) * size_t(count_[1]) * size_t(count_[2]), {});
     most_listed_ = 0;
@@ -226,13 +227,13 @@ class Metaballs final : public ImplicitObject {
       for_cells_of(balls_[i], [&](Cell& cell) { listed_[cell.end++] = std::uint32_t(i); });
   }
 
-  /// The cell at a coordinate along an axis, or the nearest.
+  /// The index of the cell at a coordinate along an axis, clamped to the grid.
   int cell_at(double x, size_t k) const {
     const double cell = std::floor((x - low_[k]) * scale_[k]);
-    return cell > 0 ? int(std::min(cell, double(count_[k] - 1))) : 0;  // 0 where it is no number: the box has no extent
+    return cell > 0 ? int(std::min(cell, double(count_[k] - 1))) : 0;  // 0 where it is NaN, because the box has no extent
   }
 
-  /// Cells a box touches, and those that touch it but for rounding.
+  /// The cells that a box overlaps or, within rounding, touches.
   Block block_between(const Place& from, const Place& to) const {
     Block block;
     for (size_t k = 0; k < 3; ++k) {
@@ -248,7 +249,7 @@ class Metaballs final : public ImplicitObject {
     return block_between({c[0] - reach, c[1] - reach, c[2] - reach}, {c[0] + reach, c[1] + reach, c[2] + reach});
   }
 
-  /// A cell as it is for balls: places are found in it by rounded coordinates.
+  /// A cell's box, widened by a margin, because points are assigned to cells by rounded coordinates.
   std::pair<Place, Place> cell_box(const std::array<int, 3>& at) const {
     Place from, to;
     for (size_t k = 0; k < 3; ++k) {
@@ -271,7 +272,7 @@ class Metaballs final : public ImplicitObject {
     return (size_t(z) * size_t(count_[1]) + size_t(y)) * size_t(count_[0]) + size_t(x);
   }
 
-  /// Calls visit(ball, u) for each ball a place is in.
+  /// Calls visit(ball, u) for each ball that contains a point.
   template <class F>
   void for_balls_at(const Place& x, const F& visit) const {
     const Cell& cell = cells_[cell_index(cell_at(x[0], 0), cell_at(x[1], 1), cell_at(x[2], 2))];
@@ -284,7 +285,7 @@ class Metaballs final : public ImplicitObject {
     }
   }
 
-  /// Between all ends of pieces in turn: the sum of those polynomials that are not zero there.
+  /// Between consecutive ends of pieces, sums the polynomials of the balls that contain that part of the ray.
   bool crosses_cell(const Cell& cell, const DoubleRay& r, double enter, double leave, bool& inside, double& t) const {
     thread_local std::vector<Piece> pieces;
     if (pieces.size() < most_listed_) pieces.resize(most_listed_);
@@ -320,10 +321,10 @@ class Metaballs final : public ImplicitObject {
     return false;
   }
 
-  /// Takes a ball's density along a part of the ray off b: Bernstein coefficients of u (degree 2), u^2 (4) and u^3 (6), by
-  /// (f g)_k = sum over i + j = k of C(m, i) C(n, j) / C(m + n, k) f_i g_j.
+  /// Subtracts from b the Bernstein coefficients of a ball's density along a part of the ray: those of u (degree 2), u^2 (4)
+  /// and u^3 (6), by (f g)_k = sum over i + j = k of C(m, i) C(n, j) / C(m + n, k) f_i g_j.
   static void subtract(const Ball& ball, const DoubleRay& r, double from, double to, double (&b)[7]) {
-    double start = 0, end = 0, slope = 0;  // of r^2
+    double start = 0, end = 0, slope = 0;  // values at the ends, and half the slope at the start, of r^2
     for (int k = 0; k < 3; ++k) {
       const double x = r.at(from, k) - ball.centre[size_t(k)], y = r.at(to, k) - ball.centre[size_t(k)];
       start += x * x;
@@ -342,13 +343,13 @@ class Metaballs final : public ImplicitObject {
     b[6] -= s * v4 * u2;
   }
 
-  static constexpr double cell_margin = 1e-9;  // in cells
+  static constexpr double cell_margin = 1e-9;  // in units of cells
   std::vector<Ball> balls_;
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> listed_;
   size_t most_listed_ = 0;
-  int count_[3]{1, 1, 1};  // of cells along each axis
-  Place low_{}, scale_{};  // of the grid; cells per m
+  int count_[3]{1, 1, 1};  // number of cells along each axis
+  Place low_{}, scale_{};  // low corner of the grid; cells per m
 };
 
 const Register<Metaballs> registered;

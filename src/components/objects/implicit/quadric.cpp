@@ -1,4 +1,4 @@
-// Quadric: spheres, cones, cylinders, paraboloids and hyperboloids in general place, cut by a box.
+// Quadric: spheres, cones, cylinders, paraboloids and hyperboloids in general position, clipped to a box.
 
 #include "implicit_object.h"
 
@@ -66,19 +66,19 @@ class Quadric final : public ImplicitObject {
     const double a = d[0] * sd[0] + d[1] * sd[1] + d[2] * sd[2], b1 = b0 + h, b2 = a + 2 * h + b0;
     const bool negative = b0 < 0;
     double s = 0;
-    if (negative == inside) {  // else rounding moved the start across
+    if (negative == inside) {  // otherwise rounding moved the start across the surface
       const bool end_differs = (b2 < 0) != negative;
       if (!end_differs && (b1 < 0) == negative) return false;
       const double discriminant = h * h - a * b0;
       if (!end_differs && !(discriminant > 0)) return false;
-      // Where f comes from its first sign, f' = 2 (a s + h) = -+2 root. Of the two forms of each root take that in which
-      // nothing cancels.
+      // Where f first changes its sign, f' = 2 (a s + h) = -+2 root. Of the two forms of each root the one without cancellation
+      // is used.
       const double root = std::sqrt(std::max(discriminant, 0.0));
       if (negative)
         s = h >= 0 ? -b0 / (h + root) : (root - h) / a;
       else
         s = h <= 0 ? b0 / (root - h) : -(h + root) / a;
-      if (!end_differs && !(s > 0 && s < 1)) return false;  // two roots beyond an end
+      if (!end_differs && !(s > 0 && s < 1)) return false;  // both roots lie outside the range
       s = s >= 0 && s <= 1 ? s : std::clamp(s == s ? s : 1.0, 0.0, 1.0);
     }
     inside = !inside;
@@ -86,7 +86,7 @@ class Quadric final : public ImplicitObject {
     return true;
   }
 
-  /// Around the middle m, |q - q(m)| <= |grad q(m)|.r + r.|S| r for half edges r.
+  /// In a box with centre m and half edges r, |q - q(m)| <= |grad q(m)|.r + r.|S| r.
   bool may_cross(const Place& from, const Place& to) const override {
     Place m, r;
     for (size_t k = 0; k < 3; ++k) {

@@ -1,4 +1,4 @@
-// SignedDistanceGrid: the surface where numbers given on a grid, and interpolated between, are 0.
+// SignedDistanceGrid: the zero level set of values on a grid, interpolated trilinearly.
 
 #include "components/objects/meshes/mesh_data.h"
 #include "components/volumes/volume_grid.h"
@@ -15,8 +15,8 @@ namespace {
 // is the cubic f(s) = T(P + s (Q - P)) (Hansson-Soderlund, Evans & Akenine-Moller 2022, "Ray tracing of signed distance
 // function grids"). As T is linear in each coordinate, f's polar form is
 //   F(r, s, t) = mean over the 6 orders of (r, s, t) of T(x(r), y(s), z(t)),
-// and its Bernstein coefficients F(0, 0, 0), F(0, 0, 1), F(0, 1, 1), F(1, 1, 1) are means of T at corners of the box between
-// P and Q: nothing cancels in them.
+// and its Bernstein coefficients F(0, 0, 0), F(0, 0, 1), F(0, 1, 1), F(1, 1, 1) are means of T at corners of the box between P
+// and Q, computed without cancellation.
 class SignedDistanceGrid final : public ImplicitObject {
  public:
   static void describe(Description<SignedDistanceGrid>& d) {
@@ -101,7 +101,7 @@ class SignedDistanceGrid final : public ImplicitObject {
       walk.measure(std::max(empty - 1, 0));
       if (empty > 0) {
         if ((*corner < 0) == inside) continue;
-        inside = !inside;  // rounding put the border on the other side
+        inside = !inside;  // by rounding, the start of the block is on the other side
         t = walk.enter;
         return true;
       }
@@ -121,7 +121,7 @@ class SignedDistanceGrid final : public ImplicitObject {
     return false;
   }
 
-  /// Interpolation stays between the values at the points around.
+  /// Interpolated values lie between the values at the surrounding grid points.
   bool may_cross(const Place& from, const Place& to) const override {
     int first[3], last[3];
     for (size_t k = 0; k < 3; ++k) {
@@ -138,7 +138,7 @@ class SignedDistanceGrid final : public ImplicitObject {
     return false;
   }
 
-  /// Between gradients at the corners of the cell, found by central differences.
+  /// Interpolates gradients at the corners of the cell, found by central differences.
   Normal3 shading_normal(const Place& x, const Normal3& geometric) const override {
     if (!smooth) return {};
     int cell[3];
@@ -168,7 +168,7 @@ class SignedDistanceGrid final : public ImplicitObject {
   }
 
  private:
-  using Corners = std::array<double, 8>;  // x runs fastest
+  using Corners = std::array<double, 8>;  // x varies fastest
   static constexpr size_t most_points = NumpyArray::most_numbers;
 
   void take_list() {
@@ -239,7 +239,7 @@ class SignedDistanceGrid final : public ImplicitObject {
     return low_z + z * (high_z - low_z);
   }
 
-  /// The cell around a place, and where in it.
+  /// The cell that contains a point, and the point's fractional position in the cell.
   void locate(const Place& x, int (&cell)[3], Place& fraction) const {
     for (size_t k = 0; k < 3; ++k) {
       const double g = (x[k] - low_[k]) * scale_[k];
@@ -253,8 +253,8 @@ class SignedDistanceGrid final : public ImplicitObject {
     return &values_[point_index(cell[0], cell[1], cell[2])];
   }
 
-  /// For each cell, how far it is from the nearest one with a change of sign, diagonal steps counting as one: 0 for such a
-  /// cell itself. One axis after the other, forwards and backwards.
+  /// For each cell, its chessboard distance (diagonal steps count as one) to the nearest cell with a sign change; 0 for such a
+  /// cell itself. One scan forwards and one backwards.
   void find_empty() {
     constexpr std::uint8_t most = 255;
     empty_.resize(size_t(count_[0]) * size_t(count_[1]) * size_t(count_[2]));
@@ -265,8 +265,8 @@ class SignedDistanceGrid final : public ImplicitObject {
           const auto negative = std::count_if(c.begin(), c.end(), [](double v) { return v < 0; });
           empty_[cell_index(x, y, z)] = negative == 0 || negative == 8 ? most : 0;
         }
-    // min over the others of max(|dx|, |dy|, |dz|) does not separate; a two-pass scan over all 26 neighbours is exact
-    // (Borgefors 1986, "Distance transformations in digital images": the chessboard distance).
+    // The minimum over the other cells of max(|dx|, |dy|, |dz|) is not separable; a two-pass scan over all 26 neighbours is
+    // exact (Borgefors 1986, "Distance transformations in digital images": the chessboard distance).
     for (const int turn : {1, -1}) {
       const auto begin = [&](int k) { return turn > 0 ? 0 : count_[k] - 1; };
       const auto in = [&](int k, int i) { return i >= 0 && i < count_[k]; };
@@ -274,7 +274,7 @@ class SignedDistanceGrid final : public ImplicitObject {
         for (int y = begin(1); in(1, y); y += turn)
           for (int x = begin(0); in(0, x); x += turn) {
             std::uint8_t& here = empty_[cell_index(x, y, z)];
-            for (int n = 0; n < 13 && here > 1; ++n) {  // those that were passed: 13 of 26
+            for (int n = 0; n < 13 && here > 1; ++n) {  // the neighbours that were already visited: 13 of 26
               const int i = x + turn * (n % 3 - 1), j = y + turn * (n / 3 % 3 - 1), k = z + turn * (n / 9 - 1);
               if (!in(0, i) || !in(1, j) || !in(2, k)) continue;
               here = std::min<std::uint8_t>(here, std::uint8_t(std::min(int(empty_[cell_index(i, j, k)]) + 1, int(most))));
@@ -284,7 +284,7 @@ class SignedDistanceGrid final : public ImplicitObject {
   }
 
   int points_[3]{}, count_[3]{};  // points and cells along each axis
-  Place low_{}, scale_{};         // of the first point; cells per m
+  Place low_{}, scale_{};         // position of the first point; cells per m
   std::vector<float> values_;
   std::vector<std::uint8_t> empty_;
 };

@@ -1,4 +1,4 @@
-// Numbers for the names of attributes.
+// attribute_number: assigns numbers to the names of attributes.
 
 #include <map>
 #include <mutex>

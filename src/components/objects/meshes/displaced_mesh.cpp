@@ -1,4 +1,4 @@
-// DisplacedMesh: triangles moved as a map says.
+// DisplacedMesh: triangles displaced by maps.
 
 #include "displacement.h"
 #include "etendue/describe/registry.h"
@@ -61,7 +61,7 @@ class DisplacedMesh final : public TriangleObject {
     if (surface->shader || surface->emission || surface->interior)
       warn("DisplacedMesh.surface: its shader, emission and interior are not used; they belong to the DisplacedMesh",
            location_of("surface"));
-    surface->world_centre = surface->transform.outer();  // the maps' world ends here
+    surface->world_centre = surface->transform.outer();  // for maps, world space is the space that contains the surface
     Displacement by;
     by.surface = surface.get();
     by.height = displacement.get();
@@ -87,12 +87,12 @@ class DisplacedMesh final : public TriangleObject {
     }
   }
 
-  /// What the surface tells where the point was before it moved.
+  /// The attribute of the original surface at the undisplaced point.
   std::vector<SceneObject*> placed_within() const override { return {surface.get()}; }
 
   int attribute(int number, const SurfacePoint& p, float* values) const override {
     const std::uint32_t triangle = kept_.empty() ? p.primitive : kept_[p.primitive];
-    // Where a still transform mirrors, triangles were turned round: their second and third corners changed places.
+    // If a static transform mirrors, the orientation of triangles was reversed: their second and third corners are exchanged.
     const bool turned = !transform.animated() && transform.still().flips();
     const DividedTriangles::Place place = triangles_->place(triangle, turned ? p.v : p.u, turned ? p.u : p.v);
     SurfacePoint before = p;
@@ -127,7 +127,7 @@ class DisplacedMesh final : public TriangleObject {
     if (!(smooth_angle >= 0 && smooth_angle <= pi)) fail("smooth_angle", "must lie between 0 and 180 deg");
   }
 
-  /// Leaves out triangles that the maps have squeezed flat, and remembers which are left.
+  /// Removes triangles that the maps have made degenerate, and stores the indices of the rest.
   void keep_usable(MeshData& mesh) {
     const size_t count = mesh.triangles.size();
     std::vector<std::array<std::uint32_t, 3>> all = mesh.triangles;
@@ -139,8 +139,8 @@ class DisplacedMesh final : public TriangleObject {
       if (all[i] == mesh.triangles[kept_.size()]) kept_.push_back(std::uint32_t(i));
   }
 
-  std::unique_ptr<DividedTriangles> triangles_;  // only where each lies in the surface
-  std::vector<std::uint32_t> kept_;              // of these, when some were left out
+  std::unique_ptr<DividedTriangles> triangles_;  // only the position of each triangle in the original surface
+  std::vector<std::uint32_t> kept_;              // indices of the kept triangles, if some were removed
 };
 
 const Register<DisplacedMesh> registered;

@@ -1,4 +1,4 @@
-// Points of a surface moved as a map says, and the normals of what comes out.
+// Displaces the vertices of a surface by maps and computes the normals of the displaced shape.
 
 #include "displacement.h"
 
@@ -35,7 +35,7 @@ class Displacer {
   static Corner corner(std::uint64_t c) { return {size_t(c / 3), size_t(c % 3)}; }
   std::uint32_t vertex(std::uint64_t c) const { return in_.triangles[c / 3][c % 3]; }
 
-  /// The surface as it was, at a corner.
+  /// The point of the undisplaced surface at a corner.
   SurfacePoint original(std::uint64_t c) const {
     const Corner at = corner(c);
     const DividedTriangles::Place place = in_.corner(at.triangle, at.number);
@@ -53,8 +53,8 @@ class Displacer {
     return positions[t[(c + step) % 3]] - positions[t[c % 3]];
   }
 
-  // A surface without surface coordinates tells those within each triangle, which contradict each other where triangles share
-  // a vertex; such are not kept.
+  // A surface without surface coordinates returns the barycentric ones of each triangle, which differ between triangles that
+  // share a vertex; these are not stored.
   void find_uvs() {
     std::vector<Point2> uvs(in_.positions.size());
     std::vector<bool> known(uvs.size());
@@ -70,16 +70,17 @@ class Displacer {
     out_.uvs = std::move(uvs);
   }
 
-  /// Lets maps see what they may average over: as much as neighbouring corners are apart.
+  /// Sets the footprint over which maps may average: the distance of neighbouring vertices.
   void widen(SurfacePoint& p, std::uint64_t c) const {
-    p.position = in_.positions[vertex(c)];  // shared by all that lie here
+    p.position = in_.positions[vertex(c)];  // the same for all vertices at this position
     p.object_position = Point3(DoublePoint3(p.position) + (by_.surface->transform.outer() - DoublePoint3{}));
     p.object_normal = p.normal;
     p.footprint = std::min(length(edge(c, 1, in_.positions)), length(edge(c, 2, in_.positions)));
     p.footprint_cosine = 1;
   }
 
-  /// Along u, across it on the side to which v grows, and along the shading normal: not always right-handed.
+  /// Axes along u, perpendicular to u on the side towards which v increases, and along the shading normal; not always
+  /// right-handed.
   static Frame tangent_frame(const SurfacePoint& p) {
     const Normal3& n = p.shading_normal;
     const Vector3 s = p.dpdu - dot(n, p.dpdu) * Vector3(n);
@@ -125,9 +126,9 @@ class Displacer {
     });
   }
 
-  // Normals of the new shape, of each corner's triangle by its angle there (Thürmer & Wüthrich 1998, "Computing vertex
-  // normals from polygonal facets"), over the corners in one place whose normals were alike before: an edge that was hard
-  // stays so. A vertex whose corners fall apart in this way is copied.
+  // Normals of the displaced shape: means of the triangles' normals, weighted by their angles (Thürmer & Wüthrich 1998,
+  // "Computing vertex normals from polygonal facets"), over those corners at one position whose normals were similar before the
+  // displacement, so that a hard edge stays hard. A vertex whose corners get different normals in this way is duplicated.
   void shade() {
     out_.triangles = in_.triangles;
     out_.normals.resize(out_.positions.size());
@@ -141,7 +142,7 @@ class Displacer {
       };
       std::vector<Part> parts;
       std::vector<size_t> part_of;
-      std::vector<std::pair<std::uint32_t, size_t>> owners;  // vertices and the part whose normal they have
+      std::vector<std::pair<std::uint32_t, size_t>> owners;  // vertices, and the part whose normal each has
       std::vector<Copy> copies;
       for (size_t g = some.begin(); g < some.end(); ++g) {
         const auto corners = groups_.corners(g);

@@ -1,5 +1,5 @@
 #pragma once
-// Triangles divided into smaller ones, and moved as a map says.
+// Displacement mapping: subdivides triangles and displaces their vertices by maps.
 
 #include <memory>
 #include <span>
@@ -10,17 +10,17 @@
 
 namespace etendue {
 
-/// Triangles halved along their edges. Whether an edge is divided, and where, depends on its ends' places alone, so that
-/// neighbours always agree, also across seams, where they have copies of the ends.
+/// Triangles subdivided by halving edges. Whether an edge is halved, and where, depends only on the positions of its ends, so
+/// that neighbours always agree, also across seams, where the vertices are duplicated.
 class DividedTriangles {
  public:
   explicit DividedTriangles(const TriangleView&);
 
-  /// Halves every edge so many times, then those longer than `edge_length` (0: none) until there are none; 15 times at most
-  /// in all. Returns false when that was not enough. Throws Error when there would be too many.
+  /// Halves every edge `levels` times, then repeatedly the edges longer than `edge_length` (0: none); at most 15 times in
+  /// total. Returns false if longer edges remain. Throws Error if there would be too many triangles.
   bool divide(int levels, float edge_length);
 
-  /// Forgets all but what `place` needs.
+  /// Frees all data except those that `place` needs.
   void keep_places() {
     positions = {};
     triangles = {};
@@ -29,7 +29,7 @@ class DividedTriangles {
   std::vector<Point3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
-  /// A triangle of the original and barycentric coordinates of its second and third corner.
+  /// A point on the original mesh: a triangle and the barycentric coordinates of its second and third corner.
   struct Place {
     std::uint32_t triangle;
     float u, v;
@@ -40,7 +40,7 @@ class DividedTriangles {
   }
 
  private:
-  // Halving 15 times leaves multiples of 2^-15, which these hold exactly.
+  // After 15 halvings coordinates are multiples of 2^-15, which 16-bit integers hold exactly.
   static constexpr int most_halvings = 15;
   struct Within {
     std::uint32_t triangle;
@@ -48,24 +48,27 @@ class DividedTriangles {
   };
   bool halve(float longer_than);
 
-  std::vector<Within> within_;  // for each triangle; empty while they are those of the original
+  std::vector<Within> within_;  // for each triangle; empty as long as nothing was divided
   int halvings_ = 0;
 };
 
-/// How far points move, in the coordinates of what contains the surface; so are all places that maps see, lest the shape
-/// change when the whole is moved.
+/// Parameters of a displacement. It is applied in the coordinates of the space that contains the surface. The positions at
+/// which maps are evaluated are in the same coordinates, so that the shape does not depend on the transform of the displaced
+/// object.
 struct Displacement {
   const SceneObject* surface = nullptr;
   const ObjectMap* height = nullptr;       ///< along the normal
-  std::span<const Ref<ObjectMap>> offset;  ///< along three axes; or none
-  bool along_tangents = false;             ///< these axes: the directions in which u and v grow and the normal, else x, y and z
-  float scale = 1, midlevel = 0;           ///< a map's value m means scale * (m - midlevel) [m]
-  float smooth_cosine = 0.75f;             ///< of the angle up to which normals of the surface that meet in a place are blended
+  std::span<const Ref<ObjectMap>> offset;  ///< three maps, for offsets along three axes; or none
+  bool along_tangents = false;             ///< whether these axes are the directions of u and v and the normal, instead of x, y
+                                           ///< and z
+  float scale = 1, midlevel = 0;           ///< a map's value m displaces by scale * (m - midlevel) [m]
+  float smooth_cosine = 0.75f;             ///< cosine of the angle up to which normals of the surface at one position are
+                                           ///< averaged
 };
 
-/// Moves the corners of triangles of a surface: all that lie in one place alike, so that nothing gapes, along the mean of
-/// the shading normals there, as the mean of what the map says of them. The result has normals of its own shape, and surface
-/// coordinates when the surface has.
+/// Displaces the vertices of a surface's triangles. All vertices at one position are displaced alike, so that there are no
+/// cracks: along the mean of their shading normals, by the mean of their map values. The result has the normals of its
+/// displaced shape, and surface coordinates if the surface has them.
 MeshData displace(const DividedTriangles&, const Displacement&);
 
 }  // namespace etendue

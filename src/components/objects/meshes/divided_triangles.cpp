@@ -1,4 +1,4 @@
-// Triangles halved along their edges.
+// DividedTriangles: subdivision of triangles by halving edges.
 
 #include <bit>
 #include <cmath>
@@ -10,16 +10,16 @@
 namespace etendue {
 namespace {
 
-constexpr size_t most_triangles = size_t(1) << 26;  // some 8 GB while they are made
+constexpr size_t most_triangles = size_t(1) << 26;  // about 8 GB during construction
 
-/// Numbers by pair of vertices; open addressing.
+/// A hash table of numbers by pair of vertices, with open addressing.
 class EdgeTable {
  public:
   explicit EdgeTable(size_t most) : mask_(std::bit_ceil(2 * most + 2) - 1), keys_(mask_ + 1), values_(mask_ + 1) {}
 
-  /// The place for the number of an edge; `fresh` tells that there is none yet.
+  /// The entry for an edge; `fresh` is set if the edge is new.
   std::uint32_t& find(std::uint32_t a, std::uint32_t b, bool& fresh) {
-    // Vertices differ, so that 0 is no edge.
+    // The two vertices differ, so the key 0 is free to mark empty entries.
     const std::uint64_t key = std::uint64_t(std::max(a, b)) << 32 | std::min(a, b);
     size_t at = mix_bits(key) & mask_;
     while (keys_[at] != 0 && keys_[at] != key) at = (at + 1) & mask_;
@@ -70,7 +70,7 @@ bool DividedTriangles::divide(int levels, float edge_length) {
 
 bool DividedTriangles::halve(float longer_than) {
   const float limit = longer_than * longer_than;
-  // Differences and their squares are the same seen from both ends, bit by bit.
+  // The squared distance is bitwise the same for both directions of an edge.
   const auto marked = [&](std::uint32_t a, std::uint32_t b) { return distance_squared(positions[a], positions[b]) > limit; };
   size_t cuts = 0;
   for (const auto& t : triangles) cuts += size_t(marked(t[0], t[1])) + size_t(marked(t[1], t[2])) + size_t(marked(t[2], t[0]));
@@ -90,7 +90,7 @@ bool DividedTriangles::halve(float longer_than) {
   parts_within.reserve(triangles.size() + cuts);
   positions.reserve(positions.size() + cuts / 2 + cuts / 64 + 16);
   for (size_t i = 0; i < triangles.size(); ++i) {
-    // Corners 0 to 2, and 3 + k in the middle of the edge from corner k.
+    // Corners 0 to 2; 3 + k is the midpoint of the edge that begins at corner k.
     std::array<std::uint32_t, 6> vertex;
     std::array<std::array<std::uint16_t, 2>, 6> place;
     bool cut[3];

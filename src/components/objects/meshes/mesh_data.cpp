@@ -1,4 +1,4 @@
-// What all mesh formats share.
+// Functions common to all mesh formats.
 
 #include "mesh_data.h"
 
@@ -124,8 +124,9 @@ void drop_unusable(MeshData& mesh, const std::string& whose, std::span<const Poi
 
 namespace {
 
-/// The corner of a convex polygon from which a fan has no triangle without area, if there is one. Beside corners that others
-/// have on an edge in line there may be some, and without its triangle such a corner would be a gap in a closed surface.
+/// The corner of a convex polygon from which a fan has no degenerate triangle, if there is one. A polygon may have collinear
+/// corners (T-vertices of neighbouring faces); if the triangle at such a corner were degenerate and removed, a closed surface
+/// would have a gap there.
 size_t fan_apex(const std::vector<Point3>& points, const Vector3& normal) {
   const size_t count = points.size();
   const float least = 1e-6f * dot(normal, normal);
@@ -159,7 +160,7 @@ void append_polygon(MeshData& mesh, const std::uint32_t* corners, size_t count) 
     convex = dot(cross(b - a, c - b), normal) >= 0;
   }
   bool sound = is_finite(normal);
-  if (convex || !sound || count > 4096) {  // cutting ears takes quadratic time: a hostile count must not stop the program
+  if (convex || !sound || count > 4096) {  // ear clipping takes quadratic time: a malicious file must not block the program
     const size_t a = convex && count <= 64 ? fan_apex(points, normal) : 0;
     for (size_t i = 2; i < count; ++i)
       mesh.triangles.push_back({corners[a], corners[(a + i - 1) % count], corners[(a + i) % count]});

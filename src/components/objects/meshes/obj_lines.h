@@ -1,5 +1,5 @@
 #pragma once
-// Lines of words and numbers, as OBJ, MTL and OFF files have them.
+// Lines: tokenizer for the lines of words and numbers in OBJ, MTL and OFF files.
 
 #include <charconv>
 #include <cstdint>
@@ -52,7 +52,8 @@ class Lines {
     Number value = 0;
     const auto [stop, code] = std::from_chars(cursor_, line_end_, value);
     if (code == std::errc::invalid_argument) error("a number is expected");
-    // Too large or too small for a float: the former makes its triangles unusable, the latter is zero.
+    // Out of a float's range: a number too large becomes infinite, which makes its triangles unusable; one too small becomes
+    // zero.
     if (code == std::errc::result_out_of_range) {
       double wide = 0;
       std::from_chars(cursor_, stop, wide);
@@ -77,9 +78,9 @@ class Lines {
   void skip_space() {
     while (cursor_ < line_end_ && space(*cursor_)) ++cursor_;
   }
-  /// What is left of the line, spaces at its end and comments too.
+  /// The rest of the line, including trailing spaces and comments.
   std::string_view left() const { return {cursor_, size_t(line_end_ - cursor_)}; }
-  /// What is left of the line.
+  /// The rest of the line without trailing spaces; empty before a comment.
   std::string_view rest() {
     if (at_end()) return {};
     const char* last = line_end_;

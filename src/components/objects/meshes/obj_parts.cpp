@@ -1,4 +1,4 @@
-// The faces of an OBJ file by their materials, each as a mesh of its own.
+// Splits an OBJ file into one mesh per material.
 
 #include <algorithm>
 #include <filesystem>
@@ -15,8 +15,8 @@ namespace {
 
 constexpr const char* prefix = "usemtl ";
 
-/// Some triangles, with the vertices they use. `now` holds for each vertex of the whole its number in the part, and is as it
-/// was afterwards: `unknown`.
+/// Extracts some triangles with the vertices that they use. `now` is scratch space: for each vertex of the whole mesh its
+/// number in the part; all entries are `unknown` before and after the call.
 constexpr std::uint32_t unknown = 0xffffffffu;
 MeshData taken_out(const MeshData& mesh, std::span<const std::uint32_t> triangles, std::vector<std::uint32_t>& now) {
   MeshData part;
@@ -46,7 +46,8 @@ MeshData taken_out(const MeshData& mesh, std::span<const std::uint32_t> triangle
   return part;
 }
 
-/// Parts of the files that were read last, until they are taken: reading one of them takes a pass over the whole file.
+/// Cache of the parts of recently read files, until each is requested: a single part cannot be read without parsing the whole
+/// file.
 struct ReadFile {
   std::filesystem::file_time_type written;
   std::uintmax_t size = 0;
@@ -73,7 +74,7 @@ ReadFile read_parts(const std::string& path) {
     file.parts[""] = std::move(mesh);
     return file;
   }
-  // The numbers of the triangles, by their materials: those of material m stand from begin[m] to begin[m + 1].
+  // Counting sort of the triangles by material: those of material m are at begin[m] to begin[m + 1].
   const auto place = [&](std::uint32_t m) { return m == MeshData::no_material ? mesh.materials.size() : size_t(m); };
   std::vector<std::uint32_t> begin(mesh.materials.size() + 2), sorted(mesh.triangles.size());
   for (const std::uint32_t m : mesh.triangle_materials) ++begin[place(m) + 1];
@@ -101,7 +102,7 @@ ReadFile read_parts(const std::string& path) {
   return file;
 }
 
-/// With the lock held.
+/// The cached file, read if necessary. Call with the lock held.
 ReadFile& known(const std::string& path) {
   auto& all = known_files();
   std::error_code none;
@@ -122,7 +123,7 @@ MeshData read_obj_part(const std::string& path, const std::string& part) {
   if (!file->parts.contains(name)) {
     if (!std::ranges::count(file->names, name))
       throw Error("no face has a material '" + name + "'" + suggestion(name, file->names));
-    known_files().erase(path);  // it was taken before
+    known_files().erase(path);  // the part was already requested, so the file is read again
     file = &known(path);
   }
   MeshData mesh = std::move(file->parts.extract(name).mapped());

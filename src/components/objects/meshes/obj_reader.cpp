@@ -1,6 +1,6 @@
-// Wavefront OBJ files: v, vt, vn, f, s and usemtl, and colours of vertices (obj_vertices.h). Of materials the names are kept
-// and which triangle has which: ObjImporter makes shaders of them. Everything else (groups, curves) says nothing about
-// triangles.
+// Wavefront OBJ files: v, vt, vn, f, s and usemtl, and colours of vertices (obj_vertices.h). The names of materials and the
+// material of each triangle are stored: ObjImporter creates shaders from them. Everything else (groups, curves) is ignored,
+// since it does not concern triangles.
 
 #include <unordered_map>
 
@@ -15,7 +15,7 @@
 namespace etendue {
 namespace {
 
-/// What follows "s": a number, or "off".
+/// The smoothing group after "s": a number, or "off" (0).
 std::uint32_t smoothing_group(Lines& lines) {
   const std::string_view word = lines.rest();
   std::uint32_t group = 0;
@@ -23,7 +23,7 @@ std::uint32_t smoothing_group(Lines& lines) {
   return group;
 }
 
-/// A first pass, so that indices can be checked at once and nothing grows.
+/// A first pass that counts elements, so that indices can be checked immediately and memory is allocated once.
 ObjCounts count(std::string_view file) {
   ObjCounts c;
   for (Lines lines(file); lines.next();) {
@@ -38,7 +38,7 @@ ObjCounts count(std::string_view file) {
   return c;
 }
 
-/// Corners that are numbered by vertex get their position and their uv. One without uv gets the origin.
+/// Replaces the vertex numbers of corners by indices of positions and uvs. A corner without uv gets the uv (0, 0).
 void name_corners(const std::vector<Vertices::Corner>& list, PolygonMesh& mesh) {
   if (!mesh.uvs.empty()) {
     const auto origin = std::uint32_t(mesh.uvs.size());
@@ -49,7 +49,7 @@ void name_corners(const std::vector<Vertices::Corner>& list, PolygonMesh& mesh) 
   for (std::uint32_t& c : mesh.corners) c = list[c].position;
 }
 
-/// Three numbers. What Microsoft's C library wrote for a number that is none ("-1.#IND") is none here.
+/// Reads three numbers. What Microsoft's C library wrote for NaN and infinity ("-1.#IND") becomes NaN.
 template <class Number>
 std::array<Number, 3> three(Lines& lines) {
   const std::string_view rest = lines.rest();
@@ -69,7 +69,8 @@ DoublePoint3 read_place(Lines& lines) {
   return {x, y, z};
 }
 
-/// What the places in a file are to be counted from, which takes a look at all of them when the first is far from the origin.
+/// The point to which the positions of a file are to be relative. All positions are read only if the first is far from the
+/// origin.
 DoublePoint3 centre_of(std::string_view file) {
   constexpr double far = 1000;
   std::vector<DoublePoint3> ends;  // the box's corners
@@ -95,9 +96,10 @@ float angle_at(const Point3& p, const Point3& a, const Point3& b) {
   return std::atan2(length(cross(u, v)), dot(u, v));
 }
 
-/// The normals of vertices whose "normals" are smoothing groups: those of the triangles of the group around the place, by their
-/// angles there, so that it does not matter how polygons were cut (Thuermer & Wuethrich 1998, Computing vertex normals from
-/// polygonal facets). Group 0 has none, which leaves its faces flat.
+/// Normals from smoothing groups, whose numbers are stored as the vertices' "normals": the mean of the normals of the group's
+/// triangles at the position, weighted by their angles there, so that the result does not depend on the triangulation of
+/// polygons (Thuermer & Wuethrich 1998, Computing vertex normals from polygonal facets). Vertices of group 0 have no normals,
+/// so that its faces are flat.
 std::vector<Normal3> smooth_normals(const MeshData& mesh, const std::vector<Vertices::Corner>& corners) {
   const auto key = [&](std::uint32_t i) { return std::uint64_t(corners[i].position) << 32 | corners[i].normal; };
   const auto place = [&](std::uint32_t i) { return mesh.positions[corners[i].position]; };
@@ -116,7 +118,8 @@ std::vector<Normal3> smooth_normals(const MeshData& mesh, const std::vector<Vert
   return normals;
 }
 
-/// One entry for each vertex. A corner without normal gets a zero one, without uv the origin.
+/// Converts to one entry of each list per vertex. A corner without normal gets a zero normal, a corner without uv the uv (0,
+/// 0).
 MeshData by_vertex(MeshData mesh, const Vertices& vertices, bool smoothed) {
   MeshData result;
   result.centre = mesh.centre;
@@ -156,7 +159,7 @@ struct Face {
   std::uint32_t material = 0;
 };
 
-/// Cuts faces into triangles: by positions, then named by vertices.
+/// Triangulates faces by their positions; the triangles' corners are vertex numbers.
 class FaceCutter {
  public:
   void cut(const Face& polygon, MeshData& mesh) {
@@ -178,7 +181,7 @@ class FaceCutter {
   std::vector<std::uint32_t> order_;
 };
 
-/// With `polygons` given, faces go there as they are, and no triangles are made.
+/// If `polygons` is given, faces are stored there without triangulation, and no triangles are made.
 MeshData parse(std::string_view file, PolygonMesh* polygons) {
   const ObjCounts all = count(file);
   if (all.positions == 0) throw Error("it has no vertices");
@@ -187,7 +190,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
     throw Error("more than 2^32 vertices");
   const bool plain = all.uvs == 0 && all.normals == 0 && !all.smoothed;
 
-  MeshData mesh;  // as in the file until all is read
+  MeshData mesh;  // separate lists as in the file, until all is read
   mesh.centre = centre_of(file);
   mesh.positions.reserve(all.positions + 1);  // one more, for the padding the object adds
   mesh.uvs.reserve(all.uvs);
@@ -195,7 +198,7 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   mesh.triangles.reserve(all.faces);
   Vertices vertices(plain ? 0 : all.positions);
   std::vector<std::uint32_t> corners, positions;
-  std::vector<Face> late;  // faces that stand before their vertices and have more than three corners
+  std::vector<Face> late;  // faces with more than three corners that precede their vertices in the file
   FaceCutter cutter;
   ObjColors colors(all.positions);
   ObjCornerReader reader(mesh, all);

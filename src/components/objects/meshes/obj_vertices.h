@@ -1,5 +1,5 @@
 #pragma once
-// The corners of an OBJ file's faces as vertices, and the colours of vertices.
+// Converts corners of an OBJ file's faces to vertices, and reads vertex colours.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 
 namespace etendue {
 
-/// Vertices by (position, uv, normal): those of one position form a chain, mostly of length one.
+/// Assigns vertices to triples (position, uv, normal): the vertices of one position form a linked list, mostly of length one.
 class Vertices {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
@@ -48,10 +48,10 @@ inline std::uint32_t read_index(Lines& lines, size_t so_far, size_t all, const c
   return std::uint32_t(index);
 }
 
-/// Of what an OBJ file has.
+/// The numbers of elements in an OBJ file.
 struct ObjCounts {
   size_t positions = 0, uvs = 0, normals = 0, faces = 0;
-  bool smoothed = false;  ///< the file has no normals, but groups of faces whose normals are to be blended
+  bool smoothed = false;  ///< the file has no normals, but smoothing groups
 };
 
 /// A corner of a face: "p", "p/t", "p//n" or "p/t/n".
@@ -59,8 +59,8 @@ struct ObjCorner {
   std::uint32_t position = 0, uv = Vertices::none, normal = Vertices::none;
 };
 
-/// Reads corners. Programs that leave out surface coordinates or normals when they write a file often leave their numbers in
-/// the faces: where there are none at all they mean nothing, which is told once.
+/// Reads corners. Programs that omit texture coordinates or normals when they write a file often leave their indices in the
+/// faces: if the file has none at all, the indices are ignored, with one warning.
 class ObjCornerReader {
  public:
   ObjCornerReader(MeshData& mesh, const ObjCounts& all) : mesh_(mesh), all_(all) {}
@@ -97,21 +97,21 @@ class ObjCornerReader {
   bool no_uvs_ = false, no_normals_ = false;
 };
 
-// Colours of vertices, in the two forms that programs have added: red, green and blue behind a vertex's place (MeshLab, Blender
-// and others), and ZBrush's comments "#MRGB" with eight hexadecimal digits for a vertex: a mask, red, green, blue. Both are
+// Colours of vertices, in the two forms that programs have added: red, green and blue after a vertex' position (MeshLab,
+// Blender and others), and ZBrush's comments "#MRGB" with eight hexadecimal digits per vertex: mask, red, green, blue. Both are
 // encoded as sRGB, as Blender reads them.
 class ObjColors {
  public:
   explicit ObjColors(size_t vertices) : vertices_(vertices) {}
 
-  /// What stands behind the place of a vertex: three numbers are its colour, one is a weight that only curves have.
+  /// Reads the numbers after the position of a vertex: three are its colour, one is a weight, which only curves use.
   void vertex(Lines& lines, size_t index) {
     if (lines.at_end()) return;
     float rgb[3] = {};
     try {
       for (float& x : rgb) x = lines.number();
     } catch (const Error&) {
-      return;  // fewer numbers, or something else
+      return;  // fewer numbers, or other text
     }
     if (!lines.at_end()) return;
     resize();
@@ -131,16 +131,16 @@ class ObjColors {
         values_[3 * painted_ + c] = float(value) / 255;
       }
   }
-  /// To a mesh whose vertices are those of the file.
+  /// Adds the colours to a mesh whose vertices are those of the file.
   void give(MeshData& mesh) {
     if (values_.empty()) return;
-    const float scale = most_ > 1 ? 1.0f / 255 : 1;  // bytes, as some write
+    const float scale = most_ > 1 ? 1.0f / 255 : 1;  // some programs write values from 0 to 255
     for (float& x : values_) x = float(decode_transfer("srgb", double(std::clamp(x * scale, 0.0f, 1.0f))));
     mesh.attributes.push_back({"color", 3, std::move(values_)});
   }
 
  private:
-  /// White where nothing is said.
+  /// Vertices without colour are white.
   void resize() {
     if (values_.empty()) values_.resize(3 * vertices_, 1.0f);
   }

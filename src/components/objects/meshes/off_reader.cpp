@@ -12,7 +12,7 @@
 namespace etendue {
 namespace {
 
-/// The lines that say something.
+/// Moves to the next line that is not empty or a comment; returns false at the end.
 bool next(Lines& lines) {
   while (lines.next())
     if (!lines.at_end()) return true;
@@ -49,14 +49,14 @@ size_t count(Lines& lines, std::string_view file, const char* what) {
   return size_t(n);
 }
 
-/// Bytes are those of which one is above 1.
+/// Colours are bytes if any value is above 1; these are decoded from sRGB to linear.
 void decode(std::vector<float>& colors) {
   if (std::ranges::none_of(colors, [](float x) { return x > 1; })) return;
   for (float& x : colors) x = float(decode_transfer("srgb", std::clamp(double(x) / 255, 0.0, 1.0)));
 }
 
-/// What follows the corners of a face: nothing, the place in a list of colours that is not in the file, or red, green, blue and
-/// perhaps alpha. The triangles of the face, those from `first` on, get it.
+/// Colours of faces, given after a face's corners: nothing, an index into a colour map that is not in the file, or red, green,
+/// blue and optionally alpha. They are stored for the triangles of the face, which begin at `first`.
 class FaceColors {
  public:
   void read(Lines& lines, const MeshData& mesh, size_t first) {

@@ -18,7 +18,7 @@ std::vector<Group> groups_of(const Element& e, std::vector<bool> taken) {
                              e.find({"blue", "b", "diffuse_blue"})};
   if (std::ranges::all_of(rgb, free)) add("color", rgb, Column::Meaning::color);
   for (size_t p = 0; p < e.properties.size(); ++p) {
-    if (groups.size() >= 256) break;  // more than anyone has; names are compared with one another
+    if (groups.size() >= 256) break;  // limit against malicious files, since the cost of comparing names is quadratic
     if (!free(int(p))) continue;
     const std::string& name = e.properties[p].name;
     if (name.size() > 2 && name.ends_with("_0")) {
@@ -29,7 +29,7 @@ std::vector<Group> groups_of(const Element& e, std::vector<bool> taken) {
         if (!free(next)) break;
         parts.push_back(next);
       }
-      // Colours in this form are numbers as they are: who writes it writes floats.
+      // Colours in this form are left unchanged: programs that write it write floats.
       add(stem, parts, Column::Meaning::number);
     } else {
       add(name, {int(p)}, name == "alpha" ? Column::Meaning::fraction : Column::Meaning::number);
@@ -66,7 +66,7 @@ void FaceAttributes::finish() {
   if (triangles_ == 0) return;
   Element triangles = element_;
   triangles.count = triangles_;
-  if (!triangles_) return;  // empty lists are nowhere
+  if (!triangles_) return;  // there is no data to point to
   std::vector<Column> columns;
   for (size_t g = 0; g < groups_.size(); ++g) {
     const size_t width = groups_[g].properties.size();

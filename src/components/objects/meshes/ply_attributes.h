@@ -1,17 +1,18 @@
 #pragma once
-// What the vertices of a PLY file have besides positions, normals and surface coordinates, and its faces besides corners.
+// Further attributes of a PLY file: of vertices besides positions, normals and texture coordinates, and of faces besides
+// corners.
 
 #include "mesh_data.h"
 #include "ply_header.h"
 
 namespace etendue::ply {
 
-/// Where the numbers of a property go as floats: one every `step` bytes.
+/// The destination of a property's values as floats: one every `step` bytes.
 struct Column {
   int property;
   char* to;
   size_t step;
-  /// What decode_fractions makes of integers.
+  /// How decode_fractions converts integers.
   enum class Meaning : std::uint8_t { number, color, fraction } meaning = Meaning::number;
 };
 
@@ -21,21 +22,22 @@ struct Group {
   std::vector<int> properties;
   Column::Meaning meaning = Column::Meaning::number;
 };
-/// Those of an element but for what is `taken`: "color" of the properties red, green and blue; NAME of NAME_0, NAME_1, ..., up
-/// to four; and every other number by its own name.
+/// The groups of an element's properties, except those that are `taken`: "color" from the properties red, green and blue; NAME
+/// from NAME_0, NAME_1, ..., up to four; and every other scalar property by its own name.
 std::vector<Group> groups_of(const Element&, std::vector<bool> taken);
 
-/// Adds attributes to the mesh, with room for every vertex, and columns that fill them, of what no column takes yet.
+/// For each property that no column reads yet, adds an attribute to the mesh, with storage for every vertex, and the columns
+/// that fill it.
 void add_attributes(const Element&, std::vector<Column>&, MeshData&);
 
-/// What the faces tell, kept for each triangle: "face_" and the name of the group.
+/// Attributes of faces, stored for each triangle under the name "face_" and the group's name.
 class FaceAttributes {
  public:
   FaceAttributes(const Element&, int indices, MeshData&);
   bool empty() const { return groups_.empty(); }
-  /// One face's numbers, by property, for each triangle that was added for it.
+  /// Stores one face's values, indexed by property, for each triangle that was added for the face.
   void add(const std::vector<float>& row);
-  /// When all are there; see decode_fractions.
+  /// To be called after the last face; see decode_fractions.
   void finish();
 
  private:
@@ -45,8 +47,8 @@ class FaceAttributes {
   size_t triangles_ = 0;
 };
 
-/// When the columns are filled: colours and alpha that were integers become fractions of the largest integer of their type,
-/// and such colours, which are encoded as in sRGB, linear.
+/// To be called when the columns are filled: converts integer colours and alpha to fractions of the largest integer of their
+/// type, and decodes such colours from sRGB to linear.
 void decode_fractions(const Element&, const std::vector<Column>&);
 
 }  // namespace etendue::ply

@@ -1,5 +1,5 @@
 #pragma once
-// What a PLY file says it holds, and the numbers that it does.
+// The header of a PLY file, and access to the numbers of its body.
 
 #include <algorithm>
 #include <charconv>
@@ -18,7 +18,7 @@ namespace etendue::ply {
 
 enum class Type : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-/// Bytes of a number in binary files.
+/// Size of a number in binary files [bytes].
 size_t size_of(Type);
 
 struct Property {
@@ -32,7 +32,7 @@ struct Element {
   std::string name;
   std::uint64_t count = 0;
   std::vector<Property> properties;
-  /// Bytes one of them takes at least.
+  /// Least size of one element [bytes].
   size_t least_size(bool text) const {
     size_t n = 0;
     for (const Property& p : properties) n += text ? 2 : (p.list ? size_of(p.count_type) : size_of(p.type));
@@ -55,12 +55,12 @@ struct Header {
   bool text = false, swap = false;
   std::vector<Element> elements;
   std::string texture;  // "comment TextureFile name", as MeshLab and others write
-  size_t size = 0;      // bytes up to the body
+  size_t size = 0;      // size of the header [bytes]
 };
 
-/// Throws Error with the line.
+/// Parses the header; throws Error with the line.
 Header read_header(std::string_view file);
-/// Text of the file for a message: what is not printable becomes '?'.
+/// Text of the file for a message, with characters that are not printable replaced by '?'.
 std::string shown(std::string_view);
 
 template <class T>
@@ -90,7 +90,7 @@ inline double load_number(const char* at, Type type, bool swap) {
   return 0;
 }
 
-/// Numbers of a PLY body, one after another.
+/// Reads the numbers of a PLY body sequentially.
 class Body {
  public:
   Body(std::string_view file, size_t start, bool text, bool swap)

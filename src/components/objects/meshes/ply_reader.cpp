@@ -25,7 +25,7 @@ void read_vertices(const Element& e, Body& body, MeshData& mesh) {
   const size_t count = size_t(e.count);
   mesh.positions.reserve(count + 1);  // one more, for the padding the object adds
   mesh.positions.resize(count);
-  // Places in double are counted from their middle, where that is far from the origin.
+  // Positions in double are stored relative to their centre if it is far from the origin.
   const int axes[3] = {x, y, z};
   const bool in_double = std::ranges::all_of(axes, [&](int i) { return e.properties[size_t(i)].type == Type::float64; });
   std::vector<DoublePoint3> exact(in_double ? count : 0);
@@ -51,7 +51,7 @@ void read_vertices(const Element& e, Body& body, MeshData& mesh) {
       std::memcpy(p, body.at(), 12 * count);
       columns.clear();
     }
-    // One column after another, its type found once.
+    // Column by column, so that the type is dispatched once per column.
     for (const Column& c : columns) {
       const char* from = body.at() + offsets[size_t(c.property)];
       const Type type = e.properties[size_t(c.property)].type;
@@ -90,7 +90,7 @@ void read_vertices(const Element& e, Body& body, MeshData& mesh) {
   decode_fractions(e, columns);
 }
 
-/// With `polygons` given, faces go there as they are, and no triangles are made.
+/// If `polygons` is given, faces are stored there without triangulation, and no triangles are made.
 void read_faces(const Element& e, Body& body, MeshData& mesh, PolygonMesh* polygons) {
   const int indices = e.find({"vertex_indices", "vertex_index"});
   if (indices < 0 || !e.properties[size_t(indices)].list) throw Error("the faces have no list 'vertex_indices'");
@@ -106,7 +106,7 @@ void read_faces(const Element& e, Body& body, MeshData& mesh, PolygonMesh* polyg
   std::uint64_t face = 0;
   if (!polygons && !body.text() && e.properties.size() == 1 && size_of(list.count_type) == 1 && size_of(list.type) == 4 &&
       list.type != Type::float32) {
-    // The common layout: a byte and that many 32-bit indices. Triangles are taken here, anything else below.
+    // The common layout: a byte and that many 32-bit indices. Triangles are read here, any other face below.
     const char* at = body.at();
     const char* const end = at + body.left();
     const bool swap = body.swap();
@@ -152,8 +152,8 @@ void read_faces(const Element& e, Body& body, MeshData& mesh, PolygonMesh* polyg
   if (!polygons) attributes.finish();
 }
 
-/// Triangles in strips: each corner from the third on makes one with the two before it, every other one the other way round;
-/// -1 begins a new strip (Stanford's scans).
+/// Triangle strips: each corner from the third on forms a triangle with the two before it, with alternating orientation; -1
+/// begins a new strip (Stanford's scans).
 void read_strips(const Element& e, Body& body, MeshData& mesh, PolygonMesh* polygons) {
   const int indices = e.find({"vertex_indices", "vertex_index"});
   if (indices < 0 || !e.properties[size_t(indices)].list) throw Error("the strips have no list 'vertex_indices'");
@@ -196,7 +196,8 @@ MeshData parse(std::string_view file, PolygonMesh* polygons) {
   bool vertices = false, faces = false;
   for (const Element& e : header.elements) {
     if (e.properties.empty() || e.count == 0) continue;
-    // Nothing is reserved for a count that the rest of the file cannot hold (the last number of a text needs no space).
+    // No memory is reserved for a count that exceeds the rest of the file (in a text file, no separator follows the last
+    // number).
     const size_t least = e.least_size(header.text);
     if (least == 0 || e.count > (body.left() + 1) / least)
       throw Error("the header claims " + std::to_string(e.count) + " of element " + shown(e.name) +

@@ -1,4 +1,4 @@
-// Polygon: a flat outline.
+// Polygon: a planar polygon, with or without holes.
 
 #include "geometry/own_centre.h"
 #include "polygon_triangulation.h"
@@ -29,7 +29,7 @@ class Polygon final : public TriangleObject {
 
   void prepare() override {
     if (points.size() < 3) fail("points", "a polygon needs at least three points, but has " + std::to_string(points.size()));
-    // All outlines one after the other, and where each ends.
+    // The corners of all outlines in sequence, and the end index of each.
     const DoublePoint3 from = own_centre(points);
     std::vector<Point3> corners = counted_from(from, points);
     const std::vector<Point3> outline = corners, in_holes = counted_from(from, holes);

@@ -14,7 +14,7 @@ bool usable(const Point3& p) {
   return std::abs(p.x) < largest && std::abs(p.y) < largest && std::abs(p.z) < largest;  // false for NaN
 }
 
-/// Only the values of `kept`, in that order.
+/// Keeps only the values with the indices `kept`, in that order.
 template <class T>
 void compact(std::vector<T>& values, const std::vector<std::uint32_t>& kept, size_t width = 1) {
   std::vector<T> out;
@@ -53,7 +53,7 @@ TidiedVertices tidy(PolygonMesh& mesh, bool weld, const std::string& whose) {
   else
     for (std::uint32_t i = 0; i < count; ++i) place[i] = i;
 
-  if (weld && !mesh.uvs.empty()) {  // so that only seams tell corners of one vertex apart
+  if (weld && !mesh.uvs.empty()) {  // so that corners of one vertex have different uv indices only at seams
     std::vector<Point3> flat;
     flat.reserve(mesh.uvs.size());
     for (const Point2& uv : mesh.uvs) flat.push_back({uv.x, uv.y, 0});
@@ -66,7 +66,7 @@ TidiedVertices tidy(PolygonMesh& mesh, bool weld, const std::string& whose) {
   const bool uvs = !mesh.uv_corners.empty();
   std::vector<std::uint32_t> face, sorted;
   for (const std::uint32_t size : mesh.face_sizes) {
-    // Corners that fell together with the one before are one.
+    // Consecutive corners that have been welded are merged.
     const size_t begin = to;
     for (size_t i = from; i < from + size; ++i) {
       const std::uint32_t v = place[mesh.corners[i]];

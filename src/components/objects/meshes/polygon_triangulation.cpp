@@ -6,7 +6,7 @@
 namespace etendue {
 
 Vector3 newell_normal(std::span<const Point3> points) {
-  // About the first point, in double, so that a small polygon far from the origin keeps its digits.
+  // Relative to the first point and in double, so that a small polygon far from the origin keeps its precision.
   double x = 0, y = 0, z = 0;
   const Point3 o = points[0];
   for (size_t i = 0; i < points.size(); ++i) {
@@ -20,19 +20,20 @@ Vector3 newell_normal(std::span<const Point3> points) {
 
 namespace {
 
-/// A corner in the plane, and the number of its point.
+/// A corner projected to the plane, and the index of its point.
 struct Corner {
   double x, y;
   std::uint32_t name;
 };
 using Outline = std::vector<Corner>;
 
-/// Twice the area of a triangle; positive when it runs counter-clockwise.
+/// Twice the area of a triangle; positive if it is counter-clockwise.
 double turn_of(const Corner& a, const Corner& b, const Corner& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Projects points along the largest axis of a normal, in double, turned so that what runs around it runs counter-clockwise.
+/// Projects points along the largest axis of a normal, in double, such that polygons that run around the normal are
+/// counter-clockwise.
 Outline projected(std::span<const Point3> points, const Vector3& normal) {
   const Vector3 size = abs(normal);
   const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
@@ -42,7 +43,7 @@ Outline projected(std::span<const Point3> points, const Vector3& normal) {
   return p;
 }
 
-/// Two edges cross where each has the other's ends on both sides.
+/// Two edges cross if the ends of each lie on different sides of the other.
 bool cross_each_other(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
   return turn_of(a, b, c) * turn_of(a, b, d) < 0 && turn_of(c, d, a) * turn_of(c, d, b) < 0;
 }
@@ -62,8 +63,8 @@ bool cross(const Outline& p, const Outline& q) {
   return false;
 }
 
-/// Whether an outline lies in another that it does not cross. All corners that are not on the other's border agree; those
-/// on it do not tell.
+/// Whether an outline lies inside another one that it does not cross. Decided by the first corner that is not on the other's
+/// border.
 bool lies_in(const Outline& inner, const Outline& outer) {
   for (const Corner& c : inner) {
     bool in = false, border = false;
@@ -84,7 +85,7 @@ double twice_area(const Outline& p) {
   return sum;
 }
 
-/// Ears are cut until nothing is left. Returns false when the outline crosses itself.
+/// Clips ears until nothing is left. Returns false if the outline intersects itself.
 bool cut_ears(const Outline& p, std::vector<std::array<std::uint32_t, 3>>& out) {
   const size_t n = p.size();
   const auto turn = [&](size_t i, size_t j, size_t k) { return turn_of(p[i], p[j], p[k]); };
@@ -98,7 +99,8 @@ bool cut_ears(const Outline& p, std::vector<std::array<std::uint32_t, 3>>& out) 
     const size_t i = previous[j], k = next[j];
     if (!(turn(i, j, k) > 0)) return false;
     for (size_t q = next[k]; q != i; q = next[q]) {
-      // Only reflex corners can lie in an ear; one that touches a corner of the ear (a bridge to a hole) does not count.
+      // Only reflex corners can lie in an ear; a corner that coincides with a corner of the ear (a bridge to a hole) is
+      // ignored.
       if (turn(previous[q], q, next[q]) > 0 || same(q, i) || same(q, j) || same(q, k)) continue;
       if (turn(i, j, q) >= 0 && turn(j, k, q) >= 0 && turn(k, i, q) >= 0) return false;
     }
@@ -115,7 +117,7 @@ bool cut_ears(const Outline& p, std::vector<std::array<std::uint32_t, 3>>& out) 
     const size_t i = previous[at], k = next[at];
     const bool straight = turn(i, at, k) == 0;
     if (straight || is_ear(at) || (misses > left && turn(i, at, k) > 0)) {
-      // A straight corner is cut too, though its triangle has no area, or its neighbour would see no ear beside it.
+      // A straight corner is clipped too, without a triangle, since otherwise its neighbours might never become ears.
       if (!straight) out.push_back({p[i].name, p[at].name, p[k].name});
       simple = simple && misses <= left;
       cut(at);
@@ -137,27 +139,28 @@ bool cut_ears(const Outline& p, std::vector<std::array<std::uint32_t, 3>>& out) 
   return simple;
 }
 
-/// Joins a hole, which runs clockwise, to the outline around it by a bridge that is passed both ways: from the hole's corner
-/// furthest along x to one that it sees (Eberly 2008, "Triangulation by ear clipping"). Returns false when it sees none.
+/// Joins a clockwise hole to the outline around it by a bridge, an edge traversed in both directions, from the hole's corner
+/// with the largest x to a corner of the outline visible from it (Eberly 2008, "Triangulation by ear clipping"). Returns false
+/// if there is none.
 bool join(Outline& outline, const Outline& hole) {
   const size_t m = size_t(
       std::max_element(hole.begin(), hole.end(), [](const Corner& a, const Corner& b) { return a.x < b.x; }) - hole.begin());
   const Corner& from = hole[m];
-  // The nearest edge along +x, and its end that lies further along.
+  // The nearest edge in the direction +x, and its end with the larger x.
   const size_t n = outline.size();
   double nearest = std::numeric_limits<double>::infinity();
   size_t best = n;
   for (size_t i = 0; i < n; ++i) {
     const Corner &a = outline[i], &b = outline[(i + 1) % n];
-    if (!(a.y <= from.y && b.y >= from.y && a.y < b.y)) continue;  // its inside is on its left: towards the hole
+    if (!(a.y <= from.y && b.y >= from.y && a.y < b.y)) continue;  // the inside, and so the hole, is to the left of the edge
     const double x = a.x + (from.y - a.y) / (b.y - a.y) * (b.x - a.x);
     if (!(x >= from.x && x < nearest)) continue;
     nearest = x;
     best = b.y == from.y ? (i + 1) % n : (a.y == from.y || a.x > b.x ? i : (i + 1) % n);
   }
   if (best == n) return false;
-  // Reflex corners in the triangle of the corner, the place hit and that end hide the end: of them the one seen at the
-  // smallest angle to +x is not hidden, among equals the nearest.
+  // Reflex corners in the triangle of the hole's corner, the hit point and the edge's end hide this end. Of them the one at the
+  // smallest angle to +x is visible; at equal angles the nearest.
   const Corner place{nearest, from.y, 0}, end = outline[best];
   const bool above = end.y > from.y;
   double least = std::abs(end.y - from.y) / std::max(end.x - from.x, 1e-300);
@@ -174,7 +177,7 @@ bool join(Outline& outline, const Outline& hole) {
       best = i;
     }
   }
-  // Of several corners in that place (bridges end there) the one whose inside the bridge leaves into.
+  // Of several corners at this position (ends of bridges), the one whose interior angle contains the bridge.
   for (size_t i = 0; i < n; ++i) {
     if (outline[i].x != outline[best].x || outline[i].y != outline[best].y) continue;
     const Corner &a = outline[(i + n - 1) % n], &c = outline[i], &b = outline[(i + 1) % n];
@@ -191,7 +194,8 @@ bool join(Outline& outline, const Outline& hole) {
   return true;
 }
 
-/// Crossings are looked for edge by edge up to so many corners: in more, those that remain are noticed when ears are cut.
+/// Up to this number of corners, all pairs of edges are tested for crossings; with more corners, ear clipping detects crossings
+/// only in part.
 constexpr size_t tested_corners = 4096;
 
 }  // namespace
@@ -222,7 +226,7 @@ PolygonCheck triangulate(std::span<const Point3> points, std::span<const size_t>
     for (size_t k = 1; k < outlines.size(); ++k)
       if (k != i && lies_in(outlines[i], outlines[k])) return {PolygonFault::nested, i};
   }
-  // Holes are joined from the one that reaches furthest along x on, so that those still to come are in no bridge's way.
+  // Holes are joined in order of decreasing largest x, so that no remaining hole intersects a bridge.
   const auto furthest = [&](size_t i) {
     double x = -std::numeric_limits<double>::infinity();
     for (const Corner& c : outlines[i]) x = std::max(x, c.x);

@@ -1,5 +1,5 @@
 #pragma once
-// Triangles from polygons.
+// Triangulation of polygons, with or without holes.
 
 #include <array>
 #include <cstdint>
@@ -10,28 +10,28 @@
 
 namespace etendue {
 
-/// Twice the area times the unit normal, by Newell's method (Sutherland et al. 1974): exact for planar polygons, the
-/// best plane for others.
+/// Twice the area times the unit normal, by Newell's method (Sutherland et al. 1974): exact for planar polygons, the best fit
+/// for others.
 Vector3 newell_normal(std::span<const Point3> points);
 
-/// Appends triangles (indices into the points) of a simple polygon, in its orientation, by cutting ears (Meisters 1975).
-/// Returns false when the polygon crosses itself; then the triangles only cover it roughly.
+/// Appends triangles (indices into the points) of a simple polygon, with the same orientation, by ear clipping (Meisters 1975).
+/// Returns false if the polygon intersects itself; then the triangles cover it only approximately.
 bool triangulate(std::span<const Point3> points, std::vector<std::array<std::uint32_t, 3>>& out);
 
-/// What may be wrong with a polygon that has holes.
+/// Errors of a polygon with holes.
 enum class PolygonFault : std::uint8_t {
   none,
-  crossing,  ///< two outlines cross, or one crosses itself
-  outside,   ///< a hole lies outside of the polygon
+  crossing,  ///< two outlines intersect, or one intersects itself
+  outside,   ///< a hole lies outside the polygon
   nested,    ///< a hole lies within another one
 };
 struct PolygonCheck {
   PolygonFault fault = PolygonFault::none;
-  size_t outline = 0;  ///< the one at fault: 0 the outer one, then the holes
+  size_t outline = 0;  ///< the outline with the error: 0 for the outer one, then the holes
 };
 
-/// The same with holes. `points` are those of all outlines, the outer one's first, and `ends` tells where each outline ends.
-/// Holes may run either way round.
+/// Triangulates a polygon with holes. `points` are the points of all outlines, the outer one first; `ends` are the end indices
+/// of the outlines. Holes may have either orientation.
 PolygonCheck triangulate(std::span<const Point3> points, std::span<const size_t> ends,
                          std::vector<std::array<std::uint32_t, 3>>& out);
 

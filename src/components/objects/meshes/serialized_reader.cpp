@@ -1,10 +1,11 @@
 // Mitsuba's compressed meshes (.serialized), versions 3 and 4. Source: Jakob 2014, Mitsuba documentation, version 0.5,
 // section 8.1.5.
 //
-// One file holds several meshes, each with a header of its own: uint16 0x041c, uint16 version, and then, compressed by zlib:
-// uint32 flags, in version 4 the mesh's name up to a zero byte, uint64 vertices, uint64 triangles, and lists of positions,
-// normals, uvs, colours (as flags say, in floats or doubles) and of corners (uint32, or uint64 when there are more vertices
-// than that counts). At the file's end stands where each begins (uint64, in version 3 uint32) and how many there are (uint32).
+// One file holds several meshes, each with its own header: uint16 0x041c, uint16 version, and then, compressed by zlib: uint32
+// flags, in version 4 the mesh's name terminated by a zero byte, uint64 number of vertices, uint64 number of triangles, the
+// lists of positions, normals, uvs, colours (depending on the flags, in floats or doubles) and the list of corners (uint32, or
+// uint64 if the number of vertices exceeds uint32). At the file's end are the offsets of the meshes (uint64, in version 3
+// uint32) and their number (uint32).
 
 #include <zlib.h>
 
@@ -38,7 +39,7 @@ T at(std::string_view file, size_t offset) {
   return value;
 }
 
-/// What zlib makes of bytes, a part at a time: what the bytes claim to hold costs no memory before it is there.
+/// Decompresses bytes by zlib incrementally, so that a false size in the file allocates no memory.
 class Inflated {
  public:
   explicit Inflated(std::string_view bytes) {
@@ -67,7 +68,7 @@ class Inflated {
     read(&value, sizeof(T));
     return value;
   }
-  /// A list of vectors, in parts, so that a false count fails before it takes memory.
+  /// Reads a list in parts, so that a false count fails before it allocates memory.
   template <class T>
   std::vector<T> list(std::uint64_t count) {
     constexpr std::uint64_t part = 1 << 18;
@@ -89,7 +90,7 @@ class Inflated {
   z_stream stream_{};
 };
 
-/// Where the mesh of this number lies in the file.
+/// The part of the file that contains the mesh with a given number.
 std::string_view part_of(std::string_view file, std::uint32_t number) {
   const auto version = at<std::uint16_t>(file, 2);
   const size_t width = version == 3 ? 4 : 8;
@@ -166,7 +167,7 @@ MeshData read_serialized(std::string_view file, std::uint32_t number) {
 
 namespace {
 
-/// The mesh whose number is written; without one the first.
+/// Reads the mesh whose number is given as `part`; the first one if `part` is empty.
 MeshData read_numbered(const std::string& path, const std::string& part) {
   std::uint32_t number = 0;
   const char* const end = part.data() + part.size();

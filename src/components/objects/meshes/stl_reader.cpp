@@ -1,10 +1,12 @@
-// STL files, text and binary: triangles one by one. Corners in the same place become one vertex, so that surfaces close.
+// STL files, text and binary: lists of separate triangles. Corners at the same position are merged to one vertex, so that
+// surfaces are closed.
 //
-// Two habits put colours of triangles, 15 bits of sRGB, into the two bytes that close a record of a binary file (Wikipedia,
-// "STL (file format)", section "Color in binary STL"). VisCAM's and SolidView's: the highest bit says that there is a colour,
-// red is above green and blue is lowest. Materialise Magics': the head holds "COLOR=" and four bytes, the colour of all; where
-// the highest bit is not set a triangle has its own, with red lowest. The bytes were meant as the length of attributes, 0, and
-// other programs leave there what they like: ColorBits says whether they can be colours.
+// Two conventions store colours of triangles, 15 bits of sRGB, in the last two bytes of a record of a binary file (Wikipedia,
+// "STL (file format)", section "Color in binary STL"). VisCAM and SolidView: the highest bit marks a colour; blue is in the
+// lowest bits, then green, then red. Materialise Magics: the header contains "COLOR=" and four bytes, the colour of the whole
+// object; a triangle whose highest bit is not set has its own colour, with red in the lowest bits. The two bytes were intended
+// as the length of attributes, 0, and other programs store arbitrary values there: ColorBits decides whether they can be
+// colours.
 
 #include <bit>
 #include <cstring>
@@ -19,13 +21,13 @@
 namespace etendue {
 namespace {
 
-/// Vertices by the bits of their places.
+/// Merges vertices by the bits of their positions.
 class Corners {
  public:
   explicit Corners(MeshData& mesh) : mesh_(mesh) {}
 
   std::uint32_t add(Point3 p) {
-    for (int k = 0; k < 3; ++k) p[k] += 0.0f;  // -0 is 0
+    for (int k = 0; k < 3; ++k) p[k] += 0.0f;  // turns -0 into 0
     const auto [place, fresh] = places_.try_emplace(p, std::uint32_t(mesh_.positions.size()));
     if (fresh) mesh_.positions.push_back(p);
     return place->second;
@@ -60,7 +62,7 @@ std::string small(std::string_view text) {
   return all;
 }
 
-/// What the two bytes of all triangles hold.
+/// Statistics of the last two bytes of all triangles.
 class ColorBits {
  public:
   explicit ColorBits(std::string_view file) : file_(file), count_(binary_count(file)) {
@@ -82,20 +84,20 @@ class ColorBits {
     return bits;
   }
 
-  /// Why they are none of VisCAM's colours though some have the highest bit; "": they can be.
+  /// The reason why the bytes are not VisCAM colours although some have the highest bit set; "" if they can be colours.
   const char* why_not_viscam() const {
     if (said_in_head("viscam") || said_in_head("solidview")) return "";
     if (marked_ == black_) return "all that they could say is black";
     if (same_ && (*this)[0] == 0xffff) return "all their bits are set, everywhere";
     if (numbers_) return "they count the triangles";
-    // What is not marked has no colour, and mostly 0: of rubbish about as much is marked as not.
+    // Triangles that are not marked have no colour, and mostly the value 0; of arbitrary values, about half are marked.
     constexpr size_t few = 16;
     if (count_ >= few && 2 * unmarked_ > marked_)
       return "too many triangles have bits without the one that says that they are a colour";
     return "";
   }
   bool any_marked() const { return marked_ > 0; }
-  /// Magics' head without colours of triangles: 0 everywhere, which is what other programs leave.
+  /// With a Magics header: all bytes are 0, as programs without colours of triangles write them.
   bool all_zero() const { return zero_ == count_; }
   bool counts_triangles() const { return numbers_; }
 
@@ -119,7 +121,7 @@ void give_colors(std::string_view file, MeshData& mesh) {
   if (!rubbish.empty()) mesh.remarks.push_back("the two bytes behind each triangle are not taken for its colour: " + rubbish);
   if (!magics && !rubbish.empty()) return;
   const auto linear = [](double fraction) { return float(decode_transfer("srgb", fraction)); };
-  std::array<float, 3> all{0.7f, 0.7f, 0.7f};  // of what has none of its own
+  std::array<float, 3> all{0.7f, 0.7f, 0.7f};  // for triangles without their own colour
   for (size_t k = 0; magics && k < 3; ++k)
     all[k] = linear(double(static_cast<unsigned char>(header[place + magics_mark.size() + k])) / 255);
   const bool own_colors = rubbish.empty() && !(magics && bits.all_zero());
@@ -176,7 +178,7 @@ MeshData read_text(std::string_view file) {
 }  // namespace
 
 MeshData read_stl(std::string_view file) {
-  // Some binary files begin with "solid" too; their length tells.
+  // Some binary files also begin with "solid"; they are recognized by their length.
   const std::string begin = small(file.substr(0, 1024));
   const bool solid = begin.starts_with("solid");
   const bool text = solid && file.size() != head + 4 + record * binary_count(file) && begin.find("facet") != std::string::npos;

@@ -1,4 +1,4 @@
-// Triangle: a single one.
+// Triangle: a single triangle.
 
 #include "geometry/own_centre.h"
 #include "triangle_object.h"
@@ -22,7 +22,7 @@ class Triangle final : public TriangleObject {
     if (!is_finite(a)) fail("a", "must be finite");
     if (!is_finite(b)) fail("b", "must be finite");
     if (!is_finite(c)) fail("c", "must be finite");
-    // Rounding turns a narrower one by as much as its angles.
+    // Rounding would rotate a narrower triangle by about its own angles.
     const double longest = std::max({length_of(b, a), length_of(c, b), length_of(a, c)});
     const double area = twice_area();
     if (!(area > 1e-6 * longest * longest)) fail("c", "the corners lie on a line, or nearly so");

@@ -1,4 +1,4 @@
-// What objects made of triangles keep of those they are given, and what they find out about them.
+// TriangleObject: stores the triangles and determines their properties (closed, open edges, bounds).
 
 #include <algorithm>
 
@@ -14,8 +14,8 @@ Normal3 unit_or_zero(const Normal3& n) {
   return l > 0 && l < infinity ? Normal3(Vector3(n) / l) : Normal3{};
 }
 
-// Programs that make a sphere end it at sin(2 pi), which is -2e-16 of its radius and not where it began: what is so much less
-// than a float of the object's size can tell counts as 0.
+// Programs that generate a sphere compute its last vertices from sin(2 pi), which is -2e-16 instead of 0, so they do not
+// coincide with the first. Coordinates far below float precision at the object's size are therefore treated as 0.
 float least_length(const Bounds3& bounds) {
   constexpr float fraction = 1e-9f;
   return fraction * length(bounds.high - bounds.low);
@@ -27,7 +27,7 @@ std::uint64_t place_hash(std::uint64_t h, const Point3& p, float least) {
   return mix_bits(h ^ bits(p.z));
 }
 
-/// Up to this many triangles have their planes remembered: 1 MB, and a tenth of a path's time.
+/// Up to this number of triangles planes are precomputed: this takes 1 MB and saves a tenth of a path's time.
 constexpr size_t remembered_planes = 1 << 16;
 
 }  // namespace
@@ -80,7 +80,7 @@ void TriangleObject::adopt(std::shared_ptr<const MeshData> mesh, MeshMotion moti
   if (transform.animated() && mesh_.triangles.size() > few) accelerator();
 }
 
-/// What will surely be asked for is made now, the rest when it is.
+/// Computes now the data that an emitter certainly needs; other data are computed at the first use.
 void TriangleObject::prepare_light() {
   light_tree_ = {};
   if (!emission) return;
@@ -89,7 +89,7 @@ void TriangleObject::prepare_light() {
 }
 
 void TriangleObject::bake(const Transform& t) {
-  // What is shared stays as it is; of a motion this is the only user.
+  // Shared data are copied, not changed; a motion's data are not shared.
   std::vector<Point3>& positions = motion_.moves() ? motion_.positions : changed_.positions;
   std::vector<Normal3>& normals = motion_.moves() ? motion_.normals : changed_.normals;
   if (!motion_.moves()) {
@@ -103,22 +103,22 @@ void TriangleObject::bake(const Transform& t) {
     mesh_.normals = normals;
   }
   if (!t.flips()) return;
-  // So that edges still turn around the front.
+  // The order of corners is reversed, so that they remain counter-clockwise seen from the front.
   changed_.triangles.assign(mesh_.triangles.begin(), mesh_.triangles.end());
   for (auto& corner : changed_.triangles) std::swap(corner[1], corner[2]);
   mesh_.triangles = changed_.triangles;
 }
 
 bool TriangleObject::closed() const {
-  // In a closed and consistently oriented surface every directed edge meets its opposite, so this sum, to which an edge
-  // and its opposite contribute inverse terms, is zero; of an open surface it is so with probability 2^-64. Corners are
-  // told by position, not index: seams of texture coordinates are no holes.
-  if (!lazy_) return false;  // it is not prepared
+  // In a closed and consistently oriented surface every directed edge has an opposite, so this sum, in which the terms of an
+  // edge and of its opposite cancel, is zero; for an open surface it is zero with probability 2^-64. Corners are identified by
+  // position, not by index: seams of texture coordinates are no holes.
+  if (!lazy_) return false;  // not prepared yet
   std::call_once(lazy_->closed_known, [this] {
     const float least = least_length(stored_bounds_);
     const auto corner = [this, least](std::uint32_t i) {
       std::uint64_t h = 0;
-      for (size_t k = i; k + 1 < mesh_.positions.size(); k += vertices_)  // at all keys
+      for (size_t k = i; k + 1 < mesh_.positions.size(); k += vertices_)  // positions at all keys
         h = place_hash(h, mesh_.positions[k], least);
       return h;
     };
@@ -146,8 +146,8 @@ ObjectNotes TriangleObject::notes() const {
   return notes;
 }
 
-// Edges by the places of their ends, as above. One that is met once ends the surface; of the others nothing is said, as a mesh
-// whose triangles do not all turn the same way around the front, which is not closed either, has two of each.
+// Edges are identified by the positions of their ends, as above. An edge that occurs once is a boundary. Other edges are not
+// checked: a mesh with inconsistent orientation, which is not closed either, has each edge twice.
 std::uint64_t TriangleObject::open_edges() const {
   if (closed()) return 0;
   std::uint64_t open = 0;

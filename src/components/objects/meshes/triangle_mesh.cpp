@@ -1,4 +1,4 @@
-// TriangleMesh: triangles from a file or a list, which may change their shape.
+// TriangleMesh: triangles from a file or a list; may be deformed over time.
 
 #include "etendue/describe/read_ahead.h"
 #include "geometry/own_centre.h"
@@ -10,7 +10,7 @@
 namespace etendue {
 namespace {
 
-/// Normals of corners from the triangles around them, by area; corners that stand apart keep their edges sharp.
+/// Appends vertex normals, the area-weighted means over the adjacent triangles; edges between separate vertices stay sharp.
 void append_normals(std::span<const Point3> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
                     std::vector<Normal3>& to) {
   std::vector<Vector3> sums(positions.size());
@@ -89,7 +89,9 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
     try {
       prepare_triangles();
     } catch (const NoTriangles& nothing) {
-      if (file.empty()) throw;  // what a file holds is not what the scene's author wrote: of many meshes one may be flat
+      if (file.empty())
+        throw;  // the author of the scene is not responsible for a file's contents: one of many meshes may be
+                // degenerate
       warn(std::string(nothing.what()) + ": it is left out", nothing.location);
       auto none = std::make_shared<MeshData>();
       make_shareable(*none);
@@ -133,7 +135,7 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
     if (smooth && !flat && mesh->normals.empty() && !mesh->faceted) {
       auto round = std::make_shared<MeshData>(*mesh);
       smooth_normals(*round);
-      round->normals.pop_back();  // of the padding behind the last vertex
+      round->normals.pop_back();  // the normal of the padding vertex
       mesh = std::move(round);
     }
     MeshMotion motion = keyed(mesh);
@@ -153,7 +155,7 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
     adopt(std::move(mesh), std::move(motion));
   }
 
-  /// Fails in the same words as other errors.
+  /// Throws NoTriangles with the message and location that fail() would give.
   [[noreturn]] void refuse(const char* member, const NoTriangles& nothing) const {
     try {
       fail(member, nothing.what());
@@ -165,7 +167,7 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
   struct Attribute {
     int number;  // see attribute_number
     int width;
-    const float* values;  // of the mesh that was adopted
+    const float* values;  // points into the adopted mesh
     bool of_faces;
   };
 
@@ -180,7 +182,7 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
   }
   bool moves() const { return !motion_files.empty() || !motion_positions.empty(); }
 
-  /// Takes out the triangles that cannot be used; `later`: the positions at all keys but the first.
+  /// Removes unusable triangles; `later` holds the positions at all keys but the first.
   void drop(MeshData& mesh, std::span<const Point3> later = {}) const {
     const std::string own_name = origin && !origin->name.empty() ? origin->name : "TriangleMesh";
     try {
@@ -190,8 +192,8 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
     }
   }
 
-  /// The positions and normals at all keys, of which the mesh has the first. Of a mesh that moves, the triangles that cannot
-  /// be used at any of them are taken out.
+  /// The positions and normals at all keys; the mesh has those of the first. From a deforming mesh, triangles that are unusable
+  /// at all keys are removed.
   MeshMotion keyed(std::shared_ptr<const MeshData>& mesh) const {
     MeshMotion motion;
     const bool from_lists = !motion_positions.empty();
@@ -245,7 +247,7 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
     drop(*kept, std::span(motion.positions).subspan(n));
     kept->positions.push_back({});
     if (kept->triangles.size() < mesh->triangles.size()) mesh = std::move(kept);
-    constexpr float largest = 1e18f;  // as of all meshes
+    constexpr float largest = 1e18f;  // as for all meshes
     for (const auto& t : mesh->triangles)
       for (const std::uint32_t c : t)
         for (size_t k = n; k < motion.positions.size(); k += n) {
@@ -265,7 +267,7 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
     return motion;
   }
 
-  /// Whether the file's numbers, where they are floats, can hold its triangles.
+  /// Warns if the file's float coordinates are too coarse for its triangles.
   void warn_if_coarse(const MeshData& mesh) const {
     double sum = 0;
     float away = 0;

@@ -8,7 +8,7 @@
 namespace etendue {
 namespace {
 
-/// The unit vector along a cross product of edges, whatever their size.
+/// Normalizes a cross product of edges without overflow or underflow.
 Vector3 unit_normal(const Vector3& n, float& inverse_length) {
   const float nn = dot(n, n);
   if (nn > 1e-30f && nn < 1e30f) [[likely]] {
@@ -16,7 +16,7 @@ Vector3 unit_normal(const Vector3& n, float& inverse_length) {
     return inverse_length * n;
   }
   const float largest = max_component(abs(n));
-  if (!(largest > 0)) {  // of a motion, at the moment at which the triangle is flat
+  if (!(largest > 0)) {  // a deforming triangle at a time at which it is degenerate
     inverse_length = 1e30f;
     return {0, 0, 1};
   }
@@ -37,8 +37,8 @@ Vector3 TriangleObject::stored_normal(std::uint32_t corner, const Moment& m) con
   return motion_.moves() ? (1 - m.part) * n + m.part * Vector3(mesh_.normals[m.second + corner]) : n;
 }
 
-// Who finds a hit takes the time as a fraction of the whole motion, rounded by two units in the last place of 1: of one step
-// between keys that is more the shorter it is.
+// Intersection uses the time as a fraction of the whole motion, with a rounding error of two units in the last place of 1:
+// relative to one interval between keys, the error is larger the shorter the interval.
 float TriangleObject::motion_error(std::uint32_t primitive, const Moment& m, const Normal3& n) const {
   const std::vector<float>& times = motion_.times;
   const size_t k = m.second / vertices_;
@@ -49,7 +49,7 @@ float TriangleObject::motion_error(std::uint32_t primitive, const Moment& m, con
     furthest = std::max(furthest, along(n, abs(b - a)));
     size = std::max(size, along(n, abs(a) + abs(b)));
   }
-  return 4 * rounding_bound(1) * steps * furthest + rounding_bound(4) * size;  // and what interpolation rounds
+  return 4 * rounding_bound(1) * steps * furthest + rounding_bound(4) * size;  // plus rounding of interpolation
 }
 
 TriangleObject::Corners TriangleObject::corners(std::uint32_t primitive, float time) const {
@@ -106,11 +106,11 @@ bool TriangleObject::occludes(const Ray& ray) const {
   return intersect(ray, hit);
 }
 
-// The error says how far a point found on the triangle may be from where an intersection test sees the plane, along the
-// normal N/|N|. With E = |e1| + |e2| by axis and P = |v0| + E: the point itself and moving it off the surface round its
-// coordinates, of at most P (3 roundings); interpolation, v0 - O and the product with N round terms of at most E (8 of
-// them); and N, rounded by up to 3 roundings of X_i = |e1_j e2_k| + |e1_k e2_j|, turns the plane about v0, seen at a
-// distance of at most E. For slivers this last bound exceeds what is useful, and is cut off.
+// The error bounds the distance, along the normal N/|N|, of a point on the triangle from the plane as an intersection test
+// computes it. With E = |e1| + |e2| and P = |v0| + E per axis: computing the point and offsetting it round coordinates of at
+// most P (3 roundings); interpolation, v0 - O and the product with N round terms of at most E (8 roundings); and the error of
+// N, up to 3 roundings of X_i = |e1_j e2_k| + |e1_k e2_j|, rotates the plane about v0, which matters at a distance of at most
+// E. For slivers this last bound becomes too large to be useful, and is clamped.
 TriangleObject::Plane TriangleObject::plane_of(const Point3& p0, const Vector3& e1, const Vector3& e2) {
   float inverse_length = 0;
   Plane plane;
@@ -201,7 +201,7 @@ void TriangleObject::surface_point(const Ray& ray, const Hit& hit, SurfacePoint&
 }
 
 void TriangleObject::tangents(SurfacePoint& p) const {
-  if (p.dpdu != Vector3{}) return;  // found already, by a nested scene
+  if (p.dpdu != Vector3{}) return;  // already set by a nested scene
   const auto& t = mesh_.triangles[p.primitive];
   const Corners corners = stored_corners(p.primitive, moment(p.time));
   Vector3 e1 = corners.p[1] - corners.p[0], e2 = corners.p[2] - corners.p[0];
@@ -219,7 +219,7 @@ void TriangleObject::tangents(SurfacePoint& p) const {
   if (determinant != 0 && std::isfinite(1 / determinant)) {
     p.dpdu = (d2.y * e1 - d1.y * e2) / determinant;
     p.dpdv = (d1.x * e2 - d2.x * e1) / determinant;
-  } else {  // the uvs do not span the triangle: any basis
+  } else {  // the uvs are degenerate: an arbitrary basis
     const Frame frame(p.normal);
     p.dpdu = frame.s;
     p.dpdv = frame.t;

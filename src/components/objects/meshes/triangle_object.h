@@ -1,5 +1,5 @@
 #pragma once
-// What objects made of triangles share: meshes and polygons.
+// TriangleObject: base class of shapes made of triangles, such as meshes and polygons.
 
 #include <memory>
 #include <mutex>
@@ -15,22 +15,22 @@ namespace etendue {
 
 class EmbreeTriangles;
 
-/// Makes normals unit vectors, or zero, and appends the position that Embree asks for behind the last.
+/// Normalizes normals (or sets them to zero), and appends the padding position that Embree requires.
 void make_shareable(MeshData&);
 
-/// Where the corners of triangles are at several times. Between these they move in straight lines; before the first and
-/// after the last they rest.
+/// Vertex positions at several keyframes. Between keys, vertices move linearly; before the first and after the last key they
+/// rest.
 struct MeshMotion {
-  std::vector<float> times;       ///< [s], increasing; two at least, or none: nothing moves
-  std::vector<Point3> positions;  ///< of all corners at the first time, then at the second, and so on; then one more
-  std::vector<Normal3> normals;   ///< likewise (without the one more), unit or zero; or none
+  std::vector<float> times;       ///< [s], increasing; at least two, or none if nothing moves
+  std::vector<Point3> positions;  ///< of all vertices at the first key, then at the second, and so on; then one as padding
+  std::vector<Normal3> normals;   ///< likewise, without padding; unit or zero; or empty
   bool moves() const { return !times.empty(); }
 };
 
-/// A still object keeps its triangles in the coordinates of the containing scene, so that nothing is transformed while
-/// rendering; one whose transform moves in its own. Triangles that change their shape are where they are at the time that
-/// is asked about. Barycentric coordinates u and v of a hit belong to a triangle's second and third
-/// corner.
+/// An object with a static transform stores its triangles in the coordinates of the containing scene, so that nothing is
+/// transformed during rendering; an object with an animated transform stores them in object space. Vertices of deforming meshes
+/// are interpolated at the time of the ray. The barycentric coordinates u and v of a hit belong to a triangle's second and
+/// third corner.
 class TriangleObject : public SceneObject, public NumberedParts {
  public:
   TriangleObject();
@@ -51,26 +51,26 @@ class TriangleObject : public SceneObject, public NumberedParts {
   ObjectNotes notes() const override;
   std::uint64_t open_edges() const override;
   std::optional<TriangleView> triangles() const override;
-  /// Triangles, whether they move or not.
+  /// The number of triangles, moving or not.
   std::uint64_t part_count() const override { return mesh_.triangles.size(); }
-  /// The triangles when they change their shape and nothing else moves.
+  /// The triangles of a deforming mesh with a static transform.
   std::optional<MovingTriangleView> moving_triangles() const;
   void prepare_again() override { prepare_light(); }
 
  protected:
-  /// Takes triangles in the object's coordinates; to be called by prepare.
+  /// Takes over triangles in object space; to be called by prepare.
   void adopt(MeshData);
-  /// The same, shared with other objects: normals are unit vectors or zero, and the positions have one more at the end, which
-  /// Embree asks for. With a motion, positions and normals are those of the motion.
+  /// The same for a mesh shared with other objects: its normals must be unit vectors or zero, and its positions must have the
+  /// padding that Embree requires (make_shareable). With a motion, the motion's positions and normals are used.
   void adopt(std::shared_ptr<const MeshData>, MeshMotion = {});
-  /// The corners of a triangle among those that were adopted, in the order in which u and v mean them.
+  /// The vertex indices of a triangle, in the order to which u and v refer.
   const std::array<std::uint32_t, 3>& corner_indices(std::uint32_t primitive) const { return mesh_.triangles[primitive]; }
 
  private:
-  /// Up to this many triangles are tested one by one when a scene does not traverse them itself.
+  /// Up to this number of triangles are tested one by one, unless a scene traverses them itself.
   static constexpr size_t few = 8;
 
-  /// Replaces what was adopted by what a still transform makes of it.
+  /// Applies a static transform to the stored triangles.
   void bake(const Transform&);
 
   struct Corners {
@@ -87,16 +87,17 @@ class TriangleObject : public SceneObject, public NumberedParts {
   }
   Vector3 stored_normal(std::uint32_t corner, const Moment&) const;
   float motion_error(std::uint32_t primitive, const Moment&, const Normal3&) const;
-  /// A triangle's corners in the coordinates of the containing scene.
+  /// A triangle's vertices in the coordinates of the containing scene.
   Corners corners(std::uint32_t primitive, float time) const;
   void fill(std::uint32_t primitive, float u, float v, float time, SurfacePoint&) const;
   template <bool moving>
   void fill_at(std::uint32_t primitive, float u, float v, float time, SurfacePoint&) const;
-  /// Chooses a triangle by its area in the stored coordinates; `x` becomes a fresh number in [0, 1).
+  /// Chooses a triangle in proportion to its area in the stored coordinates; `x` is rescaled for reuse as a random number in
+  /// [0, 1).
   std::uint32_t choose(float& x, float other) const;
-  /// Of a motion the mean over its keys.
+  /// A triangle's area in the stored coordinates; for a deforming mesh the mean over its keys.
   float stored_area(std::uint32_t primitive) const;
-  /// The same as seen from a point, by the tree when there is one.
+  /// Chooses a triangle for a reference point, by the light tree if there is one; `chance` receives the probability.
   std::uint32_t choose_visible(const Point3& from, Point2& u, float& chance) const;
   float visible_chance(const Point3& from, std::uint32_t primitive) const;
   void prepare_light();
@@ -104,40 +105,40 @@ class TriangleObject : public SceneObject, public NumberedParts {
   const std::vector<double>& cumulative_areas() const;
   const EmbreeTriangles& accelerator() const;
   TriangleView view() const { return {mesh_.positions.first(vertices_), mesh_.triangles}; }
-  /// Still ones as well.
+  /// The triangles with the motion's keys, if any.
   MovingTriangleView moving_view() const { return {mesh_.positions, vertices_, mesh_.triangles, motion_.times}; }
 
   struct Plane {
     Normal3 normal;
-    float error = 0;   // see SurfacePoint
-    float margin = 0;  // what barycentric coordinates of points are at least: see `border`
+    float error = 0;   // see SurfacePoint::error
+    float margin = 0;  // least barycentric coordinate of points: see `border`
   };
   static Plane plane_of(const Point3&, const Vector3& e1, const Vector3& e2);
 
-  std::vector<Plane> planes_;  // in the stored coordinates; none for large meshes
+  std::vector<Plane> planes_;  // in the stored coordinates; empty for large or deforming meshes
   struct {
-    std::span<const Point3> positions;  // one more at the end; of a motion those of all keys
+    std::span<const Point3> positions;  // with padding; for a deforming mesh those of all keys
     std::span<const std::array<std::uint32_t, 3>> triangles;
     std::span<const Normal3> normals;
     std::span<const Point2> uvs;
   } mesh_;
-  // Where the uvs of a triangle are, those of (u, v) themselves when there are none: which objects have uvs and which do not,
-  // a branch could not guess.
+  // The uvs and the uv indices of triangles; without uvs they point to constant tables that give (u, v) itself. This avoids a
+  // branch that would be mispredicted, as some objects have uvs and others do not.
   const Point2* uvs_ = nullptr;
   const std::array<std::uint32_t, 3>* uv_corners_ = nullptr;
   std::uint32_t uv_mask_ = 0;
-  std::shared_ptr<const MeshData> data_;  // as they were adopted
-  MeshData changed_;                      // what a still transform made of them
+  std::shared_ptr<const MeshData> data_;  // the mesh as adopted
+  MeshData changed_;                      // copies changed by a static transform
   MeshMotion motion_;
   size_t vertices_ = 0;
-  LightTree light_tree_;  // of a still luminaire of many triangles
+  LightTree light_tree_;  // for a static luminaire of many triangles
   double area_ = 0;       // the sum of stored_area [m^2]
   Bounds3 bounds_, stored_bounds_;
 
-  // Made when first asked for: few objects need them.
+  // Computed at the first use, since few objects need them.
   struct Lazy {
     std::once_flag table_made, accelerator_made, closed_known;
-    std::vector<double> cumulative;  // of the triangles' areas, normalized
+    std::vector<double> cumulative;  // cumulative areas of the triangles, normalized
     std::unique_ptr<EmbreeTriangles> accelerator;
     bool closed = false;
   };

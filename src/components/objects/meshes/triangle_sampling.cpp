@@ -1,4 +1,4 @@
-// Areas of objects made of triangles, and points chosen on them.
+// TriangleObject: area and sampling.
 
 #include "etendue/core/warp.h"
 #include "geometry/geometry.h"
@@ -46,8 +46,8 @@ const std::vector<double>& TriangleObject::cumulative_areas() const {
 
 namespace {
 
-/// A float has 24 bits, too few to choose among millions of triangles and a point in one: bits below them are filled by a
-/// hash of both numbers.
+/// A float has 24 bits, too few to choose one of millions of triangles and a point in it: lower bits are filled by a hash of
+/// both numbers.
 double finer(float x, float other) {
   const std::uint64_t bits = (std::uint64_t(std::bit_cast<std::uint32_t>(x)) << 32) | std::bit_cast<std::uint32_t>(other);
   return std::min(double(x) + double(mix_bits(bits + 0x9e3779b97f4a7c15ull) >> 11) * 0x1p-77, 1 - 0x1p-53);
@@ -72,7 +72,7 @@ SurfaceSample TriangleObject::sample_area(Point2 u, float time) const {
   const Point2 b = warp::triangle(u);
   fill(primitive, b.x, b.y, time, s.point);
   s.pdf = area_pdf(s.point);
-  if (!(s.pdf < infinity)) s.pdf = 0;  // a triangle that has no area at this time
+  if (!(s.pdf < infinity)) s.pdf = 0;  // a triangle that is degenerate at this time
   return s;
 }
 
@@ -84,7 +84,7 @@ float TriangleObject::area_pdf(const SurfacePoint& p) const {
 
 namespace {
 
-/// Whether sampling by solid angle may pay, from the distance to the nearest corner or the centre.
+/// Whether sampling by solid angle pays, judged by the distance to the nearest corner or the centroid.
 bool near(const Point3& from, const Point3 (&p)[3], float area) {
   const Vector3 a = p[0] - from, b = p[1] - from, c = p[2] - from;
   const float corner = std::min({length_squared(a), length_squared(b), length_squared(c)});
@@ -121,7 +121,7 @@ void TriangleObject::build_light_tree() {
     for (const std::uint32_t k : t) lights[i].bounds.add(mesh_.positions[k]);
     if (l > 0) lights[i].normals = {n * ((emission->sides == Sides::back ? -1 : 1) / l), 1 - 1e-6f};
     lights[i].both_sides = emission->sides == Sides::both;
-    lights[i].power = l / 2;  // of a map's variation nothing is known here
+    lights[i].power = l / 2;  // variation by emission maps is not taken into account
   }
   light_tree_.build(lights);
 }
@@ -161,7 +161,7 @@ SurfaceSample TriangleObject::sample_visible(const Point3& from, Point2 u, float
       ray.direction = triangle.sample(u);
       TriangleHit h;
       intersect_triangle(ray, c.p[0], e1, e2, n, h);
-      h.u = clamp(h.u, 0, 1);  // rounding may put it just beside the triangle
+      h.u = clamp(h.u, 0, 1);  // rounding may put the point just outside the triangle
       h.v = clamp(h.v, 0, 1 - h.u);
       const bool flipped = transform.animated() && transform.at(time).flips();
       fill(primitive, flipped ? h.v : h.u, flipped ? h.u : h.v, time, s.point);

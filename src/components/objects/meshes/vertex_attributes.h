@@ -1,5 +1,5 @@
 #pragma once
-// Numbers by vertex, such as colours, asked for by name at points of triangles.
+// VertexAttributes: values per vertex, such as colours, interpolated at points of triangles.
 
 #include <span>
 

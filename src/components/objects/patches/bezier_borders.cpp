@@ -6,16 +6,17 @@
 namespace etendue::bezier {
 namespace {
 
-constexpr double same = 1e-7;  // of the size of a patch: what rounding of control points to float may leave
+constexpr double same = 1e-7;  // relative to the size of a patch: differences up to this may come from rounding control points
+                               // to float
 
 struct Border {
   std::vector<Vector> points;
-  std::vector<double> weights;  // up to a common factor
+  std::vector<double> weights;  // defined up to a common factor
   std::size_t patch = 0;
-  double key = 0;  // the same in both directions
+  double key = 0;  // hash of the end points, independent of the direction
 };
 
-/// The borders with the patch on their left, seen from where S_s x S_t points to.
+/// Appends the borders of a patch, with the patch on their left seen from the side to which S_s x S_t points.
 void add_borders(const Patch& patch, std::size_t number, std::vector<Border>& borders) {
   const int m = patch.m, n = patch.n;
   const auto at = [&](int i, int j) { return patch.points[std::size_t(i + j * (m + 1))]; };
@@ -56,7 +57,7 @@ Match match(const Border& a, const Border& b, double tolerance) {
   return equal(a, b, false, tolerance) ? Match::alike : Match::none;
 }
 
-/// 3 times the volume that a patch spans with a point, positive when S_s x S_t faces away from it.
+/// 3 times the signed volume between a patch and a point, positive if S_s x S_t faces away from the point.
 double spanned(const Patch& patch, const Vector& from) {
   constexpr int steps = 8;
   double sum = 0;
@@ -99,7 +100,7 @@ bool close(std::vector<Patch>& patches) {
   std::vector<bool> flipped(patches.size()), seen(patches.size());
   for (std::size_t start = 0; start < patches.size(); ++start) {
     if (seen[start]) continue;
-    std::vector<std::size_t> part{start};  // all that hang together
+    std::vector<std::size_t> part{start};  // a connected component
     seen[start] = true;
     for (std::size_t i = 0; i < part.size(); ++i)
       for (const Neighbour& next : neighbours[part[i]]) {
@@ -109,7 +110,7 @@ bool close(std::vector<Patch>& patches) {
           flipped[next.patch] = turn;
           part.push_back(next.patch);
         } else if (flipped[next.patch] != turn) {
-          return false;  // one-sided, as Möbius's strip and Klein's bottle
+          return false;  // not orientable, as a Möbius strip or a Klein bottle
         }
       }
     double volume = 0;

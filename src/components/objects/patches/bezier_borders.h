@@ -1,12 +1,13 @@
 #pragma once
-// Which patches share borders, and whether together they enclose a volume.
+// Finds shared borders of patches and whether the patches enclose a volume.
 
 #include "bezier_patch.h"
 
 namespace etendue::bezier {
 
-/// Whether every border of every patch is that of exactly one other one (or of the same one, elsewhere), or shrinks to a
-/// point, and the patches can be turned so that neighbours face alike. Then turns them to face outwards, by `flipped`.
+/// Whether the patches form a closed orientable surface: every border of every patch coincides with exactly one other border,
+/// of another patch or of the same one, or is degenerate (a point), and the patches can be oriented consistently. If so, sets
+/// `flipped` of the patches so that all face outwards.
 bool close(std::vector<Patch>&);
 
 }  // namespace etendue::bezier

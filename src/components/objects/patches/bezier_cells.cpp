@@ -6,8 +6,9 @@
 namespace etendue::bezier {
 namespace {
 
-// A cell is good when `deviation` moves the solution of its linear approximation, seen along the normal, by no more than
-// this share of the cell. Rays then need no further cutting down to a cosine of about good / contraction (bezier_roots.cpp).
+// A cell is fine enough if, for a ray along the normal, `deviation` changes the solution of the cell's linear approximation by
+// no more than this fraction of the cell. Rays with a cosine to the normal above about good / contraction then need no further
+// subdivision (bezier_roots.cpp).
 constexpr double good = 0.11;
 constexpr int deepest = 6, deepest_of_both = 10;
 
@@ -55,8 +56,8 @@ class Cutter {
  private:
   const Control& at(const Piece& p, int i, int j) const { return p.net[i + j * (patch_.m + 1)]; }
 
-  /// With A = w (S - middle): S_x - dx = (A_x - w dx) / w - A w_x / w^2. A, w and their derivatives stay in the hulls of their
-  /// control values, and A_x - w dx vanishes in the middle.
+  /// With A = w (S - middle): S_x - dx = (A_x - w dx) / w - A w_x / w^2. A, w and their derivatives lie in the convex hulls of
+  /// their control values, and A_x - w dx vanishes at the cell's centre.
   double deviation(const Piece& p, const Cell& cell) const {
     const int m = patch_.m, n = patch_.n;
     double low = std::numeric_limits<double>::infinity(), high = 0, reach = 0;
@@ -73,7 +74,7 @@ class Cutter {
     const double middle_weight = (low + high) / 2, weight_range = (high - low) / 2;
     double sum = 0;
     for (const bool along_s : {true, false}) {
-      const double half_degree = 0.5 * (along_s ? m : n);  // x and y go over twice the unit interval
+      const double half_degree = 0.5 * (along_s ? m : n);  // x and y range over an interval of length 2
       const Vector& derivative = along_s ? cell.dx : cell.dy;
       double off = 0, weight_slope = 0;
       for (int j = 0; j <= n - !along_s; ++j)
@@ -87,7 +88,7 @@ class Cutter {
     return sum;
   }
 
-  /// Where second differences are larger; where none are, along the longer edges.
+  /// Whether to split along s: the direction with the larger second differences or, if these are small, the longer one.
   bool bends_along_s(const Piece& p) const {
     const int m = patch_.m, n = patch_.n;
     const auto place = [&](int i, int j) { return position(at(p, i, j)); };
@@ -103,7 +104,7 @@ class Cutter {
   }
 
   Bounds3 box(const Piece& p) const {
-    // Half a unit in the last place from rounding to float, and rounding of the net.
+    // For the rounding of the net in double; nextafter below covers the rounding to float.
     const float margin = float(patch_.size * 1e-12);
     Bounds3 b;
     for (int k = 0; k < (patch_.m + 1) * (patch_.n + 1); ++k) {

@@ -12,16 +12,16 @@ using bezier::Vector;
 
 namespace {
 
-/// A ray on its way through the tree.
+/// The state of a ray during traversal.
 struct Query {
-  RTCIntersectContext context;  // first: Embree hands back a pointer to it
+  RTCIntersectContext context;  // must be first: Embree passes a pointer to it to the callbacks
   bezier::Line line;
   bezier::Root root;
 };
 
 }  // namespace
 
-/// Embree's tree over the boxes of cells, as geometry of our own.
+/// Embree's hierarchy over the bounding boxes of cells, as user geometry.
 struct BezierObject::Accelerator {
   Accelerator(const BezierObject& o, const std::vector<Bounds3>& b)
       : object(o), boxes(&b), scene(rtcNewScene(embree_device())) {
@@ -35,8 +35,8 @@ struct BezierObject::Accelerator {
     rtcSetGeometryOccludedFunction(geometry, any);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene.get(), geometry);
-    rtcReleaseGeometry(geometry);  // the scene holds it
-    // Isolated: a thread that waits here within a parallel loop must not take up another part of that loop.
+    rtcReleaseGeometry(geometry);  // the scene keeps a reference to it
+    // Isolated: a thread that waits here within a parallel loop must not execute other iterations of that loop.
     tbb::this_task_arena::isolate([this] { rtcCommitScene(scene.get()); });
     check_embree("building over patches");
     boxes = nullptr;
@@ -47,7 +47,7 @@ struct BezierObject::Accelerator {
     *a->bounds_o = {box.low.x, box.low.y, box.low.z, 0, box.high.x, box.high.y, box.high.z, 0};
   }
 
-  /// The nearest root in a cell with a distance of at most `maximum`, which becomes it.
+  /// Finds the nearest root in a cell at a distance below `maximum`, and sets `maximum` to its distance.
   bool meets(RTCIntersectContext* context, unsigned cell, float& maximum) const {
     Query& q = *reinterpret_cast<Query*>(context);
     const bezier::Cell& c = object.cells_[cell];
@@ -83,7 +83,7 @@ struct BezierObject::Accelerator {
   }
 
   const BezierObject& object;
-  const std::vector<Bounds3>* boxes;  // only while the tree is built
+  const std::vector<Bounds3>* boxes;  // valid only while the hierarchy is built
   EmbreeSceneHandle scene;
 };
 
@@ -157,8 +157,8 @@ double BezierObject::point_at(std::uint32_t number, float s, float t, OwnPoint& 
   p.primitive = number;
   p.u = s;
   p.v = t;
-  // The position is that of the surface, rounded; moving it off rounds again. Solver and evaluation agree to some 1e-15 of the
-  // patch.
+  // The position is on the surface, rounded; offsetting a ray's origin rounds again. Solver and evaluation agree to about 1e-15
+  // of the patch's size.
   p.error = rounding_bound(3) * along(p.normal, abs(p.position - Point3{})) + float(1e-12 * patch.size);
   return length(cross(d.ds, d.dt));
 }

@@ -1,5 +1,6 @@
 #pragma once
-// What objects made of Bézier patches share. Rays meet the patches themselves, not triangles near them.
+// BezierObject: base class of shapes made of Bézier patches. Rays are intersected with the exact patches, not with a
+// tessellation.
 
 #include <memory>
 
@@ -11,21 +12,21 @@
 
 namespace etendue {
 
-/// A hit's primitive is the number of a patch, its u and v are s and t on it.
+/// A hit's primitive is the number of a patch; its u and v are the patch parameters s and t.
 class BezierObject : public PlacedObject, public NumberedParts {
  public:
   BezierObject();
   ~BezierObject() override;
-  /// Its shape alone takes time, and light changes nothing of it.
+  /// Only building the shape takes time, and changes of emission do not affect it.
   void prepare_again() override {}
   bool closed() const override { return closed_; }
   std::uint64_t part_count() const override { return patches_.size(); }
 
  protected:
-  /// How fine the grid of a number of patches is.
+  /// The grid resolution per patch for a number of patches.
   static int grid_for(std::size_t patches);
-  /// Takes patches and what is there of them, and places the object; to be called at the end of prepare. Returns false when
-  /// they have no area.
+  /// Stores the patches and the region of them that trimming keeps, builds the hierarchy and places the object; to be called at
+  /// the end of prepare. Returns false if they have no area.
   bool adopt(std::vector<bezier::Patch>, bezier::Region);
 
   Bounds3 own_bounds() const override { return own_bounds_; }
@@ -39,7 +40,7 @@ class BezierObject : public PlacedObject, public NumberedParts {
 
  private:
   struct Accelerator;
-  /// Fills a point; returns the area per unit of s and t there.
+  /// Fills a point; returns |S_s x S_t|, the area per unit of s and t.
   double point_at(std::uint32_t patch, float s, float t, OwnPoint&) const;
 
   std::vector<bezier::Patch> patches_;

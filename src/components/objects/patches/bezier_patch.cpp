@@ -79,8 +79,8 @@ void bernstein(int degree, double x, double* values, double* derivatives) { basi
 
 Vector normal(const Patch& patch, double s, double t, const Derivatives& at) {
   Derivatives d = at;
-  // Towards the middle, in steps that soon leave any degenerate edge. A step of 1e-6 turns the normal of a patch without
-  // creases by no more than about as much.
+  // Steps towards the middle, which quickly leave any degenerate edge. A step of 1e-6 rotates the normal of a patch without
+  // creases by about 1e-6 at most.
   for (double step = 1e-6; step < 1; step *= 10) {
     const Vector n = cross(d.ds, d.dt);
     const double l = length(n);

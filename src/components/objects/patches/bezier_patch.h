@@ -1,5 +1,5 @@
 #pragma once
-// Rational Bézier patches of any degree: what objects made of them compute with.
+// Rational Bézier patches of any degree: evaluation, derivatives and subdivision.
 
 #include <array>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace etendue::bezier {
 
-/// In double, for the solver's sake.
+/// A vector in double, as the root finder needs.
 struct Vector {
   double x = 0, y = 0, z = 0;
 };
@@ -31,11 +31,11 @@ constexpr int most_points = (highest_degree + 1) * (highest_degree + 1);
 /// S(s, t) = sum B_i(s) B_j(t) w_ij P_ij / sum B_i(s) B_j(t) w_ij for s and t from 0 to 1. The weights are positive.
 struct Patch {
   int m = 3, n = 3;                    ///< degrees along s and t
-  bool rational = false;               ///< the weights differ
-  std::vector<Control> points;         ///< (m + 1) (n + 1) of them, along s first
+  bool rational = false;               ///< whether the weights differ
+  std::vector<Control> points;         ///< (m + 1) (n + 1) control points, s varying fastest
   double low[2]{0, 0}, high[2]{1, 1};  ///< surface coordinates at (0, 0) and (1, 1)
   bool flipped = false;                ///< the front is where -(S_s x S_t) points
-  double size = 0;                     ///< bound of the distance of its points from the origin, and of its extent
+  double size = 0;                     ///< upper bound of the distance of its points from the origin plus its extent
 };
 
 struct Derivatives {
@@ -43,11 +43,11 @@ struct Derivatives {
 };
 Derivatives evaluate(const Patch&, double s, double t);
 
-/// The unit normal along S_s x S_t. Where that vanishes, as where an edge shrinks to a point, the limit towards the middle of
-/// the patch.
+/// The unit normal along S_s x S_t. Where this vanishes, as at a degenerate edge, the limit of the normal coming from the
+/// middle of the patch.
 Vector normal(const Patch&, double s, double t, const Derivatives&);
 
-/// Fills `size`. False when the control points lie on a line, so that the patch has no area.
+/// Sets `size`. Returns false if the control points lie on a line, so that the patch has no area.
 bool measure(Patch&);
 
 /// Values of the Bernstein polynomials of a degree and their derivatives, at x.

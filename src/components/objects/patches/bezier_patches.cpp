@@ -69,7 +69,7 @@ class BezierPatches final : public BezierObject {
   }
 
   int degree_u = 3, degree_v = 3;
-  // Nearly half a cylinder, a little twisted.
+  // Approximately half a cylinder, slightly twisted.
   std::vector<DoublePoint3> points{{-0.5, -0.5, 0},  {-0.5, -0.38, 0.67}, {0.5, -0.62, 0.67}, {0.5, -0.5, 0},
                                    {-0.5, -0.17, 0}, {-0.5, -0.05, 0.67}, {0.5, -0.29, 0.67}, {0.5, -0.17, 0},
                                    {-0.5, 0.17, 0},  {-0.5, 0.29, 0.67},  {0.5, 0.05, 0.67},  {0.5, 0.17, 0},

@@ -27,8 +27,9 @@ void Region::trim(std::uint32_t patch, const std::vector<Segment>& loops, bool k
   }
 }
 
-// Between heights t at which segments begin, end, or cross the sides of the square, what is inside lies between segments or
-// sides: trapezoids (as in Žalik & Clapworthy 1999, "A universal trapezoidation algorithm for planar polygons").
+// Between consecutive heights t at which segments begin, end, or cross the sides of the square, the kept region consists of
+// trapezoids bounded by segments or sides (as in Žalik & Clapworthy 1999, "A universal trapezoidation algorithm for planar
+// polygons").
 void Region::cut_square(const std::vector<Segment>& row, bool keep_inside, int i, int j) {
   const double s0 = double(i) / grid_, s1 = double(i + 1) / grid_, t0 = double(j) / grid_, t1 = double(j + 1) / grid_;
   std::vector<double> heights{t0, t1};
@@ -57,7 +58,7 @@ void Region::cut_square(const std::vector<Segment>& row, bool keep_inside, int i
     std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.s < b.s; });
     crossings.push_back({s1, nullptr});
     int winding = 0;
-    Crossing last{s0, nullptr};  // where the present stretch begins
+    Crossing last{s0, nullptr};  // where the current interval begins
     for (const Crossing& next : crossings) {
       if (next.s > s0) {
         const bool right_side = next.s >= s1;

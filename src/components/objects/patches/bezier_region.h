@@ -1,5 +1,6 @@
 #pragma once
-// Parts of Bézier patches: by grids of squares, each of them there, cut away, or there in part, as trapezoids.
+// Trimmed regions of Bézier patches: a grid of squares per patch, each of which is kept, removed, or kept in part as
+// trapezoids.
 
 #include <algorithm>
 #include <cstddef>
@@ -9,14 +10,15 @@
 
 namespace etendue::bezier {
 
-/// Where t0 <= t <= t1, between two edges that are straight from (left0, t0) to (left1, t1) and (right0, t0) to (right1, t1).
+/// The trapezoid t0 <= t <= t1 between the straight edges from (left0, t0) to (left1, t1) and from (right0, t0) to (right1,
+/// t1).
 struct Trapezoid {
   double t0, t1, left0, left1, right0, right1;
   double area() const { return 0.5 * (t1 - t0) * (right0 - left0 + right1 - left1); }
   struct Place {
     double s, t;
   };
-  /// A linear map of the unit square's rows to its rows; `stretch` is the derivative of s with x, and that of t is t1 - t0.
+  /// Maps the unit square to the trapezoid, linearly in each row; `stretch` is ds/dx, and dt/dy is t1 - t0.
   Place at(double x, double y, double& stretch) const {
     const double left = left0 + y * (left1 - left0), right = right0 + y * (right1 - right0);
     stretch = right - left;
@@ -29,21 +31,21 @@ struct Segment {
   double s0, t0, s1, t1;
 };
 
-/// One for a number of patches, all with the same grid.
+/// The kept regions of a number of patches, all with the same grid resolution.
 class Region {
  public:
-  /// All is there.
+  /// Keeps all patches completely.
   Region(std::size_t patches, int grid) : grid_(grid), whole_(patches, true) {}
 
   int grid() const { return grid_; }
   bool trimmed() const { return !squares_.empty(); }
-  /// Leaves of a patch what closed loops wind around, or what they do not wind around.
+  /// Keeps of a patch the part with a winding number other than 0 with respect to closed loops, or the rest.
   void trim(std::uint32_t patch, const std::vector<Segment>& loops, bool keep_inside);
 
-  /// What is there of a square, by rows; `scratch` holds it when that is all.
+  /// The kept trapezoids of a square, in order of t; `scratch` stores the square if all of it is kept.
   std::span<const Trapezoid> parts(std::uint32_t patch, int i, int j, Trapezoid& scratch) const;
   bool contains(std::uint32_t patch, double s, double t) const;
-  /// Whether anything is there in a rectangle, judged by whole squares.
+  /// Whether any part of a rectangle is kept; conservative, since whole squares are tested.
   bool touches(std::uint32_t patch, double s0, double s1, double t0, double t1) const;
 
  private:
@@ -57,8 +59,8 @@ class Region {
   void cut_square(const std::vector<Segment>& row, bool keep_inside, int i, int j);
 
   int grid_;
-  std::vector<bool> whole_;      // of each patch: not trimmed
-  std::vector<Square> squares_;  // of all patches, once one of them is trimmed
+  std::vector<bool> whole_;      // for each patch: whether it is not trimmed
+  std::vector<Square> squares_;  // of all patches; empty as long as none is trimmed
   std::vector<Trapezoid> parts_;
 };
 

@@ -5,14 +5,15 @@
 namespace etendue::bezier {
 namespace {
 
-// Neighbouring cells overlap by this share of their size, so that rounding opens no gap between them.
+// Cells are enlarged by this factor, so that rounding opens no gaps between neighbouring cells.
 constexpr double border = 1 + 1e-9;
-// Newton's method stops at steps of this share of a cell: the error of the last one is about the square of it.
+// Newton's method stops at steps below this fraction of a cell: the remaining error is about its square.
 constexpr double small_step = 1e-7;
-// With F the difference of surface and ray, J its derivatives and Y the inverse of J in the middle of a cell, let
-// |1 - Y J| <= k in the maximum norm. For k < 1/3, a Newton step from anywhere in the cell comes nearer to the root by
-// 2 k / (1 - k) < 1, also when it is then held within the cell: there is one root at most, and no start misses it. (The mean
-// value theorem, as for the operators of Krawczyk 1969; for patches, Toth 1985, "On ray tracing parametric surfaces".)
+// With F the difference of surface and ray, J its Jacobian and Y the inverse of J at the centre of a cell, let |1 - Y J| <= k
+// in the maximum norm. For k < 1/3, a Newton step from anywhere in the cell reduces the distance to the root by the factor 2 k
+// / (1 - k) < 1, also if the step is then clamped to the cell: there is at most one root, and Newton's method finds it from any
+// start. (The mean value theorem, as for the operators of Krawczyk 1969; for patches, Toth 1985, "On ray tracing parametric
+// surfaces".)
 constexpr double contraction = 0.3;
 
 class Solver {
@@ -21,7 +22,7 @@ class Solver {
       : patch_(patch), cell_(cell), line_(line), region_(region), root_(root), maximum_(maximum) {}
 
   bool solve() {
-    // The linear approximation middle + x dx + y dy = origin + t direction, by Cramer's rule. What is left out changes x and
+    // The linear approximation middle + x dx + y dy = origin + t direction, by Cramer's rule. The neglected terms change x and
     // y by up to deviation * |gradient|.
     const Vector &d = line_.direction, from = line_.origin - cell_.middle;
     const Vector a = cross(cell_.dy, d), b = cross(d, cell_.dx);
@@ -40,7 +41,8 @@ class Solver {
   }
 
  private:
-  /// Whether the line passes the cell within its thickness, measured across the line in the plane of line and normal.
+  /// Whether the line may hit the cell: tests, in two directions perpendicular to the line, the distance of the line from the
+  /// cell's centre against the cell's extent.
   bool may_graze(const Vector& from) const {
     const Vector& d = line_.direction;
     const Vector across = cross(cross(cell_.dx, cell_.dy), d), up = cross(d, across);
@@ -63,7 +65,7 @@ class Solver {
       const double to_x = std::clamp(x + step_x, -border, border), to_y = std::clamp(y + step_y, -border, border);
       const double moved = std::max(std::abs(to_x - x), std::abs(to_y - y));
       if (!(moved > small_step)) {
-        if (to_x != x + step_x || to_y != y + step_y) return;  // held back: the root is outside
+        if (to_x != x + step_x || to_y != y + step_y) return;  // the step was clamped: the root is outside the cell
         accept(to_x, to_y, dot(step_x * du + step_y * dv - from, d) / dot(d, d));
         return;
       }
@@ -80,27 +82,27 @@ class Solver {
     found_ = true;
   }
 
-  // ---- rays that graze, and cells at degenerate edges --------------------------------------------------------------------
+  // ---- grazing rays, and cells at degenerate edges --------------------------------------------------------------------
 
-  // The ray as two planes turns the surface into polynomials f(s, t) in two numbers, which vanish at roots (Kajiya 1982;
-  // Nishita, Sederberg & Kakimoto 1990). Parts whose control values all lie on one side of a plane are left out, others are
-  // halved until Newton's method cannot fail on them.
+  // The ray is represented by two planes. The surface's distances from them are two polynomials of (s, t), which both vanish at
+  // roots (Kajiya 1982; Nishita, Sederberg & Kakimoto 1990). Pieces whose control values all lie on one side of a plane are
+  // discarded; others are bisected until Newton's method is certain to converge on them.
   struct Pair {
-    double a, b;  // not set at first: nets of them are large
+    double a, b;  // not initialized, since nets of pairs are large
     Pair operator+(const Pair& p) const { return {a + p.a, b + p.b}; }
     Pair operator-(const Pair& p) const { return {a - p.a, b - p.b}; }
     friend Pair operator*(double f, const Pair& p) { return {f * p.a, f * p.b}; }
     double square() const { return a * a + b * b; }
   };
   struct Piece {
-    double x0, x1, y0, y1;  // in the cell's coordinates
+    double x0, x1, y0, y1;  // in cell coordinates
   };
 
   void search() {
     const Vector& d = line_.direction;
     const double scale = patch_.size + length(line_.origin);
     smallest_ = 1e-14 * scale;
-    // One of the planes holds the normal: across the other one, the cell is thin.
+    // One of the planes contains the cell's normal: the cell is thin in the direction perpendicular to the other plane.
     Vector p = cross(d, cross(cell_.dx, cell_.dy));
     if (!(length(p) > 1e-6 * length(d) * length(cell_.dx) * length(cell_.dy)))
       p = cross(d, std::abs(d.x) < 0.6 * length(d) ? Vector{1, 0, 0} : Vector{0, 1, 0});
@@ -154,7 +156,8 @@ class Solver {
     search(upper, second, depth + 1);
   }
 
-  /// The mean derivative over a piece from -1 to 1, how far derivatives are off it, and the square of the largest.
+  /// The mean derivative over a piece with coordinates from -1 to 1; adds the largest deviation from the mean to `off`, and
+  /// raises `size` to the square of the largest derivative.
   void slopes(const Pair* net, bool along_x, Pair& mean, double& off, double& size) const {
     const int m = patch_.m, n = patch_.n, columns = along_x ? m : m + 1, rows = along_x ? n + 1 : n;
     const int step = along_x ? 1 : m + 1;
@@ -221,7 +224,7 @@ class Solver {
   const Region& region_;
   Root& root_;
   double maximum_, smallest_ = 0;
-  // A ray that runs within the surface has endlessly many roots: after so many parts the search ends.
+  // A ray that lies in the surface has infinitely many roots: the search ends after this number of pieces.
   int budget_ = 2000;
   bool found_ = false;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Where a ray meets a cell of a Bézier patch.
+// Intersection of a ray with a cell of a Bézier patch.
 
 #include "bezier_cells.h"
 #include "bezier_region.h"
@@ -10,14 +10,15 @@ struct Line {
   Vector origin, direction;
 };
 
-/// A point of a line on a patch.
+/// An intersection of a line with a patch.
 struct Root {
-  double distance = 0;  ///< in lengths of the direction
+  double distance = 0;  ///< in units of the direction's length
   double s = 0, t = 0;
   std::uint32_t patch = 0;
 };
 
-/// The root nearest to the origin in a cell with a distance in (0, maximum) that is in the region.
+/// Finds the root in a cell that is nearest to the line's origin, has a distance in (0, maximum) and lies in the region.
+/// Returns false if there is none.
 bool nearest_root(const Patch&, const Cell&, const Line&, double maximum, const Region&, Root&);
 
 }  // namespace etendue::bezier

@@ -67,7 +67,7 @@ AreaTable::AreaTable(const std::vector<Patch>& patches, const Region& region) : 
 std::size_t AreaTable::find(const double* sums, std::size_t count, double& x) {
   const double sum = x * sums[count - 1];
   std::size_t k = std::size_t(std::upper_bound(sums, sums + count, sum) - sums);
-  while (k >= count || (k > 0 && !(sums[k] > sums[k - 1]))) --k;  // only by rounding at the end
+  while (k >= count || (k > 0 && !(sums[k] > sums[k - 1]))) --k;  // reached only by rounding at the end
   const double before = k > 0 ? sums[k - 1] : 0;
   x = std::clamp((sum - before) / (sums[k] - before), 0.0, 1.0);
   return k;
@@ -90,7 +90,7 @@ AreaTable::Choice AreaTable::choose(Point2 u, const Region& region) const {
     while (part != last && rest >= part->area()) rest -= (part++)->area();
     y = std::clamp(rest / part->area(), 0.0, 1.0);
   }
-  // Uniform in the trapezoid: the share of its area below a height h is (w0 h + (w1 - w0) h^2 / 2) / ((w0 + w1) / 2).
+  // Uniform in the trapezoid: the fraction of its area below a height h is (w0 h + (w1 - w0) h^2 / 2) / ((w0 + w1) / 2).
   const double w0 = part->right0 - part->left0, w1 = part->right1 - part->left1, below = y * (w0 + w1);
   const double root = std::sqrt(std::max(0.0, w0 * w0 + (w1 - w0) * below));
   double stretch = 0;

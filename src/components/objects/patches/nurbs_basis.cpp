@@ -16,7 +16,7 @@ std::string knots_fault(const std::vector<float>& knots, int degree, std::size_t
     if (!std::isfinite(knots[i])) return "knot " + std::to_string(i) + " is not finite";
     if (i > 0 && knots[i] < knots[i - 1]) return "knot " + std::to_string(i) + " is less than the one before it";
   }
-  // An inner knot repeated more often than the degree would tear the spline apart.
+  // The spline is discontinuous at an inner knot whose multiplicity exceeds the degree.
   for (std::size_t i = 1; i + order < n; ++i)
     if (knots[i] == knots[i + order - 1] && i + order - 1 < n - 1)
       return "knot " + std::to_string(i) + " is repeated more than " + std::to_string(degree) + " times within the spline";

@@ -1,4 +1,4 @@
-// NurbsSurface: a tensor product of rational splines, trimmed if need be.
+// NurbsSurface: a tensor-product surface of rational B-splines, optionally trimmed.
 
 #include "bezier_object.h"
 #include "geometry/own_centre.h"
@@ -65,7 +65,7 @@ class NurbsSurface final : public BezierObject {
   }
 
   int degree_u = 2, degree_v = 1;
-  // Nearly a quarter of a cylinder, with one knot within it.
+  // Approximately a quarter of a cylinder, with one inner knot.
   std::vector<float> knots_u{0, 0, 0, 1, 1, 1}, knots_v{0, 0, 0.5f, 1, 1};
   std::vector<DoublePoint3> points{{1, 0, 0},   {1, 1, 0}, {0, 1, 0}, {1, 0, 0.6}, {1, 1, 0.6},
                                    {0, 1, 0.6}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
@@ -87,13 +87,13 @@ class NurbsSurface final : public BezierObject {
     }
     const std::vector<nurbs::Span> along_u = nurbs::spans(knots_u, degree_u), along_v = nurbs::spans(knots_v, degree_v);
     const size_t m = size_t(degree_u) + 1, n = size_t(degree_v) + 1, width = along_u.size() * m;
-    // All rows along u, then the columns of what they give.
+    // Decomposes all rows along u, then the columns of the result along v.
     std::vector<bezier::Control> strip(width * rows), column(n);
     for (size_t j = 0; j < rows; ++j)
       for (size_t a = 0; a < along_u.size(); ++a) {
         bezier::Control* out = &strip[j * width + a * m];
         nurbs::bezier_values(knots_u, degree_u, along_u[a], &net[j * columns], 1, out);
-        if (a > 0) out[0] = out[-1];  // the same but for rounding: neighbours share their borders exactly
+        if (a > 0) out[0] = out[-1];  // equal up to rounding; copied so that neighbours share their borders exactly
       }
     std::vector<bezier::Patch> patches;
     std::vector<bezier::Control> last_row(width);

@@ -42,7 +42,7 @@ void TrimmingCurve::prepare() {
 
 namespace {
 
-/// How far control points are off the chord; the curve is no farther.
+/// The largest distance of the control points from the chord; an upper bound of the curve's distance.
 double bulge(const Control* net, int degree) {
   const Vector a = bezier::position(net[0]), b = bezier::position(net[degree]), chord = b - a;
   const double square = dot(chord, chord);

@@ -1,12 +1,12 @@
 #pragma once
-// Curves in a surface's parameters that cut parts of it away.
+// TrimmingCurve: a curve in a surface's parameter space that bounds its trimmed region.
 
 #include "etendue/describe/component.h"
 #include "etendue/describe/description.h"
 
 namespace etendue {
 
-/// A rational spline in the plane of a surface's parameters.
+/// A rational B-spline in the parameter plane of a surface.
 class TrimmingCurve final : public Component {
  public:
   using Interface = TrimmingCurve;
@@ -14,7 +14,7 @@ class TrimmingCurve final : public Component {
   static void describe(Description<TrimmingCurve>&);
   void prepare() override;
 
-  /// Appends points along the curve, its beginning and its end too, such that chords are off by at most `tolerance`.
+  /// Appends points along the curve, including both ends, such that the chords deviate from the curve by at most `tolerance`.
   void flatten(double tolerance, std::vector<std::array<double, 2>>& points) const;
 
   int degree = 1;
@@ -23,7 +23,7 @@ class TrimmingCurve final : public Component {
   std::vector<float> weights;
 
  private:
-  std::vector<float> knots_;  // those given, or even ones
+  std::vector<float> knots_;  // the given knots, or uniform ones
 };
 
 }  // namespace etendue

@@ -85,7 +85,7 @@ class Annulus final : public PlacedObject {
   }
 
   Sector sector_;
-  double low_ = 0, high_ = 1;  // squares of the radii [m^2]
+  double low_ = 0, high_ = 1;  // squared inner and outer radius [m^2]
 };
 
 const Register<Annulus> registered;

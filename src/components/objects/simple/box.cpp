@@ -1,12 +1,12 @@
-// Box: with its edges along the axes before its transform.
+// Box: a box with its edges along the axes in object space.
 
 #include "geometry/placed_object.h"
 
 namespace etendue {
 namespace {
 
-// Face 2 k + s lies across axis k, at its low (s = 0) or high (s = 1) end. On it u and v go along the next two axes, so that
-// dpdu x dpdv is along +k; on a low face u runs backwards, to keep the outside in front.
+// Face 2 k + s is perpendicular to axis k, at its low (s = 0) or high (s = 1) end. On a face u and v run along the next two
+// axes, so that dpdu x dpdv is along +k; on a low face u is reversed, so that the front is outside.
 class Box final : public PlacedObject {
  public:
   static void describe(Description<Box>& d) {
@@ -87,7 +87,7 @@ class Box final : public PlacedObject {
       double t0 = (double(low_[k]) - r.origin[k]) * inverse, t1 = (double(high_[k]) - r.origin[k]) * inverse;
       const bool backwards = inverse < 0;
       if (backwards) std::swap(t0, t1);
-      // Along a slab both are infinite, or not a number within a face, which limits nothing.
+      // For a ray parallel to a slab both are infinite; in the plane of a face they may be NaN, and the interval is unchanged.
       if (t0 > enter) enter = t0, in = 2 * k + backwards;
       if (t1 < leave) leave = t1, out = 2 * k + !backwards;
     }
@@ -152,11 +152,11 @@ class Box final : public PlacedObject {
     p.uv = at;
     p.primitive = std::uint32_t(face);
     p.u = p.v = 0;
-    // The face's own place is rounded, and so are points moved off it.
+    // Rounding of the face's position and of offset ray origins.
     p.error = rounding_bound(4) * (2 * std::abs(x[k]) + size[k]);
   }
 
-  /// Areas outside of the faces that a point can see: those it lies in front of, and from within all.
+  /// World-space areas of the faces that are visible from a point: those in front of which it lies, or all faces from inside.
   struct Seen {
     float areas[6]{}, area = 0;
     int last = 0;
@@ -177,7 +177,7 @@ class Box final : public PlacedObject {
   }
 
   Point3 low_, high_;
-  double until_[6]{};  // areas of the faces up to each
+  double until_[6]{};  // cumulative areas of the faces
 };
 
 const Register<Box> registered;

@@ -1,13 +1,13 @@
-// Cone: pointed or cut off, about the z axis.
+// Cone: a cone or a truncated cone about the z axis.
 
 #include "revolved_quadric.h"
 
 namespace etendue {
 namespace {
 
-// With radii r0 at the base and r1 at the top the side is x^2 + y^2 = (r0 + k z)^2, k = (r1 - r0) / h, and the area below a
-// ring of radius r is a share (r^2 - r0^2) / (r1^2 - r0^2) of all. With r + r0 in place of (r^2 - r0^2) / (r - r0) nothing
-// cancels, and a cone that is nearly a cylinder is no special case.
+// With radii r0 at the base and r1 at the top the side is x^2 + y^2 = (r0 + k z)^2, k = (r1 - r0) / h, and the fraction of the
+// area below a ring of radius r is (r^2 - r0^2) / (r1^2 - r0^2). Written with r + r0 instead of (r^2 - r0^2) / (r - r0), this
+// has no cancellation, and a cone that is nearly a cylinder is no special case.
 class Cone final : public RevolvedQuadric {
  public:
   static void describe(Description<Cone>& d) {
@@ -55,7 +55,7 @@ class Cone final : public RevolvedQuadric {
   }
 
  private:
-  double r0_ = 1, r1_ = 0;  // of base and top
+  double r0_ = 1, r1_ = 0;  // radii of base and top
 };
 
 const Register<Cone> registered;

@@ -1,4 +1,4 @@
-// Cylinder: round, about the z axis.
+// Cylinder: a circular cylinder about the z axis.
 
 #include "revolved_quadric.h"
 

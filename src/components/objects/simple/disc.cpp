@@ -1,4 +1,4 @@
-// Disc: flat and round.
+// Disc: a flat circular disc.
 
 #include "etendue/core/warp.h"
 #include "geometry/geometry.h"
@@ -33,7 +33,7 @@ class Disc final : public SceneObject {
       box.add(Point3{radius, radius, 0});
       bounds_ = swept(transform, box);
     } else {
-      // A point c + a cos(phi) + b sin(phi) reaches sqrt(a_k^2 + b_k^2) along axis k.
+      // Points c + a cos(phi) + b sin(phi) extend to sqrt(a_k^2 + b_k^2) from c along axis k.
       const auto reach = [&](int k) { return (1 + 4e-7f) * std::hypot(still_.axis_u[k], still_.axis_v[k]); };
       const Vector3 r{reach(0), reach(1), reach(2)};
       bounds_ = {};
@@ -67,7 +67,7 @@ class Disc final : public SceneObject {
   }
 
   void tangents(SurfacePoint& p) const override {
-    if (p.dpdu != Vector3{}) return;  // found already, by a nested scene
+    if (p.dpdu != Vector3{}) return;  // already set by a nested scene
     World scratch;
     const World& w = world(p.time, scratch);
     if (coordinates == Coordinates::square) {
@@ -75,8 +75,8 @@ class Disc final : public SceneObject {
       p.dpdv = 2 * w.axis_v;
       return;
     }
-    // (x, y) = u (cos 2 pi v, sin 2 pi v), or with u and 1 - v changed about; in the middle, where there is no direction
-    // around, that of x.
+    // (x, y) = u (cos 2 pi v, sin 2 pi v), or with the roles of u and v exchanged (v as 1 - v); at the centre, where the
+    // azimuth is undefined, that of the x axis is used.
     const float r = std::hypot(p.u, p.v), c = r > 0 ? p.u / r : 1, s = r > 0 ? p.v / r : 0;
     const Vector3 outwards = c * w.axis_u + s * w.axis_v;
     const Vector3 about = (2 * pi * std::max(r, 1e-6f)) * (c * w.axis_v - s * w.axis_u);
@@ -98,14 +98,14 @@ class Disc final : public SceneObject {
     World scratch;
     const World& w = world(time, scratch);
     SurfaceSample s;
-    fill(w, warp::disc(u), time, s.point);  // a linear map keeps uniform densities uniform
+    fill(w, warp::disc(u), time, s.point);  // a linear map preserves uniform distributions
     s.pdf = 1 / w.area;
     return s;
   }
 
  private:
-  /// The disc (an ellipse, when the transform stretches) in the coordinates of the containing scene: centre + u axis_u +
-  /// v axis_v with u^2 + v^2 <= 1.
+  /// The disc (an ellipse, if the transform stretches it) in the coordinates of the containing scene: centre + u axis_u + v
+  /// axis_v with u^2 + v^2 <= 1.
   struct World {
     Point3 centre;
     Vector3 axis_u, axis_v, scaled_normal;
@@ -122,7 +122,7 @@ class Disc final : public SceneObject {
     const float l = length(w.scaled_normal);
     w.area = pi * l;
     w.normal = Normal3(((t.flips() ? -1.0f : 1.0f) / l) * w.scaled_normal);
-    // As for triangles (triangle_object.cpp), at the rim.
+    // The error bound of triangles (triangle_object.cpp), evaluated at the rim.
     const Vector3 a = abs(w.axis_u), b = abs(w.axis_v), extent = a + b;
     const Vector3 x{a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
     const Vector3 furthest = Vector3{std::abs(w.centre.x), std::abs(w.centre.y), std::abs(w.centre.z)} + extent;

@@ -1,4 +1,4 @@
-// Ellipsoid: a sphere, stretched along the axes.
+// Ellipsoid: a sphere scaled along the axes.
 
 #include "etendue/core/warp.h"
 #include "geometry/ellipsoid_area.h"
@@ -8,7 +8,7 @@
 namespace etendue {
 namespace {
 
-// Points are centre + radii * s with s on the unit sphere; most is done there.
+// Points are centre + radii * s with s on the unit sphere; most computations are done on the unit sphere.
 class Ellipsoid final : public PlacedObject {
  public:
   static void describe(Description<Ellipsoid>& d) {
@@ -46,15 +46,15 @@ class Ellipsoid final : public PlacedObject {
   float area(float time) const override { return transform.animated() ? float(area_under(transform.at(time))) : placed_area_; }
   float area_error(float) const override { return 0; }
 
-  // Directions are uniform in the cone in which the unit sphere is seen from where the inverse of the stretch brings the
-  // asking point. A linear map M of directions w -> M w / |M w| enlarges solid angles by |det M| / |M w|^3, and |M w| is the
-  // distance outside over that inside.
+  // The reference point is transformed to the space of the unit sphere, and directions are sampled uniformly in the cone that
+  // the unit sphere subtends there. A linear map M of directions w -> M w / |M w| enlarges solid angles by |det M| / |M w|^3,
+  // and |M w| is the distance in world space divided by the distance in the sphere's space.
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
     Transform scratch;
     const Transform& t = placed(transform, time, scratch);
     const Cone cone = seen(t.back(from));
     if (!cone.usable) return sample_by_both(*this, cone.directions(), from, u, time, none, no_pdf);
-    // As for Sphere: alpha is the angle, at the centre, from the axis back to the asking point to the point seen.
+    // As in Sphere: alpha is the angle at the centre between the directions to the reference point and to the sampled point.
     const double h = double(u.x) * cone.one_minus_cosine, sin2 = h * (2 - h);
     const double cos_alpha =
         std::min(1.0, sin2 * cone.distance + (1 - h) * std::sqrt(std::max(0.0, 1 - sin2 * cone.distance * cone.distance)));
@@ -91,7 +91,7 @@ class Ellipsoid final : public PlacedObject {
   }
 
   bool own_intersect(const Ray& ray, Hit& hit) const override {
-    // From the point nearest to the centre, where the discriminant is no difference of large numbers.
+    // Parametrized from the ray's point nearest to the centre, where the discriminant is no difference of large numbers.
     double o[3], d[3], along = 0, dd = 0;
     for (int k = 0; k < 3; ++k) {
       const double inverse = 1 / double(radii[k]);
@@ -109,7 +109,7 @@ class Ellipsoid final : public PlacedObject {
     if (!(t > 0 && t < ray.maximum)) return false;
     hit.distance = t;
     hit.primitive = 0;
-    hit.u = float((near > 0 ? middle - half : middle + half) - double(t));  // what the float lacks
+    hit.u = float((near > 0 ? middle - half : middle + half) - double(t));  // rounding error of the float distance
     hit.v = 0;
     return true;
   }
@@ -124,9 +124,9 @@ class Ellipsoid final : public PlacedObject {
 
   double own_area() const override { return area_; }
 
-  // A nearly round one has its points uniform on the unit sphere. On a flat or long one these would crowd at the rim or the
-  // tips; area there is sqrt(sum (w_k s_k)^2) as large, with weights w = (bc, ca, ab), and a mixture of three cosines,
-  // sum w_k |s_k|, is between one and sqrt(3) times that.
+  // On a nearly round ellipsoid points are sampled uniformly on the unit sphere. On a flat or long one these would concentrate
+  // at the rim or the tips: area is stretched by the factor sqrt(sum (w_k s_k)^2) with weights w = (bc, ca, ab), and a mixture
+  // of three cosine distributions, sum w_k |s_k|, is between one and sqrt(3) times this factor.
   float own_sample(Point2 u, OwnPoint& p) const override {
     Vector3 s = warp::sphere(u);
     if (flat_) {
@@ -146,13 +146,13 @@ class Ellipsoid final : public PlacedObject {
   float own_pdf(const SurfacePoint& p) const override { return pdf_at(p.object_normal); }
 
  private:
-  /// The unit sphere as seen from a point, which is (x, y, z) where the sphere is.
+  /// The cone that the unit sphere subtends at a point, which is (x, y, z) in the space of the unit sphere.
   struct Cone {
     double x = 0, y = 0, z = 0, distance = 0, one_minus_cosine = 0;
-    bool usable = false;  ///< not from inside, nor from too close to tell
+    bool usable = false;  ///< the point is neither inside nor too close to the surface
     DirectionShare directions() const { return {1, distance < 1}; }
   };
-  /// What sample_by_both asks for points by area, of which there are none.
+  /// The sampler by area for sample_by_both; it is never called, since all samples are by direction.
   static bool none(Point2, SurfaceSample&) { return false; }
   static float no_pdf(const SurfacePoint&) { return 0; }
 
@@ -168,9 +168,9 @@ class Ellipsoid final : public PlacedObject {
     return c;
   }
 
-  /// [1/sr], of a point at a distance [m] outside.
+  /// The pdf [1/sr] of a point at the world-space distance `distance` [m].
   float cone_pdf(const Cone& cone, const Transform& t, float distance, const Vector3& direction, const SurfacePoint& p) const {
-    if (!(dot(p.normal, direction) < 0)) return 0;  // its far side
+    if (!(dot(p.normal, direction) < 0)) return 0;  // the far side
     const Vector3 s = t.back(p.position) - Point3{};
     const double x = double(s.x) / double(radii.x) - cone.x, y = double(s.y) / double(radii.y) - cone.y,
                  z = double(s.z) / double(radii.z) - cone.z;
@@ -179,8 +179,8 @@ class Ellipsoid final : public PlacedObject {
     return float(stretch * stretch * stretch / (volume * 2 * M_PI * cone.one_minus_cosine));
   }
 
-  /// The density of own_sample at a unit normal n here. On the unit sphere area is |radii * n| / (abc) as large, and the
-  /// normal along radii * n.
+  /// The pdf of own_sample at a point with the object-space unit normal n. The corresponding area on the unit sphere is |radii
+  /// * n| / (abc) times as large, and its normal is along radii * n.
   float pdf_at(const Normal3& n) const {
     const double x = double(n.x) * double(radii.x), y = double(n.y) * double(radii.y), z = double(n.z) * double(radii.z);
     const double volume = double(radii.x) * double(radii.y) * double(radii.z);
@@ -204,21 +204,21 @@ class Ellipsoid final : public PlacedObject {
       p.dpdu = {float(-2 * M_PI * y * a), float(2 * M_PI * x * b), 0};
       const double s = M_PI * z / around;
       p.dpdv = {float(-s * x * a), float(-s * y * b), float(M_PI * around * c)};
-    } else {  // at a pole u has no direction: any will do
+    } else {  // at a pole the direction of u is undefined: an arbitrary one is used
       p.dpdu = {float(2 * M_PI * a), 0, 0};
       p.dpdv = {0, float(z > 0 ? M_PI * b : -M_PI * b), 0};
     }
     p.primitive = 0;
-    // Rounding of the position and of a leaving ray's origin; intersection is in double. `support` is the distance of the
-    // tangent plane from the centre: the thickness here.
+    // Rounding of the position and of an offset ray origin; intersection is in double. `support` is the distance of the tangent
+    // plane from the centre, a measure of the thickness here.
     const Vector3 here{std::abs(p.position.x), std::abs(p.position.y), std::abs(p.position.z)};
     p.error = rounding_bound(3) * (along(p.normal, here) + float(support));
   }
 
-  double area_ = 4 * M_PI;                      // before the transform [m^2]
-  float placed_area_ = 4 * pi;                  // after it, when it is still [m^2]
+  double area_ = 4 * M_PI;                      // in object space [m^2]
+  float placed_area_ = 4 * pi;                  // in world space without animation [m^2]
   double share_[3]{1.0 / 3, 1.0 / 3, 1.0 / 3};  // weights of the three cosines
-  bool flat_ = false;                           // or long
+  bool flat_ = false;                           // flat or long: the longest half axis is more than twice the shortest
 };
 
 const Register<Ellipsoid> registered;

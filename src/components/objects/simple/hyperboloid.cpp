@@ -1,4 +1,4 @@
-// Hyperboloid: of one sheet, the shape of a cooling tower.
+// Hyperboloid: a hyperboloid of one sheet, the shape of a cooling tower.
 
 #include "revolved_quadric.h"
 
@@ -58,7 +58,7 @@ class Hyperboloid final : public RevolvedQuadric {
  protected:
   double height_at(double share) const override {
     const double wanted = std::abs(2 * share - 1) * half_integral_, half = profile().high;
-    // The integral grows ever faster, so that Newton's method from the right falls to the root and never passes it.
+    // The integral is convex, so Newton's method started to the right of the root converges monotonically.
     double z = half;
     for (int i = 0; i < 60; ++i) {
       const double step = (integral(z) - wanted) / (2 * std::hypot(1, steepness_ * z));

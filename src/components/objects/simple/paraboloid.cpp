@@ -1,4 +1,4 @@
-// Paraboloid: a bowl, as of a mirror.
+// Paraboloid: a paraboloid of revolution, such as a parabolic mirror.
 
 #include "revolved_quadric.h"
 
@@ -32,7 +32,7 @@ class Paraboloid final : public RevolvedQuadric {
     if (!(height > 0 && height < infinity)) fail("height", "must be positive and finite");
     const double r = double(radius), h = double(height);
     scale_ = r * r / h;
-    // (1 + x)^(3/2) - 1, without its cancellation in a flat bowl.
+    // (1 + x)^(3/2) - 1, without cancellation for a flat bowl.
     whole_ = std::expm1(1.5 * std::log1p(4 * h / scale_));
     revolve({.square = 0,
              .linear = scale_,
@@ -51,7 +51,7 @@ class Paraboloid final : public RevolvedQuadric {
 
  protected:
   double height_at(double share) const override { return scale_ / 4 * std::expm1(std::log1p(share * whole_) * (2.0 / 3)); }
-  /// By the radius: by the height positions would change infinitely fast with it at the vertex.
+  /// v is proportional to the radius: if it were proportional to the height, dpdv would be infinite at the vertex.
   Along along_profile(double, double r) const override {
     const double v = r / double(radius);
     return {v, 2 * double(height) * v, double(radius)};

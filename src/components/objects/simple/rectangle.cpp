@@ -1,4 +1,4 @@
-// Rectangle: a flat parallelogram, mostly a luminaire or a wall.
+// Rectangle: a flat parallelogram, typically a luminaire or a wall.
 
 #include "etendue/core/warp.h"
 #include "geometry/geometry.h"
@@ -32,7 +32,7 @@ class Rectangle final : public SceneObject {
     triangles_ = {{{0, 1, 2}, {0, 2, 3}}};
     Bounds3 box;
     for (int i = 0; i < 4; ++i) {
-      // In double: what several say to be in one place is in one place.
+      // In double, so that corners which several objects place at the same position round to the same floats.
       const DoubleVector3 u = i == 1 || i == 2 ? edge_u : Vector3{}, v = i >= 2 ? edge_v : Vector3{};
       const DoublePoint3 at = DoublePoint3{} + (u + v);
       corners_[i] = Point3(transform.still()(at));
@@ -75,7 +75,7 @@ class Rectangle final : public SceneObject {
   }
 
   void tangents(SurfacePoint& p) const override {
-    if (p.dpdu != Vector3{}) return;  // found already, by a nested scene
+    if (p.dpdu != Vector3{}) return;  // already set by a nested scene
     std::optional<World> scratch;
     const World& w = world(p.time, scratch);
     p.dpdu = w.edge_u;
@@ -114,7 +114,7 @@ class Rectangle final : public SceneObject {
         }
       } else {
         sample_half(w, from, u, time, s);
-        return s;  // always this one, so that it is made in place
+        return s;  // the same variable is returned everywhere, for copy elision
       }
     }
     fill_part(w, u, time, s.point);
@@ -152,15 +152,15 @@ class Rectangle final : public SceneObject {
     Normal3 normal;
     Vector3 half_diagonal;
     float length_u = 1, length_v = 1, area = 1, error = 0;
-    float far_squared = 0;             // further from the middle all of it is too far away to be sampled by solid angle
-    float margin_u = 0, margin_v = 0;  // how near to 0 and 1 points go: see `border`
+    float far_squared = 0;             // squared distance from the centre beyond which sampling by solid angle does not pay
+    float margin_u = 0, margin_v = 0;  // least distance of points from 0 and 1: see `border`
     bool perpendicular = true;
 
-    /// Whether sampling by solid angle may pay. `origin` becomes the corner as seen from the point, along the edges and
-    /// the normal (for perpendicular edges).
+    /// Whether sampling by solid angle pays. `origin` is set to the corner relative to the point, in coordinates along the
+    /// edges and the normal (for perpendicular edges).
     [[gnu::always_inline]] inline bool near(const Point3& from, Vector3& origin) const {
       const Vector3 c = corner - from;
-      // From most places it is far, which the distance of its middle shows with less to compute.
+      // Most points are far away; a cheap test of the distance from the centre rejects them first.
       if (length_squared(c + half_diagonal) > far_squared) return false;
       origin = {dot(c, unit_u), dot(c, unit_v), dot(c, normal)};
       const float x = clamp(0, origin.x, origin.x + length_u), y = clamp(0, origin.y, origin.y + length_v);
@@ -187,14 +187,14 @@ class Rectangle final : public SceneObject {
     w.unit_v = w.edge_v / w.length_v;
     w.scaled_normal = cross(w.edge_u, w.edge_v);
     w.area = length(w.scaled_normal);
-    const float side = t.flips() ? -1.0f : 1.0f;  // a mirror keeps the front where the normal is carried to
+    const float side = t.flips() ? -1.0f : 1.0f;  // a mirroring transform reverses edge_u x edge_v, but not the front side
     w.normal = Normal3((side / w.area) * w.scaled_normal);
     w.half_diagonal = 0.5f * (w.edge_u + w.edge_v);
     const float reach = std::max(length(w.half_diagonal), length(w.edge_u - w.half_diagonal));
     w.far_squared = square(std::sqrt(w.area / worthwhile_solid_angle) + 1.001f * reach);
     w.perpendicular = std::abs(dot(w.unit_u, w.unit_v)) < 1e-5f;
-    // As for triangles (triangle_object.cpp), at the corner where it is largest; the edges may lean against the plane
-    // by their rounding, and so do the corners.
+    // The error bound of triangles (triangle_object.cpp), at the corner where it is largest; rounding of the edges and of the
+    // corner tilts and shifts the plane.
     const Vector3 a = abs(w.edge_u), b = abs(w.edge_v), extent = a + b;
     const Vector3 x{a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
     const Vector3 furthest = Vector3{std::abs(w.corner.x), std::abs(w.corner.y), std::abs(w.corner.z)} + extent;
@@ -213,7 +213,7 @@ class Rectangle final : public SceneObject {
 
   template <class Part>  // a Hit or a SurfacePoint
   static void set_part(Point2 uv, Part& to) {
-    // Without a branch: it would be guessed wrongly every second time.
+    // Without a branch, which would be mispredicted half of the time.
     const float lower = std::min(uv.x, uv.y), rest = std::abs(uv.x - uv.y);
     const bool second = uv.x < uv.y;
     to.primitive = second;
@@ -242,7 +242,7 @@ class Rectangle final : public SceneObject {
     set_part(uv, p);
   }
 
-  /// Of a parallelogram that is no rectangle: one half by chance, then by solid angle.
+  /// Samples a parallelogram without right angles: one of its two triangles at random, then a point in it by solid angle.
   void sample_half(const World& w, const Point3& from, Point2 u, float time, SurfaceSample& s) const {
     const std::uint32_t which = u.x < 0.5f ? 0 : 1;
     u.x = std::min(2 * u.x - float(which), one_minus_epsilon);
@@ -259,7 +259,7 @@ class Rectangle final : public SceneObject {
     const Vector3 direction = t.sample(u), c = w.corner - from, r = cross(c, direction);
     const float inverse = 1 / dot(w.scaled_normal, direction);
     Point2 uv{clamp(dot(r, w.edge_v) * inverse, 0, 1), clamp(-dot(r, w.edge_u) * inverse, 0, 1)};
-    if (which == 0)  // rounding may put it just beside the half
+    if (which == 0)  // rounding may put the point just outside the triangle
       uv.y = std::min(uv.x, uv.y);
     else
       uv.x = std::min(uv.x, uv.y);
@@ -272,7 +272,7 @@ class Rectangle final : public SceneObject {
 
   World still_;
   Bounds3 bounds_;
-  Point3 corners_[5];  // the fifth is padding, which Embree asks for
+  Point3 corners_[5];  // the fifth is padding, which Embree requires
   std::array<std::array<std::uint32_t, 3>, 2> triangles_{};
 };
 

@@ -58,7 +58,8 @@ void RevolvedQuadric::own_point(const Ray& ray, const Hit& hit, OwnPoint& p) con
   const double t = exact_distance(hit);
   double x = r.at(t, 0), y = r.at(t, 1), z = within(r.at(t, 2), profile_.low, profile_.high);
   if (hit.primitive == side) {
-    // Onto the side by Newton's steps: t may be rounded as on a longer ray (of a solid this is part of).
+    // Newton's method projects the point onto the side: t may have the rounding error of a longer ray, if the object is an
+    // operand of a solid.
     for (int i = 0; i < 2; ++i) {
       const double slope = profile_.half_slope(z), g2 = x * x + y * y + slope * slope;
       if (!(g2 > 0)) break;
@@ -73,7 +74,7 @@ void RevolvedQuadric::own_point(const Ray& ray, const Hit& hit, OwnPoint& p) con
 }
 
 void RevolvedQuadric::side_point(double x, double y, double z, OwnPoint& p) const {
-  // The gradient of x^2 + y^2 - f(z), halved; at the tip of a cone there is none.
+  // Half the gradient of x^2 + y^2 - f(z); at the tip of a cone it vanishes.
   const double r = std::sqrt(x * x + y * y), slope = profile_.half_slope(z), l = std::sqrt(r * r + slope * slope);
   const double up = 2 * z > profile_.low + profile_.high ? 1 : -1;
   p.position = {float(x), float(y), float(z)};
@@ -86,13 +87,13 @@ void RevolvedQuadric::side_point(double x, double y, double z, OwnPoint& p) cons
     const double out = rates.radius_rate / r;
     p.dpdu = {float(-angle * y), float(angle * x), 0};
     p.dpdv = {float(out * x), float(out * y), float(rates.height_rate)};
-  } else {  // at a tip u has no direction: any across the normal will do
+  } else {  // at a tip the direction of u is undefined: an arbitrary one perpendicular to the normal is used
     const Frame frame(p.normal);
     const float size = float(angle * extent_);
     p.dpdu = size * frame.s;
     p.dpdv = size * frame.t;
   }
-  // Half of it for the position's rounding, half for that of the origin of a ray that leaves.
+  // One half is for the rounding of the position, one half for that of an offset ray origin.
   const Vector3 here{std::abs(p.position.x), std::abs(p.position.y), std::abs(p.position.z)};
   p.error = rounding_bound(3) * (etendue::along(p.normal, here) + float(extent_));
 }
@@ -106,7 +107,8 @@ void RevolvedQuadric::cap_point(Part part, double x, double y, OwnPoint& p) cons
 }
 
 float RevolvedQuadric::own_sample(Point2 u, OwnPoint& p) const {
-  // u goes around and v from the middle of the low cap out, along the side and in again: a continuous map.
+  // u runs around the axis, and v from the centre of the low cap outwards, along the side and inwards on the high cap: a
+  // continuous map.
   const double area = own_area(), y = double(u.y) * area, phi = sector_.angle() * double(u.x);
   const double cosine = std::cos(phi), sine = std::sin(phi);
   if (y < low_area_) {
@@ -120,7 +122,7 @@ float RevolvedQuadric::own_sample(Point2 u, OwnPoint& p) const {
     const double r = high_area_ > 0 ? profile_.high_radius * std::sqrt(std::max(0.0, (area - y) / high_area_)) : 0;
     if (high_area_ > 0)
       cap_point(high_cap, r * cosine, r * sine, p);
-    else  // the last point of all, by rounding
+    else  // beyond the end of the side, by rounding
       side_point(profile_.high_radius * cosine, profile_.high_radius * sine, profile_.high, p);
   }
   return float(1 / area);

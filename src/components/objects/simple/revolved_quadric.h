@@ -1,13 +1,14 @@
 #pragma once
-// What cylinders, cones, paraboloids and hyperboloids share.
+// RevolvedQuadric: base class of cylinders, cones, paraboloids and hyperboloids.
 
 #include "geometry/quadric_roots.h"
 #include "geometry/visible_directions.h"
 
 namespace etendue {
 
-/// The side x^2 + y^2 = f(z), f of at most second degree, between two heights, with discs as caps or without. A solid is the
-/// part of a slab that lies inside the quadric: a ray crosses it where an interval in both begins and ends, always in pairs.
+/// The side x^2 + y^2 = f(z), with f of at most second degree, between two heights, with or without discs as caps. The solid is
+/// the part of a slab that lies inside the quadric: a ray's crossings are the ends of the intervals that lie in both, so they
+/// come in pairs.
 class RevolvedQuadric : public PlacedObject {
  public:
   bool closed() const override {
@@ -16,16 +17,16 @@ class RevolvedQuadric : public PlacedObject {
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override;
   float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
 
-  float sweep = 360;  ///< how much of a turn there is [deg]
+  float sweep = 360;  ///< azimuth range of the surface [deg]
 
  protected:
   struct Profile {
-    double square = 0, linear = 0, constant = 1;  ///< of f(z)
+    double square = 0, linear = 0, constant = 1;  ///< coefficients of f(z)
     double low = 0, high = 1;                     ///< heights [m]
     double low_radius = 1, high_radius = 1;       ///< [m]
     bool low_cap = false, high_cap = false;
-    double side_area = 1;  ///< of a whole turn [m^2]
-    bool tube = false;     ///< a cylinder: all rings are alike
+    double side_area = 1;  ///< for a full turn [m^2]
+    bool tube = false;     ///< a cylinder: the radius is constant
     bool convex = true;
 
     double squared_radius(double z) const { return std::max(0.0, (square * z + linear) * z + constant); }
@@ -35,14 +36,14 @@ class RevolvedQuadric : public PlacedObject {
   void revolve(const Profile&);
   const Profile& profile() const { return profile_; }
 
-  /// The height below which a share of the side's area lies.
+  /// The height below which the fraction `share` of the side's area lies.
   virtual double height_at(double share) const = 0;
 
-  /// The coordinate v along the profile, from 0 to 1, and the changes of height and radius with it.
+  /// The coordinate v along the profile, from 0 to 1, and the derivatives of height and radius by v.
   struct Along {
     double v, height_rate, radius_rate;
   };
-  /// By default v goes with the height.
+  /// By default v is proportional to the height.
   virtual Along along_profile(double z, double r) const;
 
   Bounds3 own_bounds() const override;
@@ -56,7 +57,7 @@ class RevolvedQuadric : public PlacedObject {
   enum Part : std::uint32_t { side, low_cap, high_cap };
 
   struct Seen;
-  /// Of what is not seen by AxialDirections: from inside all by direction, from close by half of the time.
+  /// The share of samples by direction where AxialDirections is not used: all from inside, half of them from nearby.
   DirectionShare direction_share(const Point3& own) const;
 
   void side_point(double x, double y, double z, OwnPoint&) const;
@@ -65,7 +66,7 @@ class RevolvedQuadric : public PlacedObject {
   Profile profile_;
   Sector sector_;
   double low_area_ = 0, side_area_ = 0, high_area_ = 0;
-  double extent_ = 1;  // the smaller of width and height: the size of errors in double, in floats
+  double extent_ = 1;  // the smaller of radius and height: the scale of rounding errors in float
 };
 
 }  // namespace etendue

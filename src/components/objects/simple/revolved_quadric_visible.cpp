@@ -1,10 +1,11 @@
-// Points of surfaces of revolution that are seen from a place: see axial_view.h.
+// Sampling of surfaces of revolution by solid angle from a reference point; see axial_view.h.
 //
-// At one azimuth a closed solid is seen between the lowest and the highest of: its rims, where a half plane along the axis cuts
-// them; tangents of the profile that the half plane cuts out; and straight up or down, when the line through the place along
-// the axis meets the solid. Of a hyperboloid's waist this covers too much, and what is sampled beside it is lost.
+// At one azimuth a closed solid is visible between the lowest and the highest of these directions: to the points where the half
+// plane of the azimuth, parallel to the axis, cuts the rims; tangent to the curve in which the half plane cuts the side; and
+// straight up or down, if the line through the reference point parallel to the axis hits the solid. At a hyperboloid's waist
+// this interval is too large, and directions that miss the solid are rejected.
 //
-// Anything else than closed solids and tubes without ends is sampled by area, and near it by direction.
+// Surfaces other than closed solids and tubes without caps are sampled by area, and from nearby partly by direction.
 
 #include "geometry/axial_view.h"
 #include "revolved_quadric.h"
@@ -22,7 +23,7 @@ struct Span {
 
 }  // namespace
 
-/// What AxialDirections asks for.
+/// The object as seen from a point, for AxialDirections.
 struct RevolvedQuadric::Seen {
   const Profile& profile;
   AxialView view;
@@ -42,7 +43,7 @@ struct RevolvedQuadric::Seen {
   bool sees(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
     const bool front = dot(p.normal, direction) < 0;
     if (!tube) return front && (profile.convex || met_first(from, direction, p));
-    // The inner wall: from inside, or through the nearer end.
+    // The inner wall is visible from inside, or through the nearer end.
     const double r = profile.low_radius;
     return front || view.around() < r ||
            (view.side() != 0 && view.through(p.object_position, view.side() > 0 ? profile.high : profile.low, r));
@@ -74,7 +75,9 @@ Elevations RevolvedQuadric::Seen::solid(double sine, double cosine) const {
   }
   const auto rim = [&](double r, double z) {
     double square = r * r - across * across;
-    if (r == widest && toward > 0) square = std::max(square, 0.0);  // at the greatest azimuth, by rounding
+    if (r == widest && toward > 0)
+      square = std::max(square, 0.0);  // the root vanishes at the greatest azimuth; rounding may
+                                       // make it negative
     if (square < 0) return;
     const double far = toward + std::sqrt(square);
     if (!(far > 0)) return;
@@ -84,9 +87,9 @@ Elevations RevolvedQuadric::Seen::solid(double sine, double cosine) const {
   };
   rim(profile.low_radius, profile.low);
   rim(profile.high_radius, profile.high);
-  // A line z = h + m s, at the distance s from the place, meets x^2 + y^2 = f(z) where
+  // A line z = h + m s, with s the horizontal distance from the reference point, intersects x^2 + y^2 = f(z) where
   //   (1 - a m^2) s^2 - 2 (toward + g m) s + c = 0,   a = f''/2,  g = f'(h)/2,  c = around^2 - f(h),
-  // and touches it where that has a double root, s = (toward + g m) / (1 - a m^2):
+  // and is tangent to it where this has a double root, s = (toward + g m) / (1 - a m^2):
   //   (g^2 + a c) m^2 + 2 toward g m + toward^2 - c = 0.
   const double a = profile.square, g = profile.half_slope(h);
   if (a != 0 || g != 0) {
@@ -108,7 +111,7 @@ Elevations RevolvedQuadric::Seen::solid(double sine, double cosine) const {
 }
 
 DirectionShare RevolvedQuadric::direction_share(const Point3& own) const {
-  if (closed()) return {1, profile_.convex};  // from inside
+  if (closed()) return {1, profile_.convex};  // the point is inside
   const double z = double(own.z), off = z - 0.5 * (profile_.low + profile_.high), half = 0.5 * (profile_.high - profile_.low);
   const double r2 = double(own.x) * double(own.x) + double(own.y) * double(own.y);
   const double widest = std::max(profile_.low_radius, profile_.high_radius);

@@ -1,4 +1,4 @@
-// What all scene objects share.
+// SceneObject: members and default implementations shared by all shapes.
 
 #include "etendue/scene_object.h"
 

@@ -1,4 +1,4 @@
-// Sphere: also an ellipsoid, when its transform stretches.
+// Sphere: a sphere, or an ellipsoid if its transform stretches it.
 
 #include "etendue/core/warp.h"
 #include "geometry/ellipsoid_area.h"
@@ -37,7 +37,7 @@ class Sphere final : public SceneObject {
       bounds_ = box;
     } else if (transform.animated()) {
       bounds_ = swept(transform, box);
-    } else {  // an ellipsoid M x + c with |x| <= r reaches r |row k of M| along axis k
+    } else {  // an ellipsoid M x + c with |x| <= r extends to r |row k of M| from c along axis k
       const auto& m = transform.still().matrix();
       const auto reach = [&](size_t k) { return radius * length(Vector3{m[4 * k], m[4 * k + 1], m[4 * k + 2]}); };
       const Point3 c = transform.still()(Point3{});
@@ -45,7 +45,7 @@ class Sphere final : public SceneObject {
       bounds_.add(c - Vector3{reach(0), reach(1), reach(2)});
       bounds_.add(c + Vector3{reach(0), reach(1), reach(2)});
     }
-    // What rounding may put outside.
+    // Rounding may move points out of the exact box.
     const Vector3 margin = rounding_bound(8) * (bounds_.diagonal() + abs(bounds_.centre() - Point3{}));
     bounds_.low = bounds_.low - margin;
     bounds_.high = bounds_.high + margin;
@@ -69,7 +69,8 @@ class Sphere final : public SceneObject {
 
   void surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const override {
     if (round_) {
-      // Towards the hit from the centre, in double: the hit's own rounding would spoil the normal of a far sphere.
+      // The direction from the centre to the hit, in double: the rounding error of a float position would corrupt the normal of
+      // a distant sphere.
       fill(unit_from_centre(ball_, ray, hit.distance), ray.time, p);
     } else {
       Transform scratch;
@@ -78,13 +79,13 @@ class Sphere final : public SceneObject {
   }
 
   void tangents(SurfacePoint& p) const override {
-    if (p.dpdu != Vector3{}) return;  // found already, by a nested scene
+    if (p.dpdu != Vector3{}) return;  // already set by a nested scene
     const Vector3 d = radius * Vector3(p.object_normal);
     const float around = std::sqrt(d.x * d.x + d.y * d.y);
     if (around > 1e-6f * radius) {
       p.dpdu = 2 * pi * Vector3{-d.y, d.x, 0};
       p.dpdv = pi * Vector3{-d.z * d.x / around, -d.z * d.y / around, around};
-    } else {  // at a pole u has no direction: any will do
+    } else {  // at a pole the direction of u is undefined: an arbitrary one is used
       p.dpdu = {2 * pi * radius, 0, 0};
       p.dpdv = {0, d.z > 0 ? pi * radius : -pi * radius, 0};
     }
@@ -116,10 +117,11 @@ class Sphere final : public SceneObject {
     Ball ball;
     float one_minus_cosine = 0;
     if (!as_ball(time, ball) || !ball.cone(from, one_minus_cosine)) return by_area(from, u, time);
-    // A direction in the cone at angle theta to its axis meets the sphere first at a point that is seen from the centre
-    // at angle alpha to the axis back to `from`. With sin(max) = r/d the sine theorem gives the angle at the point, and
+    // A direction in the cone at the angle theta to its axis first hits the sphere at a point whose direction from the centre
+    // is at the angle alpha to the direction towards `from`. With sin(max) = r/d the law of sines gives the angle at the point,
+    // and
     //   cos(alpha) = sin(theta)^2 / sin(max) + cos(theta) sqrt(1 - sin(theta)^2 / sin(max)^2),
-    // in which nothing cancels however far the sphere is.
+    // which has no cancellation, however far the sphere is.
     const Vector3 to = ball.centre - from;
     const float d = length(to), sin_max = ball.radius / d;
     const float h = u.x * one_minus_cosine, sin2 = h * (2 - h), cos_theta = 1 - h;
@@ -145,7 +147,7 @@ class Sphere final : public SceneObject {
       const float cosine = std::abs(dot(p.normal, direction));
       return cosine > 0 ? area_pdf(p) * distance_squared(p.position, from) / cosine : 0;
     }
-    return dot(p.normal, direction) < 0 ? warp::cone_pdf(one_minus_cosine) : 0;  // never its far side
+    return dot(p.normal, direction) < 0 ? warp::cone_pdf(one_minus_cosine) : 0;  // the far side has pdf 0
   }
 
  private:
@@ -153,15 +155,15 @@ class Sphere final : public SceneObject {
     Point3 centre;
     float radius = 1;
 
-    /// The smallest t > 0, or infinity. In double: the discriminant of a small or far sphere is a difference of large
-    /// numbers. q is the half of the root that does not cancel, c / q the other (Hearn & Baker 2004).
+    /// The smallest t > 0, or infinity. In double: the discriminant of a small or far sphere is a difference of large numbers.
+    /// q is computed without cancellation; the roots are q / a and c / q (Hearn & Baker 2004).
     float nearest(const Ray& ray) const {
       const double ox = double(ray.origin.x) - centre.x, oy = double(ray.origin.y) - centre.y,
                    oz = double(ray.origin.z) - centre.z;
       const double dx = ray.direction.x, dy = ray.direction.y, dz = ray.direction.z;
       const double a = dx * dx + dy * dy + dz * dz, b = ox * dx + oy * dy + oz * dz;
       const double c = ox * ox + oy * oy + oz * oz - double(radius) * radius;
-      if (c > 0 && b >= 0) return infinity;  // outside and going away
+      if (c > 0 && b >= 0) return infinity;  // outside and moving away
       const double discriminant = b * b - a * c;
       if (!(discriminant >= 0)) return infinity;
       const double q = b > 0 ? -b - std::sqrt(discriminant) : -b + std::sqrt(discriminant);
@@ -170,7 +172,7 @@ class Sphere final : public SceneObject {
       return near > 0 ? near : (far > 0 ? far : infinity);
     }
 
-    /// The cone in which the sphere is seen; false from inside or too close to tell.
+    /// The cone that the sphere subtends; returns false from inside or too close to the surface.
     bool cone(const Point3& from, float& one_minus_cosine) const {
       const float d2 = distance_squared(from, centre), sin2 = radius * radius / d2;
       if (!(sin2 < 0.9999f)) return false;
@@ -192,7 +194,8 @@ class Sphere final : public SceneObject {
     return ball_.nearest(ray_into(placed(transform, ray.time, scratch), ray));
   }
 
-  /// Fills a point by its direction from the centre: outside for a round still sphere, else in the object's coordinates.
+  /// Fills a point from its direction from the centre: in world space for a static sphere that is still round after its
+  /// transform, else in object space.
   void fill(const Vector3& from_centre, float time, SurfacePoint& p) const {
     p.position = ball_.centre + ball_.radius * from_centre;
     p.normal = Normal3(from_centre);
@@ -222,7 +225,7 @@ class Sphere final : public SceneObject {
     p.uv.y = positive_atan2(std::sqrt(n.x * n.x + n.y * n.y), -n.z) * inverse_pi;
   }
 
-  /// The sphere outside at a time; false when it is an ellipsoid then.
+  /// The sphere in world space at a time; returns false if it is an ellipsoid.
   bool as_ball(float time, Ball& ball) const {
     if (round_) {
       ball = ball_;
@@ -241,7 +244,7 @@ class Sphere final : public SceneObject {
     return s;
   }
 
-  /// By how much the transform enlarges area at a unit normal inside: |det M| |M^-T n|.
+  /// The factor by which the transform enlarges area at an object-space unit normal n: |det M| |M^-T n|.
   static float area_stretch(const Transform& t, const Normal3& n) {
     return std::abs(linear_determinant(t)) * length(Vector3(t(n)));
   }
@@ -252,8 +255,8 @@ class Sphere final : public SceneObject {
     return float(ellipsoid_area(t, {radius, radius, radius}));
   }
 
-  Ball ball_;          // outside for a round still sphere, else in the object's coordinates
-  bool round_ = true;  // still, and round outside as well
+  Ball ball_;          // in world space if round_, else in object space
+  bool round_ = true;  // static, and a sphere in world space as well
   float still_area_ = 4 * pi;
   Bounds3 bounds_;
 };

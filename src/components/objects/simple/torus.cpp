@@ -5,8 +5,8 @@
 namespace etendue {
 namespace {
 
-/// The root of a function between two places where it has different signs: Newton's method, kept within the bracket by
-/// bisection. `f(x, slope)` returns the value and its derivative.
+/// The root of a function between two points at which it has different signs: Newton's method, safeguarded by bisection. `f(x,
+/// slope)` returns the value and its derivative.
 template <class F>
 double bracketed_root(double low, double high, bool rising, const F& f) {
   double x = 0.5 * (low + high);
@@ -16,7 +16,7 @@ double bracketed_root(double low, double high, bool rising, const F& f) {
     if (value == 0) return x;
     ((value < 0) == rising ? low : high) = x;
     const double newton = x - value / slope;
-    const double next = newton > low && newton < high ? newton : 0.5 * (low + high);  // also when it is not a number
+    const double next = newton > low && newton < high ? newton : 0.5 * (low + high);  // also if newton is NaN
     if (std::abs(next - x) < 1e-15 || high - low < 1e-15) return next;
     x = next;
   }
@@ -27,10 +27,10 @@ double bracketed_root(double low, double high, bool rising, const F& f) {
 // the surface (|p|^2 + 1 - k^2)^2 = 4 (x^2 + y^2) have
 //   f(s) = s^4 + A s^2 + B s + C = 0,
 //   A = 2 (|q|^2 + 1 - k^2) - 4 (1 - dz^2),  B = -8 (qx dx + qy dy),  C = (|q|^2 + 1 - k^2)^2 - 4 (qx^2 + qy^2).
-// Between the roots of f' it is monotonic, and so is f' between those of f''; so every root has a bracket, and none is
-// lost where the ray grazes. f begins and ends positive: crossings come in pairs. f has the sign of
+// Between the roots of f' it is monotonic, and so is f' between those of f''; so every root is bracketed, and none is lost for
+// grazing rays. f is positive at both ends of the range: crossings come in pairs. f has the sign of
 //   g(s) = (sqrt(x^2 + y^2) - 1)^2 + z^2 - k^2,
-// which is the better one to evaluate: in it a thin tube's digits are not lost in the ring's fourth power.
+// which is evaluated instead: in f, the digits of a thin tube would be lost in the fourth power of the ring's radius.
 struct Quartic {
   double q[3], d[3], k;
   double a, b;
@@ -53,7 +53,7 @@ struct Quartic {
     return (4 * s * s + 2 * a) * s + b;
   }
 
-  /// The ends of the intervals in which f is monotonic; returns how many ends there are.
+  /// The ends of the intervals in which f is monotonic; returns their number.
   int monotonic(double low, double high, double (&ends)[5]) const {
     double turns[4];
     int n = 0, count = 0;
@@ -113,7 +113,7 @@ class Torus final : public PlacedObject {
   bool own_intersect(const Ray& ray, Hit& hit) const override {
     const DoubleRay r(ray);
     const double scale = double(radius), k = double(tube_radius) / scale, reach = 1 + k;
-    // The ray from where it is nearest to the middle.
+    // The ray is parametrized from its point nearest to the centre.
     const double dd = r.direction[0] * r.direction[0] + r.direction[1] * r.direction[1] + r.direction[2] * r.direction[2];
     const double od = r.origin[0] * r.direction[0] + r.origin[1] * r.direction[1] + r.origin[2] * r.direction[2];
     const double middle = -od / dd, speed = std::sqrt(dd) / scale;  // s = (t - middle) speed
@@ -124,7 +124,7 @@ class Torus final : public PlacedObject {
       m += q[i] * q[i];
     }
     if (!(m < reach * reach)) return false;
-    // All of the surface lies in this interval, which is widened so that it surely begins and ends outside.
+    // All intersections lie in this interval, which is widened so that it certainly begins and ends outside.
     double high = std::sqrt(reach * reach - m), low = -high;
     if (std::abs(d[2]) > 1e-12) {
       const double s0 = (-k - q[2]) / d[2], s1 = (k - q[2]) / d[2];
@@ -165,13 +165,14 @@ class Torus final : public PlacedObject {
     const DoubleRay r(ray);
     const double t = double(hit.distance), x = r.at(t, 0), y = r.at(t, 1), z = r.at(t, 2);
     const double out = std::sqrt(x * x + y * y), away = out - double(radius), tube = std::sqrt(away * away + z * z);
-    if (!(out > 0 && tube > 0)) return point_at(1, 0, 1, 0, p);  // only when a float cannot tell the tube from a circle
+    if (!(out > 0 && tube > 0)) return point_at(1, 0, 1, 0, p);  // only if, in float precision, the tube has no thickness
     point_at(x / out, y / out, away / tube, z / tube, p);
   }
 
   double own_area() const override { return 4 * M_PI * M_PI * double(radius) * double(tube_radius); }
 
-  // Area is r (R + r cos psi) dphi dpsi. Its share up to psi is (psi + k sin psi) / (2 pi) with k = r / R: Kepler's equation.
+  // The area element is r (R + r cos psi) dphi dpsi. The fraction of the area up to psi is (psi + k sin psi) / (2 pi) with k =
+  // r / R: Kepler's equation.
   float own_sample(Point2 u, OwnPoint& p) const override {
     const double k = double(tube_radius) / double(radius), phi = 2 * M_PI * double(u.x), mean = 2 * M_PI * double(u.y);
     const double psi = bracketed_root(mean - k, mean + k, true, [=](double x, double& slope) {
@@ -183,7 +184,7 @@ class Torus final : public PlacedObject {
   }
 
  private:
-  /// The point at an angle around the axis and one around the tube, by their cosines and sines.
+  /// Fills the point at an angle around the axis and an angle around the tube, given by their cosines and sines.
   void point_at(double cos_around, double sin_around, double cos_tube, double sin_tube, OwnPoint& p) const {
     const double out = double(radius) + double(tube_radius) * cos_tube, turn = 2 * M_PI, tube = turn * double(tube_radius);
     p.position = {float(out * cos_around), float(out * sin_around), float(double(tube_radius) * sin_tube)};
@@ -192,7 +193,7 @@ class Torus final : public PlacedObject {
             positive_atan2(float(sin_tube), float(cos_tube)) / (2 * pi)};
     p.dpdu = {float(-turn * out * sin_around), float(turn * out * cos_around), 0};
     p.dpdv = {float(-tube * sin_tube * cos_around), float(-tube * sin_tube * sin_around), float(tube * cos_tube)};
-    // Rounding of the position and of where it is moved to along the normal; intersection itself is in double.
+    // Rounding of the position and of an offset ray origin; intersection itself is in double.
     p.error = rounding_bound(3) * (along(p.normal, abs(p.position - Point3{})) + tube_radius);
   }
 };

@@ -1,4 +1,4 @@
-// Tube: a thick pipe, open at both ends.
+// Tube: a thick-walled pipe, open at both ends.
 
 #include "geometry/axial_view.h"
 #include "geometry/quadric_roots.h"
@@ -7,7 +7,7 @@
 namespace etendue {
 namespace {
 
-// What is inside of the outer cylinder and of a slab, but not inside of the inner cylinder: on a ray at most two intervals.
+// The solid inside the outer cylinder and a slab, but outside the inner cylinder: on a ray at most two intervals.
 class Tube final : public PlacedObject {
  public:
   static void describe(Description<Tube>& d) {
@@ -29,7 +29,7 @@ class Tube final : public PlacedObject {
     if (!(radius > 0 && radius < infinity)) fail("radius", "must be positive and finite");
     if (!(height > 0 && height < infinity)) fail("height", "must be positive and finite");
     if (!(inner_radius > 0 && inner_radius < radius)) fail("inner_radius", "must be positive and smaller than radius");
-    // Less would be lost in rounding at the wall.
+    // A thinner wall would be lost in rounding.
     if (!(radius - inner_radius > 1e-5f * radius)) fail("inner_radius", "the wall is too thin");
     r_[0] = double(radius);
     r_[1] = double(inner_radius);
@@ -90,7 +90,7 @@ class Tube final : public PlacedObject {
     const DoubleRay r(ray);
     const double t = exact_distance(hit), x = r.at(t, 0), y = r.at(t, 1);
     if (hit.primitive == outer || hit.primitive == inner) {
-      // Onto the side: t may come from a longer ray than was asked (of a solid).
+      // Projects the point onto the side: t may have the rounding error of a longer ray, if the tube is an operand of a solid.
       const double around = std::sqrt(x * x + y * y), scale = around > 0 ? r_[hit.primitive] / around : 1;
       side_point(int(hit.primitive), scale * x, scale * y, within(r.at(t, 2), -half_, half_), p);
     } else
@@ -105,7 +105,7 @@ class Tube final : public PlacedObject {
   }
 
   float own_sample(Point2 u, OwnPoint& p) const override {
-    // Once around the profile: out along the low end, up, in along the high end and down in the bore.
+    // Runs once around the profile: outwards on the low end, up the outer side, inwards on the high end and down the bore.
     const double area = own_area();
     double y = double(u.y) * area;
     constexpr Part order[] = {low_end, outer, high_end, inner};
@@ -120,32 +120,32 @@ class Tube final : public PlacedObject {
   enum Part { outer, inner, low_end, high_end };
   static constexpr int parts = 4;
 
-  /// What AxialDirections asks for: the tube as seen from outside or from its bore.
+  /// The tube as seen from outside or from its bore, for AxialDirections.
   struct Seen {
     const Tube& tube;
     AxialView view;
 
     Seen(const Tube& object, const Point3& own) : tube(object), view(own, -object.half_, object.half_, object.r_[0]) {}
 
-    /// From there everything may be seen.
+    /// Whether the point is inside the wall, from where all surfaces may be visible.
     bool within_wall() const { return view.side() == 0 && view.around() > tube.r_[1] && view.around() < tube.r_[0]; }
 
     Elevations at(double sine, double cosine) const {
       const double across = view.around() * sine, toward = view.around() * cosine;
-      // Where a half plane along the axis enters and leaves a circle about it.
+      // Distances at which the half plane of the azimuth enters and leaves the circles about the axis.
       const auto squared = [&](double r) { return r * r - across * across; };
       const double outer_far = toward + std::sqrt(std::max(0.0, squared(tube.r_[0])));
       const double outer_near = (view.around() - tube.r_[0]) * (view.around() + tube.r_[0]) / outer_far;
       const double bore = squared(tube.r_[1]), inner_far = toward + std::sqrt(std::max(0.0, bore));
       const double inner_near = (view.around() - tube.r_[1]) * (view.around() + tube.r_[1]) / inner_far;
       Elevations seen;
-      if (view.side() == 0) {  // one side, for the wall is in the way of the rest
+      if (view.side() == 0) {  // one side is visible; the wall hides the other
         const double s = view.around() < tube.r_[1] ? inner_far : outer_near;
         seen.add(view.elevation(s, -tube.half_), view.elevation(s, tube.half_));
         return seen;
       }
-      // From the bottom of the outer side, or straight under the point, to the far edge of the nearer end; but not where one
-      // looks through the bore.
+      // From the far rim of the outer side, or straight up or down, to the far edge of the nearer end, excluding the directions
+      // in which one looks through the bore.
       const double near_end = view.side() * tube.half_, far_end = -near_end;
       const double begin = outer_near > 0 ? view.elevation(outer_near, far_end) : view.pole(-view.side());
       const double end = view.elevation(outer_far, near_end);
@@ -164,7 +164,7 @@ class Tube final : public PlacedObject {
       return view.side() != 0 && view.through(p.object_position, view.side() * tube.half_, tube.r_[1]);
     }
   };
-  /// From within the wall all samples are by direction, and none by area.
+  /// From inside the wall all samples are by direction.
   static constexpr DirectionShare everywhere{1, false};
   static bool none(Point2, SurfaceSample&) { return false; }
   static float no_pdf(const SurfacePoint&) { return 0; }
@@ -198,7 +198,7 @@ class Tube final : public PlacedObject {
     p.primitive = std::uint32_t(part);
   }
 
-  /// The smaller of width and height: see RevolvedQuadric.
+  /// The smaller of radius and height: see RevolvedQuadric.
   double extent() const { return std::min(r_[0], 2 * half_); }
 
   double r_[2]{1, 0.75}, half_ = 1;  // outer and inner radius, half of the height

@@ -20,7 +20,7 @@ class Divider {
   //     (D_ss / n^2 + 2 D_st / (n m) + D_tt / m^2) / 8
   // from it, where D bounds the lengths of second derivatives (Filip, Magedson & Markot 1986, "Surface algorithms using bounds
   // on derivatives"); with 2 / (n m) <= 1 / n^2 + 1 / m^2 each direction gets half of the tolerance. A curve's chords are at
-  // most D / (8 n^2) from it. The derivatives are looked at in 9 places along an edge and 25 in a face.
+  // most D / (8 n^2) from it. The derivatives are evaluated at 9 points along an edge and 25 points in a face.
   CageDivision divide() {
     const size_t faces = size_t(base_.GetNumFaces());
     result_.edges.assign(size_t(base_.GetNumEdges()), most_pieces_);

@@ -1,5 +1,5 @@
 #pragma once
-// How finely the faces of a cage and the edges between them are divided.
+// Tessellation rates: the number of pieces into which each face and each edge of a cage is divided.
 
 #include <tbb/parallel_for.h>
 
@@ -7,7 +7,7 @@
 
 namespace etendue {
 
-/// What a cage has at its vertices, as numbers of one kind.
+/// Positions, attributes and surface coordinates of a cage as arrays of doubles, for OpenSubdiv.
 struct CageValues {
   explicit CageValues(const PolygonMesh&);
   LimitSurface surface(const LimitSurfaces& surfaces) const { return LimitSurface(surfaces, vertices, width, uvs); }
@@ -16,7 +16,7 @@ struct CageValues {
   std::vector<double> vertices, uvs;
 };
 
-/// Calls f(surface, face) for all faces, in many threads.
+/// Calls f(surface, face) for all faces, in parallel.
 template <class F>
 void for_each_face(size_t faces, const LimitSurfaces& surfaces, const CageValues& values, F&& f) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, faces), [&](const tbb::blocked_range<size_t>& some) {
@@ -27,16 +27,16 @@ void for_each_face(size_t faces, const LimitSurfaces& surfaces, const CageValues
 
 struct CageDivision {
   struct Face {
-    /// How many pieces across a face. As many both ways: the strips between very different numbers are sewn together by
-    /// slanting triangles, which would span many steps of the finer one.
+    /// Pieces across a face, equal in both directions: between very different rates, strips are joined by slanting triangles
+    /// that would span many steps of the finer one.
     int inside = 1;
     bool exists = false;
   };
 
-  std::vector<int> edges;  ///< pieces of each
+  std::vector<int> edges;  ///< number of pieces of each edge
   std::vector<Face> faces;
-  size_t coarse = 0;         ///< edges and faces that would need more pieces than they may have
-  size_t without_limit = 0;  ///< faces that do not exist
+  size_t coarse = 0;         ///< number of edges and faces that would need more pieces than allowed
+  size_t without_limit = 0;  ///< number of faces that do not exist
 };
 
 /// Throws Error when no face exists.

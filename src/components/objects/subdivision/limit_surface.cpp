@@ -1,7 +1,7 @@
-// Limit surfaces by OpenSubdiv. Each face of the cage is a surface of its own over (s, t): bicubic (or quartic box-spline)
-// patches where the cage is regular, and around irregular vertices and creases a hierarchy of smaller ones, as many levels deep
-// as `smooth_depth` and `sharp_depth` say (Nießner et al. 2012, "Feature-adaptive GPU rendering of Catmull-Clark subdivision
-// surfaces"), with Gregory patches at its end, which pass through the limit's points with its tangents at their corners.
+// Limit surfaces by OpenSubdiv. Each face of the cage is a separate surface over (s, t): bicubic (or quartic box-spline)
+// patches where the cage is regular, and around irregular vertices and creases a hierarchy of smaller patches, with
+// `smooth_depth` or `sharp_depth` levels (Nießner et al. 2012, "Feature-adaptive GPU rendering of Catmull-Clark subdivision
+// surfaces"), and with Gregory patches at the last level, which interpolate the limit's points and tangents at their corners.
 
 #include "limit_surface.h"
 
@@ -14,8 +14,8 @@ namespace {
 
 namespace Sdc = OpenSubdiv::Sdc;
 
-// Deeper than OpenSubdiv's own 2 and 6, for the Gregory patches at the end are but near the limit between their corners; the
-// patches around a kind of vertex are made once, so that depth costs little.
+// The depths exceed OpenSubdiv's defaults of 2 and 6, because between their corners Gregory patches only approximate the limit;
+// patches are cached for each type of vertex, so depth costs little.
 constexpr int smooth_depth = 5, sharp_depth = 8;
 
 const Bfr::Surface<double>::PointDescriptor uv_layout{2};
@@ -84,7 +84,7 @@ LimitPoint LimitSurface::at(const double* st, float* attributes) {
   p.position = {float(values_[0]), float(values_[1]), float(values_[2])};
   if (attributes)
     for (int i = 3; i < layout_.size; ++i) attributes[i - 3] = float(values_[size_t(i)]);
-  if (!across(cross_product)) {  // a derivative vanishes at some corners: the normal of a point close by
+  if (!across(cross_product)) {  // a derivative vanishes at some corners: the normal of a nearby point is used
     double inside[2];
     inwards(st, inside);
     derivatives(inside);

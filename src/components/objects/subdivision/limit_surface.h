@@ -1,5 +1,5 @@
 #pragma once
-// The limit surface of a cage, face by face, by OpenSubdiv.
+// Evaluates the limit surface of a cage, face by face, by OpenSubdiv.
 
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/far/topologyRefiner.h>
@@ -16,25 +16,25 @@ namespace etendue {
 namespace Bfr = OpenSubdiv::Bfr;
 namespace Far = OpenSubdiv::Far;
 
-/// Edges, faces and creases. Throws Error.
+/// The cage's topology: edges, faces and creases. Throws Error.
 std::unique_ptr<Far::TopologyRefiner> cage_topology(const PolygonMesh&, const SubdivisionRules&);
 
 using PatchCache = Bfr::SurfaceFactoryCacheThreaded<std::shared_mutex, std::shared_lock<std::shared_mutex>,
                                                     std::unique_lock<std::shared_mutex>>;
-/// Makes the surfaces of faces; many threads may ask it at once.
+/// Creates the limit surfaces of faces; thread-safe.
 class LimitSurfaces : public Bfr::RefinerSurfaceFactory<PatchCache> {
  public:
   explicit LimitSurfaces(const Far::TopologyRefiner&);
 };
 
-/// A point of the limit surface as one face sees it.
+/// A point of the limit surface, evaluated from one face.
 struct LimitPoint {
   Point3 position;
-  Normal3 normal;  // zero: none
+  Normal3 normal;  // zero if there is none
   Point2 uv;
 };
 
-/// The surface of one face at a time. Positions and attributes are numbers of one kind.
+/// The limit surface of one face at a time. Positions and attributes are interpolated alike.
 class LimitSurface {
  public:
   LimitSurface(const LimitSurfaces& factory, const std::vector<double>& vertices, int width, const std::vector<double>& uvs)
@@ -45,12 +45,12 @@ class LimitSurface {
         values_(size_t(3 * width)),
         seconds_(size_t(3 * width)) {}
 
-  /// False: the face has none.
+  /// Loads a face; returns false if it has no limit surface.
   bool load(int face);
 
   Bfr::Parameterization parameters() const { return surface_.GetParameterization(); }
 
-  /// Values behind the position, when asked for, go to `attributes`.
+  /// The point at (s, t). If `attributes` is not null, it receives the vertex attributes.
   LimitPoint at(const double* st, float* attributes = nullptr);
 
   std::array<double, 3> position(const double* st);
@@ -63,7 +63,7 @@ class LimitSurface {
   using Layout = Surface::PointDescriptor;
 
   void derivatives(const double* st);
-  /// The unit normal from the derivatives; false: there is none.
+  /// The unit normal from the derivatives; returns false if they are degenerate.
   bool across(double* n) const;
   void inwards(const double* st, double* inside) const;
 

@@ -1,4 +1,4 @@
-// Fine triangles on a limit surface.
+// Tessellation of a limit surface into triangles.
 
 #include "subdivision.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t most_vertices = std::uint64_t(1) << 27;
 
-/// First places in an array for runs of given lengths; the last entry is the sum.
+/// Start indices in an array for runs of given lengths (exclusive prefix sum); the last entry is the sum.
 template <class F>
 std::vector<std::uint64_t> starts(size_t count, F&& length) {
   std::vector<std::uint64_t> start(count + 1);
@@ -20,8 +20,9 @@ std::vector<std::uint64_t> starts(size_t count, F&& length) {
   return start;
 }
 
-// Vertices of the result: first those on the cage's vertices, then those within its edges, which the faces around share,
-// then those within faces, then copies of shared ones for the faces that see another normal or other surface coordinates there.
+// Order of the vertices of the result: first those at the cage's vertices, then those within its edges, shared by the adjacent
+// faces, then those within faces, then copies of shared vertices for faces with a different normal or surface coordinates
+// there.
 class LimitTessellation {
  public:
   LimitTessellation(const PolygonMesh& cage, const SubdivisionRules& rules, const Fineness& fineness)
@@ -81,7 +82,8 @@ class LimitTessellation {
       throw Error("there would be " + std::to_string(triangle_start_.back()) + " triangles, more than 2^27");
   }
 
-  /// Points within faces go where they belong, those on borders wait for what the faces share.
+  /// Evaluates all points. Points within faces are stored in the mesh; points on the borders of faces are collected for
+  /// `share`.
   void evaluate() {
     resize(inside_start_.back());
     borders_.resize(border_start_.back());
@@ -129,8 +131,8 @@ class LimitTessellation {
     }
   }
 
-  /// The number of the shared point that is the i-th on a face's border, for all i in order: a vertex, then those within the
-  /// edge that follows it, and so on around.
+  /// Calls visit(i, number) for the points on a face's border in order, with the number of the shared point: a vertex, then the
+  /// points within the edge that follows it, and so on around the face.
   template <class F>
   void around(int f, F&& visit) const {
     const Far::ConstIndexArray corners = base_.GetFaceVertices(f), edges = base_.GetFaceEdges(f);
@@ -143,8 +145,8 @@ class LimitTessellation {
     }
   }
 
-  // The first face to come gives a shared point its place, so that nothing gapes; those that see it with another normal or
-  // other surface coordinates get copies there, in a chain.
+  // The first face that contains a shared point determines its position, so that there are no cracks; faces with a different
+  // normal or different surface coordinates there get copies of the point, stored in a linked list.
   void share() {
     constexpr std::uint32_t none = PolygonMesh::none;
     struct Copy {
@@ -156,7 +158,7 @@ class LimitTessellation {
     std::vector<size_t> source(shared_);
     border_vertices_.resize(borders_.size());
     const auto same = [&](const LimitPoint& a, const LimitPoint& b) {
-      constexpr float least_cosine = 0.9999f;  // a degree: patches beside an irregular vertex differ by rather less
+      constexpr float least_cosine = 0.9999f;  // 0.8 degrees: adjacent patches at an irregular vertex differ by much less
       const bool normals = a.normal == b.normal || dot(a.normal, b.normal) > least_cosine;
       return normals && std::abs(a.uv.x - b.uv.x) <= 1e-5f * (1 + std::abs(a.uv.x)) &&
              std::abs(a.uv.y - b.uv.y) <= 1e-5f * (1 + std::abs(a.uv.y));
@@ -211,11 +213,11 @@ class LimitTessellation {
   const CageValues values_;
   const CageDivision division_;
   const bool uvs_;
-  const size_t extra_;  // numbers of a vertex behind its position
+  const size_t extra_;  // attribute values per vertex, after the position
 
   std::uint64_t shared_ = 0;
   std::vector<std::uint64_t> edge_start_, border_start_, inside_start_, triangle_start_;
-  std::vector<LimitPoint> borders_;  // as each face sees its own
+  std::vector<LimitPoint> borders_;  // border points, as evaluated from each face
   std::vector<float> border_attributes_;
   std::vector<std::uint32_t> border_vertices_;
   LimitMesh result_;

@@ -1,5 +1,5 @@
 #pragma once
-// Limit surfaces of subdivision, as fine triangles.
+// Tessellates the limit surface of a subdivision cage into triangles.
 
 #include <array>
 
@@ -16,19 +16,19 @@ struct SubdivisionRules {
   Scheme scheme = Scheme::catmull_clark;
   Boundary boundary = Boundary::edges_and_corners;
   UvBoundary uv_boundary = UvBoundary::corners_and_junctions;
-  static constexpr float sharpest = 10;  ///< from here on an edge or a corner stays sharp however often it is divided
+  static constexpr float sharpest = 10;  ///< from this sharpness on an edge or a corner is infinitely sharp
   std::vector<std::array<std::uint32_t, 2>> creases;
   std::vector<float> crease_sharpness;  ///< for each crease
   std::vector<std::uint32_t> corners;
   std::vector<float> corner_sharpness;  ///< for each corner
 };
 
-/// How fine the triangles are: each edge of the cage is divided into 2^levels pieces, or, when a tolerance or a length is
-/// given, into as few as these need, but no more than that.
+/// The fineness of the triangles: each edge of the cage is divided into 2^levels pieces or, if a tolerance or a length is
+/// given, into as few pieces as these require, at most 2^levels.
 struct Fineness {
   int levels = 4;
-  float tolerance = 0;    ///< how far triangles may lie from the limit surface [m]; 0: any
-  float edge_length = 0;  ///< how long their edges may be [m]; 0: any
+  float tolerance = 0;    ///< largest distance of triangles from the limit surface [m]; 0: any
+  float edge_length = 0;  ///< largest length of a triangle's edge [m]; 0: any
 };
 
 struct LimitMesh {
@@ -37,9 +37,9 @@ struct LimitMesh {
   size_t without_limit = 0;  ///< faces of the cage that have no limit surface
 };
 
-/// Points and normals of the limit surface of a tidied cage. Triangles that share an edge of the cage share its vertices;
-/// where normals or surface coordinates differ along it (creases, seams) these are copies in exactly the same place.
-/// Throws Error.
+/// Tessellates the limit surface of a cage that `tidy` has cleaned; vertices have positions and normals of the limit. Triangles
+/// on both sides of a cage edge share its vertices; where normals or surface coordinates differ along the edge (creases,
+/// seams), the vertices are copies at exactly the same position. Throws Error.
 LimitMesh limit_mesh(const PolygonMesh&, const SubdivisionRules&, const Fineness&);
 
 }  // namespace etendue

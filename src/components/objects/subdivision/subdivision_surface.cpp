@@ -1,4 +1,4 @@
-// SubdivisionSurface: the smooth surface of a cage of polygons.
+// SubdivisionSurface: the limit surface of a polygon cage.
 
 #include <unordered_set>
 
@@ -193,7 +193,7 @@ class SubdivisionSurface final : public TriangleObject {
                          " (counting from 0)");
   }
 
-  /// One number for each of `count`, from a list of as many, of one or of none.
+  /// Expands a list of `count` values, one or none to `count` values.
   std::vector<float> each(const char* member, const std::vector<float>& list, size_t count) const {
     for (const float s : list)
       if (!(s >= 0 && s <= SubdivisionRules::sharpest)) fail(member, "sharpness goes from 0 to 10");
@@ -235,8 +235,8 @@ class SubdivisionSurface final : public TriangleObject {
   }
 
   VertexAttributes attributes_;
-  std::span<const std::array<std::uint32_t, 3>> corners_;  // of each triangle, while there are attributes
-  std::vector<std::array<std::uint32_t, 3>> own_corners_;  // of a moving surface
+  std::span<const std::array<std::uint32_t, 3>> corners_;  // of each triangle; empty without attributes
+  std::vector<std::array<std::uint32_t, 3>> own_corners_;  // copy of the triangles, for a moving surface
 };
 
 const Register<SubdivisionSurface> registered;

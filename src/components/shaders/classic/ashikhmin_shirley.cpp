@@ -1,4 +1,5 @@
-// AshikhminShirley: an anisotropic Phong highlight with Fresnel reflection over a matt base that fades as it grows.
+// AshikhminShirley: an anisotropic Phong highlight with Fresnel reflection over a diffuse base, which darkens as the highlight
+// grows.
 
 #include "components/shaders/reflectance.h"
 #include "components/shaders/scalar_map.h"
@@ -10,14 +11,14 @@ namespace {
 
 // Ashikhmin & Shirley 2000: with the exponent n(h) = nu cos(phi)^2 + nv sin(phi)^2 in h's azimuth phi,
 //   glossy   f = sqrt((nu + 1)(nv + 1)) / (8 pi) t^n(h) F(u) / (u max(v, v')),   F(u) = Rs + (1 - Rs)(1 - u)^5,
-//   matt     f = 28 Rd / (23 pi) (1 - Rs) (1 - (1 - v/2)^5) (1 - (1 - v'/2)^5)   [1/sr].
+//   diffuse  f = 28 Rd / (23 pi) (1 - Rs) (1 - (1 - v/2)^5) (1 - (1 - v'/2)^5)   [1/sr].
 //
-// Sampling h: density sqrt((nu + 1)(nv + 1)) / (2 pi) t^n(h): in a quarter turn
-// phi = atan(sqrt((nu + 1)/(nv + 1)) tan(pi x / 2)), t = y^(1/(n + 1)). With 1/(4 u) for `in`, f v' / density =
-// F v' / max(v, v') <= F. The matt part is drawn with density cos / pi; its albedo is Rd (1 - Rs) (1 - (1 - v/2)^5).
+// Sampling: h has the pdf sqrt((nu + 1)(nv + 1)) / (2 pi) t^n(h) [1/sr]. In a quarter turn phi = atan(sqrt((nu + 1)/(nv + 1))
+// tan(pi x / 2)), t = y^(1/(n + 1)) for uniform x and y. With the Jacobian 1/(4 u) for `in`, f v' / pdf = F v' / max(v, v') <=
+// F. The diffuse part is sampled with the pdf cos / pi; its albedo is Rd (1 - Rs) (1 - (1 - v/2)^5).
 //
-// Energy: the albedo is at most Rs + (1 - Rs) (E[(1 - u)^5] + 1 - (1 - v/2)^5). No direction `in` has a u below that of the
-// one at grazing angle on the other side, (sqrt(1 + v) - sqrt(1 - v)) / 2 >= v/2; so the sum is at most 1.
+// Energy: the albedo is at most Rs + (1 - Rs) (E[(1 - u)^5] + 1 - (1 - v/2)^5). The least u is that of the grazing direction
+// `in` opposite to `out`, (sqrt(1 + v) - sqrt(1 - v)) / 2 >= v/2; so the sum is at most 1.
 struct PhongHalf {
   float nu, nv;
 
@@ -25,18 +26,18 @@ struct PhongHalf {
     const float x = 4 * u.x, quarter = std::floor(x);
     float sine = 0, cosine = 0;
     sin_cos_turn(0.25f * (x - quarter), sine, cosine);
-    // The point on the ellipse whose axes make the tangent, scaled to the circle.
+    // (cos(phi), sin(phi)): a vector of the tangent given above, normalized.
     Vector3 v{std::sqrt(nv + 1) * cosine, std::sqrt(nu + 1) * sine, 0};
     v = v / length(v);
     const float n = nu * v.x * v.x + nv * v.y * v.y;
     const int q = int(quarter);
     if (q == 1 || q == 2) v.x = -v.x;
     if (q >= 2) v.y = -v.y;
-    // 1 - t, which stays exact for large n.
+    // 1 - t, which stays precise for large n.
     const float k = -std::expm1(std::log1p(-std::min(u.y, one_minus_epsilon)) / (n + 1)), s = safe_sqrt(k * (2 - k));
     return {s * v.x, s * v.y, 1 - k};
   }
-  /// [1/sr] of h
+  /// The pdf of h [1/sr].
   float pdf(const HalfVector& half) const {
     const float s2 = half.sine_squared();
     if (s2 >= 1) return 0;
@@ -47,7 +48,7 @@ struct PhongHalf {
   }
 };
 
-/// Means of v' / max(v, v') and of the same times (1 - u)^5, by (n + 1)^(-1/4) along the azimuth of `out` and across it.
+/// Means of v' / max(v, v'), and of this times (1 - u)^5; tabulated by (n + 1)^(-1/4) along the azimuth of `out` and across it.
 using Table = AlbedoTable<2>;
 const Table& albedo_table() {
   static const Table table(
@@ -134,7 +135,7 @@ class AshikhminShirley final : public Shader {
     return arena.make<AshikhminShirleyScatter>(p, frame, Lobes(glossy_reflection | (base ? diffuse_reflection : 0)), matte,
                                                glossy, shape, *table_);
   }
-  /// Of the table.
+  /// Interpolation error of the albedo table.
   float albedo_error() const override { return 0.05f; }
   Lobes possible_lobes() const override { return diffuse_reflection | glossy_reflection; }
 

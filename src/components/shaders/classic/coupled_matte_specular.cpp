@@ -1,4 +1,5 @@
-// CoupledMatteSpecular: a polished coat over a matt base (varnished wood, tiles), whose base fades where the coat shines.
+// CoupledMatteSpecular: a specular coat over a diffuse base (varnished wood, tiles), which darkens where the coat reflects
+// more.
 
 #include "components/shaders/half_vector.h"
 #include "components/shaders/reflectance.h"
@@ -8,16 +9,16 @@
 namespace etendue {
 namespace {
 
-// The coupled model of Shirley, Hu, Smits & Lafortune 1997. The coat is a mirror of reflectance
+// The coupled model of Shirley, Hu, Smits & Lafortune 1997. The coat is specular, with the reflectance
 //   R(theta) = R0 + (1 - R0) (1 - cos(theta))^5,
-// and what it lets through is scattered by the base:
+// and the light it transmits is scattered by the base:
 //   f = k Rm (1 - R(theta)) (1 - R(theta')),  k = 21 / (20 pi (1 - R0))  [1/sr].
-// k makes the matt albedo Rm (1 - R(theta)): the integral of (1 - (1 - c)^5) c over the hemisphere is
-// 2 pi (1/2 - 1/42) = 20 pi / 21. So the whole albedo is R + Rm (1 - R), and nothing is lost when Rm = 1. Written with
-// g(c) = 1 - (1 - c)^5,  1 - R = (1 - R0) g  and  f = 21 / (20 pi) Rm (1 - R0) g(cos(theta)) g(cos(theta')).
+// k makes the albedo of the base Rm (1 - R(theta)): the integral of (1 - (1 - c)^5) c over the hemisphere is 2 pi (1/2 - 1/42)
+// = 20 pi / 21. So the total albedo is R + Rm (1 - R), and no light is lost when Rm = 1. With g(c) = 1 - (1 - c)^5,  1 - R = (1
+// - R0) g  and  f = 21 / (20 pi) Rm (1 - R0) g(cos(theta)) g(cos(theta')).
 //
-// Sampling: coat or base by their albedos (means over the path's wavelengths), the base with density cos / pi; the weight's
-// spread is that of g.
+// Sampling: coat or base is chosen in proportion to their albedos (means over the path's wavelengths), the base's directions
+// with the pdf cos / pi; the base's weight varies with g(cos(theta')) only.
 class CoupledScatter final : public ScatterModel<CoupledScatter> {
  public:
   CoupledScatter(const SurfacePoint& p, Lobes lobes, Spectrum matte, Spectrum normal_reflectance)
@@ -55,7 +56,7 @@ class CoupledScatter final : public ScatterModel<CoupledScatter> {
   }
 
  private:
-  /// g: what a perfectly clear coat lets pass.
+  /// g: the transmittance of the coat over that at normal incidence.
   static float passed(const Vector3& v) { return 1 - schlick_growth(std::abs(v.z)); }
   Spectrum reflectance(const Vector3& v) const { return Spectrum(1.0f) - (Spectrum(1.0f) - normal_reflectance_) * passed(v); }
   float mirror_probability(const Vector3& out, Lobes which) const {

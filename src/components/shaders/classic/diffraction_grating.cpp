@@ -1,4 +1,4 @@
-// DiffractionGrating: a mirror with fine grooves, which sends each colour its own way.
+// DiffractionGrating: a mirror with fine parallel grooves, which reflects each wavelength into its own directions.
 
 #include "components/shaders/reflectance.h"
 #include "components/shaders/scalar_map.h"
@@ -8,18 +8,18 @@
 namespace etendue {
 namespace {
 
-// Grooves a distance d apart run along x; y lies across them. Order m of wavelength lambda leaves where the part of the
-// direction that lies in the surface is
+// Grooves of spacing d run along x; y lies across them. Diffraction order m of wavelength lambda leaves in the direction whose
+// tangential component is
 //     in_t = -out_t + m lambda / d y                                    (Born & Wolf 1999, section 8.6.1, eq. 8)
-// with all directions pointing away; m = 0 is the mirror. Where |in_t| > 1 the order is evanescent: it does not exist. The
-// fraction e_m of the light goes into order m, the same at all angles; that of an evanescent order is lost (absorbed, as by
-// the surface waves it becomes). It is not given to the other orders, which would send light differently one way than the
-// other: with fixed e_m the grating is reciprocal. Exchanging `in` and `out` in the equation above gives the same equation and
-// the same m; and as the step from one to the other is a translation in the plane of the tangential parts, whose area is
-// cos dw, f(out, in) = e_m delta(in_t + out_t - m lambda / d y) is symmetric.
+// with all directions pointing away; m = 0 is the mirror direction. Where |in_t| > 1 the order is evanescent: it does not
+// exist. The fraction e_m of the light (the efficiency) goes into order m, the same at all angles; that of an evanescent order
+// is lost (absorbed, as by the surface waves it becomes). It is not redistributed to the other orders, because that would break
+// reciprocity: with fixed e_m the grating is reciprocal. Exchanging `in` and `out` in the equation above gives the same
+// equation and the same m. The step from one to the other is a translation in the plane of tangential components, whose area
+// element is cos dw, so f(out, in) = e_m delta(in_t + out_t - m lambda / d y) is symmetric.
 //
-// Sampling: an order is drawn among those the hero has, in proportion to e_m. All but the zeroth have a direction of the
-// hero's own, and are marked dispersive: the path goes on without its other wavelengths.
+// Sampling: one of the orders that exist for the hero wavelength is drawn, in proportion to e_m. All but order 0 have a
+// direction that holds for the hero only and are marked dispersive: the path drops its other wavelengths.
 class DiffractionGratingScatter final : public ScatterModel<DiffractionGratingScatter> {
  public:
   /// `steps`: lambda / d of each wavelength; `efficiency`: of the orders 0, ±1, ±2, …
@@ -51,7 +51,7 @@ class DiffractionGratingScatter final : public ScatterModel<DiffractionGratingSc
       before += e;
       if (choice * total < before) return true;
     }
-    return true;  // by rounding: the last one
+    return true;  // reached by rounding only: the last order
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
@@ -69,7 +69,7 @@ class DiffractionGratingScatter final : public ScatterModel<DiffractionGratingSc
     return true;
   }
 
-  /// The sum of the efficiencies of all orders there are.
+  /// The sum of the efficiencies of all orders that are not evanescent.
   float propagating(const Vector3& out, float step) const {
     float sum = 0;
     Vector3 unused;

@@ -1,4 +1,4 @@
-// DiffuseTransmitter: a thin sheet that scatters light evenly on both sides: paper, a leaf, a lamp shade.
+// DiffuseTransmitter: a thin sheet that reflects and transmits light diffusely: paper, a leaf, a lamp shade.
 
 #include "components/shaders/reflectance.h"
 #include "etendue/core/warp.h"
@@ -7,9 +7,9 @@
 namespace etendue {
 namespace {
 
-// f = R / pi where both directions are on one side and T / pi where they are on two [1/sr]: R of the light leaves on the side
-// it came from and T on the other, in the distribution of Lambert. The side is drawn by R and T (means over the path's
-// wavelengths), the direction there with density cos / pi.
+// f = R / pi for directions on the same side and T / pi for directions on opposite sides [1/sr]: the fraction R of the light is
+// reflected and T transmitted, both with Lambert's distribution. The side is chosen in proportion to R and T (means over the
+// path's wavelengths), the direction there with the pdf cos / pi.
 class DiffuseTransmitterScatter final : public ScatterModel<DiffuseTransmitterScatter> {
  public:
   DiffuseTransmitterScatter(const SurfacePoint& p, Lobes lobes, Spectrum reflectance, Spectrum transmittance)
@@ -78,7 +78,7 @@ class DiffuseTransmitter final : public Shader {
     return arena.make<DiffuseTransmitterScatter>(p, lobes, r * scale, t * scale);
   }
   Lobes possible_lobes() const override { return diffuse_reflection | diffuse_transmission; }
-  bool transmits() const override { return false; }  // a sheet: there is nothing inside it
+  bool transmits() const override { return false; }  // a thin sheet has no interior
 
   Ref<ObjectMap> reflectance = constant(0.4f), transmittance = constant(0.4f);
 };

@@ -1,16 +1,16 @@
 #pragma once
-// The energy-preserving Oren-Nayar model, EON (Portsmouth, Kutz & Hill 2025, JCGT 14(1), arXiv 2410.18026), as a function:
-// for shaders of which it is one lobe among others.
+// The energy-preserving Oren-Nayar model, EON (Portsmouth, Kutz & Hill 2025, JCGT 14(1), arXiv 2410.18026), as a function, for
+// shaders that have it as one lobe among others.
 
 #include "etendue/core/spectrum.h"
 #include "etendue/core/vector.h"
 
 namespace etendue {
 
-// With r the roughness, rho the albedo of single scattering, mu and mu' the cosines and s = out . in - mu mu', light scattered
-// once is Fujii's form of Oren & Nayar 1994,
+// With r the roughness, rho the albedo of single scattering, mu and mu' the cosines and s = out . in - mu mu', single
+// scattering is Fujii's form of Oren & Nayar 1994,
 //   f1 = rho A / pi (1 + r (s > 0 ? s / max(mu, mu') : s)),   A = 1 / (1 + (1/2 - 2/(3 pi)) r)   [1/sr],
-// of albedo rho E(mu); and light scattered more often leaves as in Kulla & Conty 2017,
+// of albedo rho E(mu); and multiple scattering follows Kulla & Conty 2017,
 //   f2 = rho2 / pi (1 - E(mu)) (1 - E(mu')) / (1 - Em),   rho2 = rho^2 Em / (1 - rho (1 - Em)),
 // where Em is E's mean under diffuse light. The albedo is rho E + rho2 (1 - E): rho for r = 0, 1 for rho = 1.
 class EonLobe {

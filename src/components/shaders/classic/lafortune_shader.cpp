@@ -11,17 +11,17 @@ namespace {
 
 // Lafortune, Foo, Torrance & Greenberg 1997: a lobe of coefficients cx, cy, cz and exponent n is
 //   f = max(cx out.x in.x + cy out.y in.y + cz out.z in.z, 0)^n   [1/sr],
-// symmetric in the two directions. cx = cy = -c, cz = c is Phong's lobe of albedo 2 pi c^n / (n + 2) at normal incidence,
-// cx = cy = cz a lobe back to the light, |cx| > |cz| one that leans off the mirror direction, cx != cy anisotropic.
+// symmetric in the two directions. cx = cy = -c, cz = c is Phong's lobe of albedo 2 pi c^n / (n + 2) at normal incidence, cx =
+// cy = cz a retroreflective lobe, |cx| > |cz| an off-specular one, cx != cy an anisotropic one.
 //
-// For a given `out` it is a cosine lobe around the vector m a = (cx out.x, cy out.y, cz out.z), with a of unit length:
-// f = m^n cos(alpha)^n. Its albedo is m^n H(a.z), where H(c) = integral of cos(alpha)^n max(in.z, 0). With
-// y = cos(alpha)^(n+1) uniform, and in.z = c cos(alpha) + sin(a) sin(alpha) cos(psi) integrated over psi in closed form, H is
-// a sum over y, tabulated in prepare(). Sampling: density (n + 1) / (2 pi) cos(alpha)^n [1/sr] around a; what falls under the
-// surface is absorbed.
+// For a given `out` it is a cosine lobe around the vector m a = (cx out.x, cy out.y, cz out.z), with a of unit length: f = m^n
+// cos(alpha)^n. Its albedo is m^n H(a.z), where H(c) = integral of cos(alpha)^n max(in.z, 0). With y = cos(alpha)^(n+1)
+// uniform, and in.z = c cos(alpha) + sin(a) sin(alpha) cos(psi) integrated over psi in closed form, H is a sum over y,
+// tabulated in prepare(). Sampling: the pdf (n + 1) / (2 pi) cos(alpha)^n [1/sr] around a; directions below the surface are
+// absorbed.
 //
-// Energy: nothing in the formula bounds it. The greatest albedo of each lobe is searched over all `out` in prepare(); where
-// the diffuse colour and the lobes' colours times these exceed 1 in sum, all are scaled down by it.
+// Energy: the formula does not bound the albedo. prepare() searches the greatest albedo of each lobe over all `out`; where the
+// sum of the diffuse colour and of the lobes' colours times these exceeds 1, everything is divided by the sum.
 struct CosineLobe {
   static constexpr int size = 65;
 
@@ -41,12 +41,12 @@ struct CosineLobe {
       }
       table[size_t(i)] = float(sum * 2 / (steps * (double(n) + 1)));
     }
-    // In quarters of a turn, as signs do not matter to it.
+    // A quarter turn of azimuths is enough: the albedo does not depend on the signs of out.x and out.y.
     for (int i = 0; i <= 256; ++i)
       for (int k = 0; k <= 16; ++k) {
         const float z = float(i) / 256, s = safe_sqrt(1 - z * z), phi = float(k) / 16 * (pi / 2);
         const float a = albedo({s * std::cos(phi), s * std::sin(phi), z});
-        greatest = a < 1e30f ? std::max(greatest, a) : infinity;  // neither infinite nor not-a-number may be lost
+        greatest = a < 1e30f ? std::max(greatest, a) : infinity;  // not-a-number counts as infinite
         if (greatest == infinity) return;
       }
   }
@@ -89,14 +89,14 @@ class LafortuneScatter final : public JointScatter<LafortuneScatter> {
       const Vector3 m = lobe.turned(out);
       const float m2 = length_squared(m);
       if (!(m2 > 0)) return false;
-      // 1 - cos(alpha), which stays exact for sharp lobes.
+      // 1 - cos(alpha), which stays precise for sharp lobes.
       const float t = -std::expm1(std::log1p(-std::min(u.x, one_minus_epsilon)) / (lobe.n + 1)), r = safe_sqrt(t * (2 - t));
       float sine = 0, cosine = 0;
       sin_cos_turn(u.y, sine, cosine);
       s.in = Frame(Normal3(m / std::sqrt(m2))).to_world({r * cosine, r * sine, 1 - t});
       s.lobe = glossy_reflection;
     } else {
-      if (!(which & diffuse_reflection)) return false;  // no lobe has any light
+      if (!(which & diffuse_reflection)) return false;  // all shares are 0
       s.in = warp::cosine_hemisphere(u);
       s.lobe = diffuse_reflection;
     }
@@ -116,7 +116,7 @@ class LafortuneScatter final : public JointScatter<LafortuneScatter> {
   }
 
  private:
-  /// Of the lobes, then of the diffuse part.
+  /// Probabilities of choosing each lobe, then the diffuse part.
   using Shares = std::array<float, most_lobes + 1>;
   Shares shares(const Vector3& out, Lobes which) const {
     Shares share{};
@@ -208,7 +208,7 @@ class LafortuneShader final : public Shader {
     const Frame frame = isotropic_ ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
     return arena.make<LafortuneScatter>(p, frame, lobes, lobes_, diffuse * scale, colors);
   }
-  /// Of the tables.
+  /// Interpolation error of the albedo tables.
   float albedo_error() const override { return 0.02f; }
   Lobes possible_lobes() const override { return diffuse_reflection | glossy_reflection; }
 

@@ -1,4 +1,4 @@
-// Lambertian: light leaves alike in all directions, on the side it came from.
+// Lambertian: diffuse reflection, with equal radiance in all directions on the side the light came from.
 
 #include "components/shaders/reflectance.h"
 #include "etendue/core/warp.h"
@@ -7,8 +7,8 @@
 namespace etendue {
 namespace {
 
-// f = rho / pi [1/sr], so that the integral of f cos over the hemisphere is rho. Directions are drawn with density
-// cos / pi, so f cos / density = rho for every sample.
+// f = rho / pi [1/sr], so that the integral of f cos over the hemisphere is rho. Directions are sampled with the pdf cos / pi,
+// so f cos / pdf = rho for every sample.
 class LambertianScatter final : public ScatterModel<LambertianScatter> {
  public:
   LambertianScatter(const SurfacePoint& p, Spectrum reflectance)

@@ -1,5 +1,5 @@
 #pragma once
-// MatteGlossyScatter: a glossy lobe over a matte base, both in reflection.
+// MatteGlossyScatter: base class of models of a glossy lobe over a diffuse base, both in reflection.
 
 #include "components/shaders/half_vector.h"
 #include "components/shaders/joint_scatter.h"
@@ -7,12 +7,12 @@
 
 namespace etendue {
 
-// The lobe is chosen with a probability in proportion to what it reflects, the matte base else, with density cos / pi. A model
-// states, with `out` and `in` on the same side:
+// Sampling chooses the lobe with a probability proportional to an estimate of its albedo, otherwise the base, whose directions
+// have the pdf cos / pi. A model defines, for `out` and `in` on the same side:
 //   Spectrum matte(out, in)          f of the base [1/sr]
-//   ScatterValue glossy(out, in)     f of the lobe and the density of its directions [1/sr]
+//   ScatterValue glossy(out, in)     f of the lobe and the pdf with which it samples `in` [1/sr]
 //   Spectrum matte_albedo(out), glossy_albedo(out)
-//   float matte_weight(out), glossy_weight(out)    their parts in the choice
+//   float matte_weight(out), glossy_weight(out)    unnormalized probabilities of choosing each
 template <class Model>
 class MatteGlossyScatter : public JointScatter<Model> {
  public:
@@ -38,7 +38,7 @@ class MatteGlossyScatter : public JointScatter<Model> {
     const float glossy = model().glossy_weight(out);
     return glossy / (glossy + model().matte_weight(out));
   }
-  /// Of both, where the lobe is chosen with probability `probability`.
+  /// Value and pdf of base and lobe together, where the lobe is chosen with probability `probability`.
   template <class Matte, class Glossy>
   static ScatterValue combine(const Vector3& in, float probability, Lobes which, const Matte& matte, const Glossy& glossy) {
     ScatterValue r;
@@ -63,7 +63,8 @@ class MatteGlossyScatter : public JointScatter<Model> {
   const Model& model() const { return static_cast<const Model&>(*this); }
 };
 
-/// One whose lobe is drawn by its half vector: the model states sample_half(u) besides, a half vector with z > 0.
+/// A MatteGlossyScatter whose lobe is sampled by the half-vector: the model also defines sample_half(u), a half-vector with z >
+/// 0.
 template <class Model>
 class HalfVectorScatter : public MatteGlossyScatter<Model> {
  public:

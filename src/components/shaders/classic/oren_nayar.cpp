@@ -1,4 +1,4 @@
-// OrenNayar: a rough matt surface (plaster, clay, the moon), which looks flatter than a Lambertian one and loses no energy.
+// OrenNayar: a rough diffuse surface (plaster, clay, the moon), which looks flatter than a Lambertian one and loses no energy.
 
 #include "components/shaders/reflectance.h"
 #include "components/shaders/scalar_map.h"
@@ -9,19 +9,19 @@
 namespace etendue {
 namespace {
 
-// The model's value and albedo are those of eon.h; here is how it is sampled.
+// The model's value and albedo are those of eon.h; this file adds the sampling.
 //
-// Clipped linearly transformed cosines (Portsmouth, Kutz & Hill 2025), mixed with the uniform density 1/(2 pi). A
-// direction h of a cosine lobe is taken by
+// Directions are sampled by clipped linearly transformed cosines (Portsmouth, Kutz & Hill 2025), mixed with the uniform pdf
+// 1/(2 pi). A direction h of a cosine lobe is transformed by
 //        | a 0 b |
 //   M =  | 0 c 0 |   (x towards the azimuth of `out`)
 //        | d 0 1 |
-// to the direction of M h. Those with d h.x + h.z < 0 would go below the surface: h is drawn from the rest of the lobe alone.
-// In the projection to the unit disc that rest lies, for d <= 0, between x = -sqrt(1 - y^2) and x = k sqrt(1 - y^2) with
-// k = 1 / sqrt(1 + d^2), of area pi (1 + k) / 2: points uniform in the disc are squeezed along x into it. The density is
+// to the direction of M h. Directions with d h.x + h.z < 0 would go below the surface: h is sampled from the rest of the lobe
+// alone. Projected to the unit disc that rest lies, for d <= 0, between x = -sqrt(1 - y^2) and x = k sqrt(1 - y^2) with k = 1 /
+// sqrt(1 + d^2), and has the area pi (1 + k) / 2: points uniform in the disc are compressed along x into it. The pdf is
 //   p(in) = h.z / (pi (1 + k) / 2) |M h|^3 / det M   [1/sr].
-// a, b, c, d and the share of the uniform density are the paper's fits; at mu = 1 the fit of d is above zero by
-// its error, 0.003, where its limit is 0.
+// a, b, c, d and the share of the uniform pdf are the paper's fits. At mu = 1 the fit of d exceeds its limit 0 by its error,
+// 0.003, so d is clamped to 0.
 struct ClippedCosine {
   ClippedCosine(float mu, float r) {
     a = 1 + r * (0.303392f + (-0.518982f + 0.111709f * mu) * mu + (-0.276266f + 0.335918f * mu) * r);
@@ -114,7 +114,7 @@ class OrenNayar final : public Shader {
     if (reflectance.black()) return nullptr;
     return arena.make<OrenNayarScatter>(p, reflectance, scalar_at(*roughness, p));
   }
-  /// Of the fit of the model's authors.
+  /// Error of the fit of the albedo by the model's authors.
   float albedo_error() const override { return 0.01f; }
   Lobes possible_lobes() const override { return diffuse_reflection; }
   bool lossless() const override {

@@ -1,4 +1,4 @@
-// PassThrough: a boundary that is not there for light.
+// PassThrough: an index-matched boundary, which light passes by null scattering.
 
 #include "etendue/scatter_model.h"
 
@@ -7,8 +7,8 @@ namespace {
 
 class PassThroughScatter final : public ScatterModel<PassThroughScatter> {
  public:
-  // Around the geometric normal: interpolated normals play no part, and where they disagree with the surface nothing may
-  // be lost.
+  // With the frame of the geometric normal: null scattering does not depend on shading normals, and no light may be lost where
+  // these disagree with the surface.
   explicit PassThroughScatter(const SurfacePoint& p) : ScatterModel(p, Frame(p.normal), null_scattering) {
     has_choice_ = false;
   }

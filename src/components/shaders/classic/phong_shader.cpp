@@ -6,18 +6,18 @@
 namespace etendue {
 namespace {
 
-// f = kd / pi + ks (n + 2) / (2 pi) cos(alpha)^n  [1/sr]   (Lafortune & Willems 1994, eq. 6)
-// where alpha is the angle between `in` and the mirror direction of `out`, f = kd / pi where alpha > 90 degrees. The
-// lobe's albedo is ks at normal incidence and less elsewhere, so the whole albedo is at most kd + ks.
+// f = kd / pi + ks (n + 2) / (2 pi) cos(alpha)^n  [1/sr]   (Lafortune & Willems 1994, eq. 6) where alpha is the angle between
+// `in` and the mirror direction of `out`; f = kd / pi where alpha > 90 degrees. The lobe's albedo is ks at normal incidence and
+// less elsewhere, so the total albedo is at most kd + ks.
 //
-// Sampling: the lobe is chosen with probability proportional to an estimate of its albedo; the diffuse one by
-// density cos / pi, the glossy one by (n + 1) / (2 pi) cos(alpha)^n around the mirror direction. Directions of the latter
-// that fall under the surface are absorbed, so the density integrates to less than 1 at grazing angles.
+// Sampling: the lobe is chosen with probability proportional to an estimate of its albedo. Diffuse directions have the pdf cos
+// / pi, glossy ones (n + 1) / (2 pi) cos(alpha)^n around the mirror direction. Glossy directions below the surface are
+// absorbed, so the pdf integrates to less than 1 at grazing angles.
 //
-// The glossy lobe's albedo over ks is a(c) = (n + 2) / (n + 1) E[max(cos(in), 0)] under its own sampling density, c being the
-// cosine of `out`. It is 1 at c = 1, and at c = 0 the mean of sin(alpha) max(cos(phi), 0), which gives
-// a0 = (n + 2) / (2 pi) B((n + 1) / 2, 3 / 2). a is convex between, so the straight line between the ends bounds it from above;
-// it is exact for n = 0 and in the limit of large n.
+// The glossy lobe's albedo over ks is a(c) = (n + 2) / (n + 1) E[max(cos(in), 0)] under its own sampling pdf, c being the
+// cosine of `out`. It is 1 at c = 1, and at c = 0 the mean of sin(alpha) max(cos(phi), 0), which gives a0 = (n + 2) / (2 pi)
+// B((n + 1) / 2, 3 / 2). a is convex between, so the straight line between the ends bounds it from above; it is exact for n = 0
+// and in the limit of large n.
 class PhongScatter final : public MatteGlossyScatter<PhongScatter> {
  public:
   PhongScatter(const SurfacePoint& p, Lobes lobes, Spectrum diffuse, Spectrum specular, float exponent, float grazing_albedo)
@@ -34,7 +34,7 @@ class PhongScatter final : public MatteGlossyScatter<PhongScatter> {
     const Vector3 r = mirror(out);
     float power = 0;
     if (choice < probability) {
-      // cos(alpha) = u^(1/(n+1)), found through t = 1 - cos(alpha), which stays exact for sharp lobes.
+      // cos(alpha) = u^(1/(n+1)), computed from t = 1 - cos(alpha), which stays precise for sharp lobes.
       const float t = -std::expm1(std::log(std::max(u.x, 1e-30f)) / (exponent_ + 1));
       const float sine = safe_sqrt(t * (2 - t)), phi = 2 * pi * u.y;
       const Frame around(Normal3{r});
@@ -110,7 +110,7 @@ class PhongShader final : public Shader {
     const Spectrum scale = Spectrum(1.0f) / max(diffuse + glossy, 1.0f);
     return arena.make<PhongScatter>(p, lobes, diffuse * scale, glossy * scale, exponent, grazing_albedo_);
   }
-  /// A straight line stands for a convex curve (PhongScatter).
+  /// The glossy albedo, a convex curve, is approximated by a straight line (see PhongScatter).
   float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override { return diffuse_reflection | glossy_reflection; }
 

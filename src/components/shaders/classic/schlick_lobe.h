@@ -1,5 +1,5 @@
 #pragma once
-// The distribution of slopes of Schlick 1994: its factors, exact sampling of them, and a bound of the albedo.
+// SchlickLobe: the microfacet lobe of Schlick 1994: its factors, their exact sampling, and an upper bound of the albedo.
 
 #include "components/shaders/half_vector.h"
 
@@ -11,20 +11,19 @@ namespace etendue {
 //   lobe    D = G(v) G(v') Z(t) A(w) / (4 pi v v')  [1/sr].
 // p = 1 is isotropic, A = 1; scratches along x spread the light across x.
 //
-// Sampling. Z t integrates over the hemisphere of h to pi: t^2 = a / (r - a r + a) for uniform a. The mean of A over
-// the azimuth is the complete elliptic integral 2 sqrt(p) K / pi = sqrt(p) / M(1, p), with M the arithmetic-geometric mean;
-// it is at most 1, as M(1, p) >= sqrt(p). The paper's own formula for the azimuth does not have the density A; the exact one is
-// Jacobi's amplitude, phi = am(K x) in each quarter turn x, by descending Landen steps (Abramowitz & Stegun 16.4).
-// So the density of h is Z A t / (pi mean) [1/sr], and the albedo of D is the mean of
-// mean G(v') u / (t (v (1 - r) + r)).
+// Sampling. The integral of Z t over the hemisphere of h is pi; t^2 = a / (r - a r + a) for uniform a. The mean of A over the
+// azimuth is the complete elliptic integral 2 sqrt(p) K / pi = sqrt(p) / M(1, p), with M the arithmetic-geometric mean; it is
+// at most 1, as M(1, p) >= sqrt(p). The paper's own formula for the azimuth does not sample A; the exact one is Jacobi's
+// amplitude, phi = am(K x) in each quarter turn x, by descending Landen steps (Abramowitz & Stegun 16.4). So the pdf of h is Z
+// A t / (pi mean) [1/sr], and the albedo of D is the mean over sampled h of mean G(v') u / (t (v (1 - r) + r)).
 //
-// Energy. That grows beyond 1 at grazing angles where r < 1/4: G hides less than a surface of such slopes does (Smith's
-// function for the same Z starts at v of about sqrt(r), G at about r). As G(v') <= 1, the albedo is at most
+// Energy. This albedo exceeds 1 at grazing angles where r < 1/4, because G masks less than a surface of such slopes does
+// (Smith's masking function for the same Z sets in at v of about sqrt(r), G at about r). As G(v') <= 1, the albedo is at most
 //   B(v) = (integral of Z A max(u, 0) / pi over h) / (v (1 - r) + r).
-// Isotropic, the integral is (v + sqrt(r + (1 - r) v^2)) / 2. Otherwise h and h turned by half a turn are equally likely; the
-// mean of their u is largest when all h are in the azimuth of `out`, which gives, with s the sine of `out`,
-// mean (v + sqrt(r) s / 2 atan(sqrt(r) s / v)). And A <= 1 / sqrt(p). So D / max(1, B(v), B(v')) is reciprocal, equal to D
-// where that is harmless, and never creates energy.
+// For p = 1 the integral is (v + sqrt(r + (1 - r) v^2)) / 2. Otherwise there are two bounds. h and h rotated by half a turn are
+// equally probable; the mean of their u is largest when all h are in the azimuth of `out`, so the integral is at most mean (v +
+// sqrt(r) s / 2 atan(sqrt(r) s / v)) with s the sine of `out`. And A <= 1 / sqrt(p), so it is at most the isotropic one over
+// sqrt(p). So D / max(1, B(v), B(v')) is reciprocal, equal to D where no bound exceeds 1, and never creates energy.
 class SchlickLobe {
  public:
   SchlickLobe() = default;
@@ -46,13 +45,13 @@ class SchlickLobe {
     azimuth(u.y, sine, cosine);
     return {s * cosine, s * sine, t};
   }
-  /// Of h [1/sr].
+  /// The pdf of h [1/sr].
   float pdf(const HalfVector& half) const { return factors(half) * half.h.z * inverse_pi / mean_; }
   /// D / max(1, B(v), B(v')) [1/sr].
   float value(float v_out, float v_in, const HalfVector& half) const {
     return factors(half) / (4 * pi * open(v_out) * open(v_in) * excess(v_out, v_in));
   }
-  /// The value times the cosine of `in` over the density, for `in` mirrored at a sampled h.
+  /// The sampling weight: the value times the cosine of `in` over the pdf, for `in` reflected about a sampled h.
   float weight(float v_out, float v_in, float u, float t) const {
     return mean_ * v_in * u / (t * open(v_out) * open(v_in) * excess(v_out, v_in));
   }

@@ -1,4 +1,4 @@
-// SchlickShader: one or two layers, each from a mirror through gloss to matt by its roughness.
+// SchlickShader: one or two layers, each from specular through glossy to diffuse by its roughness.
 
 #include "components/shaders/joint_scatter.h"
 #include "components/shaders/reflectance.h"
@@ -12,17 +12,18 @@ namespace {
 
 // Schlick 1994, An inexpensive BRDF model for physically-based rendering. A layer of roughness r reflects
 //   R = S(u) (d / pi + g D + s delta / v'),   S(u) = C + (1 - C)(1 - u)^5,
-// with g = 4 r (1 - r) of its light in the glossy lobe D of schlick_lobe.h and the rest in the Dirac lobe of a mirror
-// (s = 1 - g, for r < 1/2) or matt (d = 1 - g, otherwise). Since S <= 1, d + g + s = 1 and no lobe reflects
-// more than arrives, no layer does; all lobes are reciprocal.
+// where the fraction g = 4 r (1 - r) goes to the glossy lobe D of schlick_lobe.h and the rest to the delta lobe of a mirror (s
+// = 1 - g, for r < 1/2) or to a diffuse lobe (d = 1 - g, otherwise). Since S <= 1, d + g + s = 1 and no lobe has an albedo
+// above 1, no layer has; all lobes are reciprocal.
 //
-// Two changes for the sake of energy. The paper adds to G G' Z A the light that G and G' hide, (1 - G G') / (4 pi v v'): its
-// albedo grows without bound towards grazing angles (as 1 / (2 v)), so hidden light is absorbed here. And the second layer, in
-// the paper [1 - S(u)] S'(u) D': over a mirror-like first layer, light at grazing angles would be reflected wholly by the first
-// and almost wholly by a matt second one. Here the second is seen through
+// Two changes to the paper keep the albedo at most 1. First, the paper adds to G G' Z A the light that G and G' mask, (1 - G
+// G') / (4 pi v v'): the albedo of this term grows without bound towards grazing angles (as 1 / (2 v)), so masked light is
+// absorbed here. Second, the paper gives the lower layer the factor 1 - S(u), as [1 - S(u)] S'(u) D': over a specular first
+// layer, light at grazing angles would be reflected entirely by the first layer and almost entirely by a diffuse second one.
+// Here the second layer is seen through
 //   T(v) = (1 - C) (1 - (1 - m(v))^5),   m(v) = (sqrt(1 + v) - sqrt(1 - v)) / 2,
-// m(v) being the least u of any direction with `out`, so that S(u) <= 1 - T(v): the first layer's albedo is at most 1 - T(v),
-// the second's, with the factor min(T(v), T(v')), at most T(v). The factor never exceeds the paper's.
+// where m(v) is the least u that any direction has with `out`, so that S(u) <= 1 - T(v). The first layer's albedo is then at
+// most 1 - T(v), and that of the second, with the factor min(T(v), T(v')), at most T(v). The factor never exceeds the paper's.
 struct Layer {
   Layer() = default;
   Layer(Spectrum color, float roughness, float isotropy) : c(color) {
@@ -40,8 +41,8 @@ struct Layer {
   SchlickLobe lobe;
 };
 
-/// Means of the glossy weight and of the same times (1 - u)^5, for `out` in the azimuth of x and then of y, by the fourth root
-/// of r and the third root of p.
+/// Means of the glossy sampling weight, and of that weight times (1 - u)^5, for `out` in the azimuth of x and then of y;
+/// tabulated by the fourth root of r and the third root of p.
 using Table = AlbedoTable<4>;
 const Table& albedo_table() {
   const auto lobe = [](float roughness, float isotropy) {
@@ -121,7 +122,7 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
     if (which & specular_reflection) r.specular = mirrored(v).average();
     if (which & glossy_reflection) {
       r.glossy[0] = std::max(glossy_albedo(top_, out).average(), 1e-4f * top_.g);
-      // The floor keeps grazing directions, where little comes through, from being left out.
+      // The floor keeps the probability from vanishing at grazing angles, where the transmittance is small.
       if (base_.g > 0) r.glossy[1] = (max(through(v), 0.05f) * glossy_albedo(base_, out)).average();
     }
     if (which & diffuse_reflection) r.diffuse = std::max(diffuse_albedo(v).average(), 1e-4f);
@@ -129,7 +130,7 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
     return {r.specular * scale, {r.glossy[0] * scale, r.glossy[1] * scale}, r.diffuse * scale};
   }
 
-  /// T
+  /// T(v).
   Spectrum through(float v) const {
     const float least = 0.5f * (std::sqrt(1 + v) - safe_sqrt(1 - v));
     return (Spectrum(1.0f) - top_.c) * (1 - schlick_growth(least));
@@ -145,8 +146,8 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
     const float level = lerp(x2, mean[2], mean[0]), growth = lerp(x2, mean[3], mean[1]);
     return (layer.c * level + (Spectrum(1.0f) - layer.c) * growth) * layer.g;
   }
-  /// The means of (1 - u)^5 and, over 1 - C, of min(T(v), T(v')) under diffuse illumination are fits to their integrals,
-  /// within 1e-4 and 0.015.
+  /// Under diffuse illumination the means of (1 - u)^5, and of min(T(v), T(v')) over 1 - C, are fits to their integrals, within
+  /// 1e-4 and 0.015.
   Spectrum diffuse_albedo(float v) const {
     const float x = 1 - v, growth = x * (0.0044f + x * (-0.0020f + x * 0.0257f)), passed = 0.842f * (1 - x * x * x);
     return top_.fresnel(growth) * top_.d + (Spectrum(1.0f) - top_.c) * base_.fresnel(growth) * (passed * base_.d);
@@ -225,7 +226,7 @@ class SchlickShader final : public Shader {
     if (base_color) base = Layer(reflectance_at(*base_color, p, w), scalar_at(*base_roughness, p), p2);
     return arena.make<SchlickScatter>(p, frame, top, base, *table_);
   }
-  /// Of the table.
+  /// Interpolation error of the albedo table.
   float albedo_error() const override { return 0.05f; }
   Lobes possible_lobes() const override { return reflection_lobes; }
 

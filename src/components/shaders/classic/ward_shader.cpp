@@ -12,11 +12,12 @@ namespace {
 //   f = kd / pi + ks exp(-((H.x / ax)^2 + (H.y / ay)^2) / H.z^2) (H . H) / (pi ax ay H.z^4)   [1/sr],
 // which is reciprocal. With |H| = 2 u and H.z = v + v' = 2 u t the last fraction is 1 / (4 pi ax ay u^2 t^4).
 //
-// Sampling: the slopes of h have the Gaussian density exp(-(mx / ax)^2 - (my / ay)^2) / (pi ax ay), which is divided by t^3
-// per solid angle of h and by another 4 u per solid angle of `in`. So f v' / density = ks 2 v' / (v + v') <= 2 ks.
+// Sampling: the slopes of h have the Gaussian pdf exp(-(mx / ax)^2 - (my / ay)^2) / (pi ax ay). Divided by t^3 it is the pdf
+// per solid angle of h, divided by another 4 u that per solid angle of `in`. So f v' / pdf = ks 2 v' / (v + v') <= 2 ks.
 //
-// The glossy albedo is at most ks: with m the slopes, the weight is 2 - v (1 + m^2) / (v + out . m) where v' > 0, and the
-// mean over m and -m, which are equally likely, is at most 2 - (1 + m^2) <= 1 where both count and 1 where one does.
+// The glossy albedo is at most ks: with m the slopes, the sampling weight over ks is 2 - v (1 + m^2) / (v + out . m) where v' >
+// 0. m and -m are equally probable; the mean of their weights is at most 2 - (1 + m^2) <= 1 where v' > 0 for both, and at most
+// 1 where it is for one.
 struct Slopes {
   float ax, ay;
 
@@ -26,11 +27,12 @@ struct Slopes {
     sin_cos_turn(u.y, sine, cosine);
     return normalize(Vector3{ax * radius * cosine, ay * radius * sine, 1});
   }
-  /// Per unit of both slopes.
+  /// The pdf of the slopes, per unit of both.
   float pdf(const Vector3& h) const { return std::exp(-(square(h.x / ax) + square(h.y / ay)) / (h.z * h.z)) / (pi * ax * ay); }
 };
 
-/// The glossy albedo over ks by the cosine of `out` and the roots of the slopes' deviations along its azimuth and across it.
+/// The glossy albedo over ks, by the cosine of `out` and the square roots of the slopes' widths along its azimuth and across
+/// it.
 using Table = AlbedoTable<1>;
 const Table& albedo_table() {
   static const Table table(
@@ -57,7 +59,7 @@ class WardScatter final : public HalfVectorScatter<WardScatter> {
   ScatterValue glossy(const Vector3& out, const Vector3& in) const {
     const HalfVector half = half_vector(out, in);
     const float t = half.h.z, per_h = slopes_.pdf(half.h);
-    if (!(per_h > 0)) return {};  // where the exponential is 0, t^4 may be as well
+    if (!(per_h > 0)) return {};  // where the exponential underflows, t^4 may as well
     const float pdf = per_h / (4 * half.u * t * t * t);
     return {specular_ * (pdf / (half.u * t)), pdf};
   }
@@ -112,7 +114,7 @@ class WardShader final : public Shader {
     const Frame frame = slopes.ax == slopes.ay ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
     return arena.make<WardScatter>(p, frame, lobes, diffuse * scale, glossy * scale, slopes, *table_);
   }
-  /// Of the table.
+  /// Interpolation error of the albedo table.
   float albedo_error() const override { return 0.05f; }
   Lobes possible_lobes() const override { return diffuse_reflection | glossy_reflection; }
 

@@ -12,21 +12,23 @@
 namespace etendue {
 namespace {
 
-// With theta, phi of both directions around the fibre (x along it, phi from y to z) and h where the ray met it,
+// In the fibre's coordinates (x along the fibre; theta is the angle against the plane across the fibre, phi the azimuth from y
+// to z), and with h in [-1, 1] the offset across the fibre at which the ray hits it,
 //   f(out, in) |in.z| = sum over p of A_p(out) M_p(theta_out, theta_in) N_p(phi_in - phi_out)   [1/sr]
-// (Chiang et al. 2016), where M_p is a density of sin(theta) and N_p one of phi, so M_p N_p integrates to 1 over the
-// sphere, and f |cos| to the sum of the A_p. z is along the shading normal, by whose cosine the renderer multiplies: it is
-// divided by here. Hair scatters into the whole sphere; reflected is what leaves on the side it came from.
+// (Chiang et al. 2016), where M_p is a pdf of sin(theta) and N_p a pdf of phi, so M_p N_p integrates to 1 over the sphere, and
+// f |cos| to the sum of the A_p. z is along the shading normal: the renderer multiplies by |in.z|, so the value is divided by
+// it here. Hair scatters into the whole sphere; light that leaves on the side it came from counts as reflection.
 //
 // Sampling: a lobe is chosen in proportion to the mean of A_p over the wavelengths, and its M_p and N_p are sampled exactly.
-// What is left of the number that chose the lobe draws phi.
+// The random number that chose the lobe is rescaled and samples phi.
 //
-// Not reciprocal: the exchanged path meets the fibre where this one leaves it, at another h, and f |in.z| does not depend on
-// the ribbon's slope towards `in`. Seen from afar, averaged over h, it is but for the tilt. Importance is the adjoint.
+// f is not reciprocal: the reversed path hits the fibre where this one leaves it, at another h, and f |in.z| does not depend on
+// the angle between the ribbon's normal and `in`. Averaged over h, as seen from afar, f is reciprocal except for the tilt.
+// Importance is the adjoint.
 //
-// On a ribbon h goes from edge to edge, and from behind the other way around. On what encloses a volume, such as a tube, it is
-// the sine of the angle between the normal and `out` around the fibre: with e the direction of `out` across the fibre's
-// x, the normal z is h (e cross x) + sqrt(1 - h^2) e, so h = -e.y.
+// On a ribbon h runs from -1 at one edge to 1 at the other, with the sign flipped when seen from behind. On a closed object,
+// such as a tube, h is the sine of the angle between the normal and `out` in projection along the fibre: with e the normalized
+// projection of `out` onto the plane across x, the normal z is h (e cross x) + sqrt(1 - h^2) e, so h = -e.y.
 class HairScatter final : public JointScatter<HairScatter> {
  public:
   static constexpr Lobes all = glossy_reflection | glossy_transmission;
@@ -66,7 +68,7 @@ class HairScatter final : public JointScatter<HairScatter> {
     return true;
   }
 
-  // Exact: which side light leaves on depends on phi alone.
+  // Exact: the side on which light leaves depends on phi alone.
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
     const HairFibre::Section across = section(out);
     const float front_begins = out.z > 0 ? 0 : -pi;
@@ -80,7 +82,7 @@ class HairScatter final : public JointScatter<HairScatter> {
   }
 
  private:
-  /// A direction in the fibre's angles.
+  /// A direction by the fibre's angles theta and phi.
   struct Angles {
     explicit Angles(const Vector3& v)
         : sine(clamp(v.x, -1, 1)), cosine(std::sqrt(v.y * v.y + v.z * v.z)), phi(std::atan2(v.z, v.y)) {}
@@ -101,7 +103,7 @@ class HairScatter final : public JointScatter<HairScatter> {
     for (float& x : r) x /= std::max(sum, 1e-30f);
     return r;
   }
-  /// f |in.z| and its density.
+  /// f |in.z| and its pdf, both [1/sr].
   ScatterValue along_and_around(const Angles& from, const HairFibre::Section& across, const Vector3& in) const {
     const Angles to(in);
     const auto probability = probabilities(across);
@@ -121,10 +123,11 @@ class HairScatter final : public JointScatter<HairScatter> {
   Spectrum absorption_;
 };
 
-// The wall of a round fibre. The scattering at the point that is seen from outside stands for all that happens within the
-// fibre, and for that light comes from all sides: so it passes the wall on the far side from outside, and a path from the
-// camera passes it from inside. What the path meets from inside, or light that is to leave to the inside, scatters nothing.
-// Of light that arrives from outside the wall thus does both, scatter and let pass: the sum of the two is no fraction.
+// The wall of a closed fibre, such as a tube. The scattering by the whole fibre is evaluated at the point that the viewer sees
+// from outside, for light from all directions, including light that reaches this point through the fibre. So the far wall must
+// not block light: light that arrives from outside, and a camera path that arrives from inside, passes the wall by null
+// scattering of weight 1. Nothing is scattered towards a viewer inside. Light that arrives from outside is thus both scattered
+// and passed on in full, so the sum of the two is not a fraction.
 class WallScatter final : public ScatterCombination {
  public:
   static constexpr Lobes all = HairScatter::all | null_scattering;
@@ -223,7 +226,7 @@ class HairShader final : public Shader {
   /// Attenuation is taken for the middle of each lobe.
   float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override { return WallScatter::all; }
-  // Light that goes through a fibre is outside again: there is no inside to be in.
+  // Light that passes through a fibre is outside again: there is no interior for a path to enter.
   bool transmits() const override { return false; }
   bool reciprocal() const override { return false; }  // see HairScatter
 
@@ -243,8 +246,8 @@ class HairShader final : public Shader {
         return map(absorption->color(p, w, ColorUse::coefficient), [](float x) { return x > 0 ? std::min(x, 1e6f) : 0; });
     }
   }
-  // Per radius of human hair, eumelanin absorbs (0.419, 0.697, 1.37) of red, green and blue and pheomelanin (0.187, 0.4, 1.05)
-  // (d'Eon et al. 2011). That is, within 3 %, what the power laws of their spectra give at 645, 550 and 450 nm:
+  // Absorption per radius of human hair for red, green and blue: (0.419, 0.697, 1.37) by eumelanin and (0.187, 0.4, 1.05) by
+  // pheomelanin (d'Eon et al. 2011). Within 3 %, these are the values at 645, 550 and 450 nm of power laws of their spectra,
   // lambda^-3.33 and lambda^-4.75 (Donner & Jensen 2006, "A spectral BSSRDF for shading human skin").
   static Spectrum melanin(float black, float red, const Wavelengths& w) {
     Spectrum r;

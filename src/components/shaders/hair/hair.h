@@ -9,43 +9,44 @@
 
 namespace etendue {
 
-/// How a fibre scatters; the same for all points of it. Angles are against the plane across the fibre (theta) and around the
-/// fibre (phi).
+/// The scattering functions of a fibre with constant parameters. theta is the angle of a direction against the plane across the
+/// fibre, phi its azimuth around the fibre.
 class HairFibre {
  public:
-  /// Lobes by number p of segments within the fibre: reflected at the surface (R), through it (TT), reflected inside once
-  /// (TRT), and everything after that together, which leaves in all azimuths alike.
+  /// The lobes by the number p of path segments inside the fibre: reflected at the surface (R), transmitted (TT), internally
+  /// reflected once (TRT), and a residual lobe for all longer paths, which is uniform in azimuth.
   static constexpr int lobes = 4;
 
-  /// Roughnesses in [0, 1], along and around the fibre; tilt of the cuticle's scales [rad]; index over that outside.
+  /// `along` and `around`: the longitudinal and azimuthal roughness, in [0, 1]; `tilt` of the cuticle's scales [rad]; `eta`:
+  /// index of the fibre over that outside.
   HairFibre(float along, float around, float tilt, float eta);
 
-  /// What an infinitely thin ray at one place across the fibre meets.
+  /// Refraction and attenuation of rays at one offset across the fibre.
   struct Section {
-    float offset_angle;  ///< between the ray and the normal outside, in projection along the fibre [rad]
-    float offset_angle_inside;
+    float offset_angle;         ///< gamma: between the ray and the normal outside, in projection along the fibre [rad]
+    float offset_angle_inside;  ///< gamma': the same of the refracted ray
     std::array<Spectrum, lobes> attenuation;  ///< A_p; their sum is 1 without absorption
   };
   /// `sine` and `cosine` of theta of `out`; h in [-1, 1], the offset from the axis in radii; absorption per radius.
   Section section(float sine, float cosine, float h, Spectrum absorption) const;
 
-  /// M_p: density of sin(theta) of `in`, over [-1, 1]; so is M_p / (2 pi) one by solid angle, alike in all azimuths.
+  /// M_p: the pdf of sin(theta) of `in`, over [-1, 1]; with uniform azimuth, M_p / (2 pi) is a pdf per solid angle [1/sr].
   float longitudinal(int p, float sine_out, float cosine_out, float sine_in, float cosine_in) const;
-  /// Draws sin(theta) of `in` with that density.
+  /// Samples sin(theta) of `in` with the pdf M_p.
   float sample_longitudinal(int p, float sine_out, float cosine_out, Point2 u) const;
-  /// N_p: density of the azimuth of `in` less that of `out` [1/rad].
+  /// N_p: the pdf of the azimuth of `in` minus that of `out` [1/rad].
   float azimuthal(int p, const Section&, float difference) const;
   float sample_azimuthal(int p, const Section&, float u) const;
-  /// The integral of N_p over the half turn of differences that begins at `from`.
+  /// The integral of N_p over the differences from `from` to `from` + pi.
   float azimuthal_share(int p, const Section&, float from) const;
 
   /// The absorption per radius that gives dense hair a color (Chiang et al. 2016, eq. 9).
   Spectrum absorption_of(Spectrum color) const;
 
  private:
-  /// `out` as if the fibre were straightened by the tilt.
+  /// Rotates theta of `out` by the tilt of lobe p.
   void tilted(int p, float& sine, float& cosine) const;
-  /// The change of azimuth of a ray that is not scattered: Phi.
+  /// Phi: the change of azimuth of lobe p for a perfectly smooth fibre.
   static float turn(int p, const Section&);
 
   std::array<float, lobes> variance_, tilt_sine_, tilt_cosine_;  // of M_p

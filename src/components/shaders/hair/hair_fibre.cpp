@@ -16,15 +16,15 @@ float log_bessel_i0(float x) {
   return std::log(sum);
 }
 
-/// The integral of the logistic density of scale s up to x.
+/// The cumulative distribution of the logistic distribution of scale s.
 float logistic_integral(float x, float s) { return 1 / (1 + std::exp(-x / s)); }
 
 float wrapped(float angle) { return angle - 2 * pi * std::round(angle / (2 * pi)); }
 
 }  // namespace
 
-// The maps from roughness to variance and scale are fits that make equal steps look equal (eqs. 7 and 8). The residual lobe is
-// as wide as TRT. Roughness 0 would be a mirror; it counts as 0.05.
+// The maps from roughness to the variance of M_p and the scale of N_p are fits that make equal steps look equal (eqs. 7 and 8).
+// The residual lobe is as wide as TRT. Roughness 0 would be specular; roughness below 0.05 counts as 0.05.
 HairFibre::HairFibre(float along, float around, float tilt, float eta) : around_(clamp(around, 0.05f, 1)), eta_(eta) {
   const float b = clamp(along, 0.05f, 1), n = around_;
   const float v = square(0.726f * b + 0.812f * b * b + 3.7f * std::pow(b, 20.0f));
@@ -38,14 +38,14 @@ HairFibre::HairFibre(float along, float around, float tilt, float eta) : around_
   }
 }
 
-// Across the fibre a ray is refracted as in a disc of the index eta' = sqrt(eta^2 - sin(theta)^2) / cos(theta) (Bravais;
-// Marschner et al. 2003, appendix B). It travels 2 cos(gamma') / cos(theta') radii on each of its ways through. With
-// F the Fresnel reflectance and T the transmittance of a way,
+// In projection along the fibre a ray is refracted as in a disc of the index eta' = sqrt(eta^2 - sin(theta)^2) / cos(theta)
+// (Bravais; Marschner et al. 2003, appendix B). Each of its segments inside is 2 cos(gamma') / cos(theta') radii long. With F
+// the Fresnel reflectance and T the transmittance of one segment,
 //   A0 = F,   A1 = (1 - F)^2 T,   A2 = A1 F T,   A3 = A2 F T / (1 - F T)  (all the rest),
 // whose sum is F + (1 - F)^2 T / (1 - F T), 1 for T = 1.
 HairFibre::Section HairFibre::section(float sine, float cosine, float h, Spectrum absorption) const {
   Section s;
-  // eta cos(theta'); in a denser medium grazing rays would not enter, for which this bound stands.
+  // eta cos(theta'). In a denser medium grazing rays would be totally reflected and the root imaginary: hence the lower bound.
   const float inside = std::sqrt(std::max(eta_ * eta_ - sine * sine, 1e-6f));
   const float sine_offset = clamp(h * cosine / inside, -1, 1), cosine_offset = safe_sqrt(1 - sine_offset * sine_offset);
   s.offset_angle = safe_asin(h);
@@ -55,21 +55,22 @@ HairFibre::Section HairFibre::section(float sine, float cosine, float h, Spectru
   s.attenuation[0] = Spectrum(f);
   s.attenuation[1] = t * square(1 - f);
   s.attenuation[2] = s.attenuation[1] * t * f;
-  // F = 1 at the fibre's edge, where nothing gets in.
+  // F = 1 at the fibre's edge, where no light enters.
   s.attenuation[3] = f < 1 ? s.attenuation[2] * t * f / (Spectrum(1.0f) - t * f) : Spectrum();
   return s;
 }
 
-// For a beam that is tilted by different angles towards the root on its ways: -2 alpha for R, alpha for TT, 4 alpha for TRT.
+// The tilt alpha of the scales rotates each lobe towards the root by another angle: -2 alpha for R, alpha for TT, 4 alpha for
+// TRT.
 void HairFibre::tilted(int p, float& sine, float& cosine) const {
   const float s = tilt_sine_[size_t(p)], c = tilt_cosine_[size_t(p)], before = sine;
   sine = before * c + cosine * s;
   cosine = std::abs(cosine * c - before * s);
 }
 
-// A Gaussian on the sphere, seen along the fibre (d'Eon et al. 2011):
+// The longitudinal profile of a Gaussian on the sphere (d'Eon et al. 2011):
 //   M = exp(-sin_i sin_o / v) I0(cos_i cos_o / v) / (2 v sinh(1 / v)).
-// In logarithms, as both sinh and I0 overflow for narrow lobes; log(2 sinh(1/v)) = 1/v + log(1 - exp(-2/v)).
+// Computed in logarithms, as both sinh and I0 overflow for narrow lobes; log(2 sinh(1/v)) = 1/v + log(1 - exp(-2/v)).
 float HairFibre::longitudinal(int p, float sine_out, float cosine_out, float sine_in, float cosine_in) const {
   tilted(p, sine_out, cosine_out);
   const float v = variance_[size_t(p)], k = 1 / v;
@@ -77,8 +78,8 @@ float HairFibre::longitudinal(int p, float sine_out, float cosine_out, float sin
   return std::exp(log_m) * k;
 }
 
-// Exactly (d'Eon et al. 2013, "A fiber scattering model with non-separable lobes"): around the direction of mirror reflection,
-// the cosine c of the angle has the density exp(c / v) on [-1, 1].
+// Exact sampling (d'Eon et al. 2013, "A fiber scattering model with non-separable lobes"): the cosine c of the angle with the
+// specular direction has a pdf proportional to exp(c / v) on [-1, 1].
 float HairFibre::sample_longitudinal(int p, float sine_out, float cosine_out, Point2 u) const {
   tilted(p, sine_out, cosine_out);
   const float v = variance_[size_t(p)];
@@ -92,7 +93,7 @@ float HairFibre::turn(int p, const Section& s) {
   return 2 * float(p) * s.offset_angle_inside - 2 * s.offset_angle + float(p) * pi;
 }
 
-// A logistic distribution around the angle of a ray that is not scattered, cut off at +-pi.
+// A logistic distribution around Phi (see `turn`), truncated at +-pi.
 float HairFibre::azimuthal(int p, const Section& s, float difference) const {
   if (p == lobes - 1) return 0.5f * inverse_pi;
   const float e = std::exp(-std::abs(wrapped(difference - turn(p, s))) / scale_);
@@ -108,7 +109,7 @@ float HairFibre::sample_azimuthal(int p, const Section& s, float u) const {
 float HairFibre::azimuthal_share(int p, const Section& s, float from) const {
   if (p == lobes - 1) return 0.5f;
   const auto up_to = [this](float x) { return logistic_integral(x, scale_); };
-  const float a = wrapped(from - turn(p, s));  // from here half a turn on
+  const float a = wrapped(from - turn(p, s));  // the interval is [a, a + pi]
   const float sum = a <= 0 ? up_to(a + pi) - up_to(a) : up_to(pi) - up_to(a) + up_to(a - pi) - up_to(-pi);
   return sum / scale_norm_;
 }

@@ -15,11 +15,11 @@
 namespace etendue {
 namespace {
 
-/// What a boundary reflects at the path's wavelengths.
+/// The Fresnel reflectance of a conductor at the path's wavelengths.
 struct BoundaryReflectance {
-  Spectrum n, k;                        ///< the conductor's index over that of what is in front of it
-  const RgbReflectance* rgb = nullptr;  ///< not null: only that of three channels is known,
-  bool in_vacuum = true;                ///< and in front of it is nothing; otherwise n and k hold red's, green's and blue's
+  Spectrum n, k;                        ///< the conductor's index over that of the medium in front
+  const RgbReflectance* rgb = nullptr;  ///< not null: n and k are given for red, green and blue only
+  bool in_vacuum = true;                ///< of `rgb`: no medium in front; otherwise n and k hold red's, green's and blue's
   Wavelengths wavelengths{};
 
   Spectrum at(float cosine) const {
@@ -56,12 +56,12 @@ class PolishedConductor final : public ScatterModel<PolishedConductor> {
   Spectrum tint_;
 };
 
-// Light scattered once, f1 = F D(m) G2 / (4 |out.z in.z|)  [1/sr]  (Torrance & Sparrow 1967; Walter et al. 2007, eq. 20),
-// and more than once, f2 (see MultipleReflection), together f.
+// f is the sum of single scattering, f1 = F D(m) G2 / (4 |out.z in.z|)  [1/sr]  (Torrance & Sparrow 1967; Walter et al. 2007,
+// eq. 20), and multiple scattering, f2 (see MultipleReflection).
 //
-// The first is sampled by visible normals, the second by the cosine. A sample is of the second with the probability q
-// that is its share of the light, F taken for its mean. Reflections of the first kind that lead under the surface are
-// absorbed, so the density integrates to less than 1.
+// f1 is sampled by visible normals, f2 with the pdf cos / pi. f2 is chosen with a probability q that is its share of the
+// reflected light, computed with the mean of F. Samples of f1 that lead below the surface are absorbed, so the pdf integrates
+// to less than 1.
 class RoughConductor final : public ScatterModel<RoughConductor> {
  public:
   RoughConductor(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution,
@@ -129,7 +129,7 @@ class RoughConductor final : public ScatterModel<RoughConductor> {
   MicrofacetDistribution distribution_;
   MultipleReflection multiple_reflection_;
   BoundaryReflectance boundary_;
-  Spectrum tint_, multiple_;  ///< multiple_: light scattered more than once, over that for F = 1
+  Spectrum tint_, multiple_;  ///< multiple_: factor of multiple scattering relative to F = 1
   float multiple_over_single_ = 0;
 };
 
@@ -203,7 +203,7 @@ class Conductor final : public Shader {
     const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
     return arena.make<RoughConductor>(p, frame, d, boundary, tint, multiple_scattering);
   }
-  /// Rough, reflectance is taken at one angle for all facets, and a table is looked up.
+  /// A rough metal's reflectance is taken at one angle for all facets, and its energy loss from a table.
   float albedo_error() const override { return possible_lobes() == specular_reflection ? 0 : 0.1f; }
   Lobes possible_lobes() const override {
     const Color x = roughness->constant(), y = roughness_v ? roughness_v->constant() : x;

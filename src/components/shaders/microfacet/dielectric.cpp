@@ -11,11 +11,11 @@
 namespace etendue {
 namespace {
 
-// Of the light that arrives, the fraction F is reflected and 1 - F refracted. Which one a path follows is drawn with the
-// hero's F, so the hero's weight is 1. Reflection has the same direction at every wavelength: the others are kept, with
-// weight F_i / F_hero. Refraction has the hero's direction; where the index differs between the path's wavelengths the
-// sample is marked dispersive and the path drops the others, which makes up for them in the hero's own density (see
-// Wavelengths::drop_secondary). A wavelength that is totally reflected has F_i = 1 like any other.
+// The fraction F of the incident light is reflected and 1 - F refracted. Reflection is chosen with the hero's F, so the hero's
+// weight is 1. The reflected direction is the same at every wavelength: the others are kept, with weight F_i / F_hero. The
+// refracted direction is the hero's; where the index differs between the path's wavelengths the sample is marked dispersive and
+// the path drops the others, which is compensated in the hero's pdf (see Wavelengths::drop_secondary). A wavelength that is
+// totally reflected has F_i = 1 like any other.
 class DielectricScatter final : public ScatterModel<DielectricScatter> {
  public:
   /// eta: index inside over index outside.
@@ -48,7 +48,7 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
       s.lobe = specular_reflection;
       return true;
     }
-    if (hero >= 1) return false;  // only refraction was asked for, and there is none
+    if (hero >= 1) return false;  // only refraction was requested, and reflection is total
     const float eta = towards(out, eta_[0]);
     s.in = {-out.x / eta, -out.y / eta, out.z > 0 ? -cosine_behind : cosine_behind};
     s.value = varies_ ? Spectrum(1 - hero) : Spectrum(1.0f) - reflected;
@@ -165,11 +165,11 @@ class Dielectric final : public Shader {
     const bool varies = eta.minimum() != eta.maximum();
     return arena.make<DielectricScatter>(p, eta, varies, varies && !w.single(), tint);
   }
-  /// Rough, tables are looked up; of facets that are not alike in all directions, in the mean of two.
+  /// A rough boundary uses tables, an anisotropic one the mean of two of their values.
   float albedo_error() const override { return !(lobes_ & glossy_lobes) ? 0 : roughness_v ? 0.15f : 0.05f; }
   Lobes possible_lobes() const override { return lobes_; }
   Spectrum interior_index(const Wavelengths& w) const override { return ior->evaluate(w, ColorUse::coefficient); }
-  /// Rough, it loses up to a hundredth at some angles: tables are as exact as that.
+  /// A rough boundary loses up to a hundredth at some angles, the error of its tables.
   bool lossless() const override { return !(possible_lobes() & glossy_lobes) && !tinted_; }
 
   Color ior = flat_spectrum(1.5f), exterior;
@@ -190,7 +190,7 @@ class Dielectric final : public Shader {
     }
   }
 
-  // What its maps allow, which is asked at every vertex and every boundary of a path.
+  // Derived from the maps once, as possible_lobes() is called at every vertex and every boundary of a path.
   Lobes lobes_ = specular_reflection | specular_transmission;
   bool tinted_ = false;
 };

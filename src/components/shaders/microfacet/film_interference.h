@@ -7,30 +7,30 @@
 
 namespace etendue {
 
-/// What a boundary coated with one film does with unpolarized light: the fraction it reflects, and the fraction that gets
-/// through to the other side (into a conductor: what is absorbed there).
+/// Reflectance and transmittance of a boundary coated with one film, for unpolarized light. What a conductor transmits is
+/// absorbed in it.
 struct FilmFractions {
   float reflected = 0, transmitted = 0;
 };
 
-// Light that is reflected once at the film's front and any number of times within it adds up in amplitude. With r01 and r12
-// Fresnel's amplitudes at both faces, and 2 beta = 4 pi n1 d cos(theta1) / lambda the phase by which each round trip lags,
+// Light reflected at the film's front and light reflected any number of times inside it add up in amplitude. With r01 and r12
+// Fresnel's amplitude coefficients at both faces, and 2 beta = 4 pi n1 d cos(theta1) / lambda the phase lag of each round trip,
 //     r = (r01 + r12 e^(2 i beta)) / (1 + r01 r12 e^(2 i beta)),   t = t01 t12 e^(i beta) / (1 + r01 r12 e^(2 i beta))
-// (eqs. 55 to 57; Airy's sum), for each polarization. The fractions are R = |r|^2 and, with the ratio of what a unit of
-// amplitude carries across the face, T = |t|^2 Re(n2 cos2) / (n0 cos0) for s, |t|^2 Re(n2* cos2) / (n0 cos0) for p.
-// Cosines follow from Snell's law for complex numbers, so that total reflection and light that tunnels through a film which
-// it could not travel in come out of the same formulas. Times go as e^(-i w t): a conductor's index is n + i k, and waves die
-// away where the imaginary part of n cos is positive.
+// (eqs. 55 to 57; Airy's sum), for each polarization. The reflectance is R = |r|^2. The transmittance contains the ratio of the
+// power that a unit of amplitude carries across the face: T = |t|^2 Re(n2 cos2) / (n0 cos0) for s, |t|^2 Re(n2* cos2) / (n0
+// cos0) for p. Cosines follow from Snell's law for complex numbers, so the same formulas cover total reflection, and light that
+// tunnels through a film in which it cannot propagate (frustrated total reflection). The time dependence is e^(-i w t): a
+// conductor's index is n + i k, and waves decay where the imaginary part of n cos is positive.
 namespace film {
 
 using Complex = std::complex<float>;
 
-/// Without the library's care for infinities, which costs more than the rest.
+/// The product without std::complex's handling of infinities, which costs more than the rest.
 inline Complex times(Complex a, Complex b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 inline Complex over(Complex a, Complex b) { return times(a, std::conj(b)) / std::norm(b); }
-/// The root with Im >= 0, and of two real ones the positive one.
+/// The square root with Im >= 0; if it is real, the positive one.
 inline Complex root(Complex z) {
   const float m = std::sqrt(std::norm(z)), a = z.real();
   if (!(m > 0)) return 0;
@@ -44,13 +44,13 @@ inline Complex root(Complex z) {
 
 }  // namespace film
 
-/// `cosine` > 0 of the angle of incidence in the medium of index n0, a film of index n1 and thickness d, in wavelengths, and a
-/// base of index n2, complex when it conducts.
+/// `cosine` > 0 is that of the angle of incidence in the medium of index n0. The film has index n1 and thickness d, in
+/// wavelengths in vacuum; the base has index n2, complex if it is a conductor.
 inline FilmFractions film_fractions(float cosine, float n0, float n1, std::complex<float> n2, float d) {
   using namespace film;
   const float c0 = clamp(cosine, 1e-4f, 1), a2 = square(n0) * (1 - c0) * (1 + c0);  // (n0 sin0)^2
-  // q = n cos, the part of the wave's number across the faces: q^2 = n^2 - (n0 sin0)^2.
-  // Where light would just creep along the film, r01 = -r12 = 1 and all sums are 0 / 0: it is kept a little beside that.
+  // q = n cos, the relative wave number perpendicular to the faces: q^2 = n^2 - (n0 sin0)^2. At the film's critical angle,
+  // where light would travel along the film, r01 = -r12 = 1 and all sums are 0 / 0: |q1^2| is kept slightly above 0.
   const float q0 = n0 * c0, e1 = square(n1), e1_a2 = std::copysign(std::max(std::abs(e1 - a2), 1e-6f * e1), e1 - a2);
   const Complex q1 = e1_a2 >= 0 ? Complex(std::sqrt(e1_a2), 0) : Complex(0, std::sqrt(-e1_a2));
   const Complex e2 = times(n2, n2), q2 = root(e2 - a2);
@@ -60,12 +60,12 @@ inline FilmFractions film_fractions(float cosine, float n0, float n1, std::compl
   const Complex lag = decay * Complex(std::cos(angle), std::sin(angle));
 
   FilmFractions sum;
-  // Amplitudes by admittances y: q for s, q / n^2 for p.
+  // Amplitude coefficients from admittances y: q for s, q / n^2 for p.
   const auto add = [&](float y0, Complex y1, Complex y2) {
     const Complex r01 = over(y0 - y1, y0 + y1), r12 = over(y1 - y2, y1 + y2);
     const Complex bounce = times(r12, lag), denominator = 1.0f + times(r01, bounce);
     const float r = std::norm(over(r01 + bounce, denominator));
-    // What goes through both faces, in terms of the same amplitudes: t = 2 y / (y + y').
+    // Squared transmission coefficients of both faces, for the same amplitudes: t = 2 y / (y + y').
     const float t01 = 4 * y0 * y0 / std::norm(y0 + y1), t12 = 4 * std::norm(y1) / std::norm(y1 + y2);
     sum.reflected += 0.5f * std::min(r, 1.0f);
     sum.transmitted += 0.5f * t01 * t12 * decay * y2.real() / (y0 * std::norm(denominator));

@@ -1,4 +1,4 @@
-// LossyPlastic: a diffuse body under a dielectric coat of facets, with the losses that a widely used model has.
+// LossyPlastic: a diffuse body under a dielectric microfacet coat, with the energy loss of Mitsuba 3's plastics.
 
 #include <memory>
 
@@ -15,19 +15,20 @@ namespace {
 // The model of the `roughplastic` and `plastic` of Mitsuba 3 (Jakob et al. 2022), for scenes that were made with it:
 //   f = ks F D(m) G1(out) G1(in) / (4 |out.z in.z|) + T(out) T(in) rho / (pi eta^2 (1 - rho' R))  [1/sr]
 // with rho' = rho if `nonlinear`, else 1. It differs from Plastic in three ways. Masking of the two directions is independent,
-// and Beckmann's is the rational fit of Walter et al. 2007, eq. 27. T(v), what the coat lets through, counts only what a single
-// facet refracts and none hides on the way in:
+// and Beckmann's is the rational fit of Walter et al. 2007, eq. 27. T(v), the coat's transmittance, counts only light that a
+// single facet refracts and that is not masked on the way in:
 //   T(v) = mean over the normals m seen from v of (1 - F(v.m)) G1(t),  t the refracted direction.
-// And R, what the coat throws back to the body, likewise counts what a single facet reflects. What meets more facets is lost:
-// with a white body under GGX 9 % at alpha 0.1, 41 % at 0.4. T is linear between 64 values at mu = i / 63 and R is 2 / 64 times
-// the sum over these of mu times the reflectance from inside, which is 1.6 % low; a smooth coat has neither, and loses nothing.
+// And R, the coat's reflectance from inside, likewise counts single reflections only. Light that hits more facets is lost: with
+// a white body under GGX 9 % at alpha 0.1, 41 % at 0.4. T is linear between 64 values at mu = i / 63 and R is 2 / 64 times the
+// sum over these of mu times the reflectance from inside, which is 1.6 % low. A smooth coat uses exact formulas for both, and
+// loses nothing.
 struct LossyCoat {
   static constexpr int count = 64;
 
   MicrofacetDistribution distribution;
-  float eta;  ///< of the coat over that in front
+  float eta;  ///< index of the coat over that in front
   float inside = 0, through_mean = 0;
-  std::array<float, count> through{}, reflected{};  ///< of a rough coat, by the cosine
+  std::array<float, count> through{}, reflected{};  ///< tables of a rough coat, by the cosine
 
   LossyCoat(const MicrofacetDistribution& d, float index) : distribution(d), eta(index) {
     if (d.smooth()) {
@@ -67,7 +68,8 @@ struct LossyCoat {
   }
 
  private:
-  /// What a single facet reflects, or refracts, of light along v > 0; by slopes as microfacet_quadrature.cpp has them.
+  /// The fraction of light from v (v.z > 0) that a single facet reflects, or refracts; integrated over slopes as in
+  /// microfacet_quadrature.cpp.
   double once(const albedo::Slopes& slopes, const Vector3& v, float index, bool refracted) const {
     const float alpha = distribution.alpha_x;
     double sum = 0, seen = 0;
@@ -82,7 +84,7 @@ struct LossyCoat {
       const Vector3 leaving = refracted ? refract(v, m, index, behind) : reflect(v, m);
       if (refracted ? f < 1 && leaving.z < 0 : leaving.z > 0) sum += weight * double((refracted ? 1 - f : f) * G1(leaving));
     }
-    return sum / seen;  // normals are drawn as they are seen, exactly, whatever the fit of G1(v)
+    return sum / seen;  // normalizes the visible normals exactly, without the fit of G1(v)
   }
 };
 
@@ -195,7 +197,7 @@ class LossyPlastic final : public Shader {
     return arena.make<LossyPlasticScatter>(p, *coat_, reflectance_at(*color, p, w), reflectance_at(*reflection_tint, p, w),
                                            nonlinear);
   }
-  /// Of the table.
+  /// Interpolation error of the albedo table.
   float albedo_error() const override { return 0.02f; }
   Lobes possible_lobes() const override {
     return Lobes(diffuse_reflection |

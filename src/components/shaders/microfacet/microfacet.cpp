@@ -40,9 +40,9 @@ float MicrofacetDistribution::beckmann_lambda(const Vector3& v) const {
   return 0.5f * std::exp(-a * a) * std::max(inverse_sqrt_pi / std::max(a, 1e-20f) - p, 0.0f);
 }
 
-// The facets of a surface of alpha 1, stretched from this one, are arranged like the normals of a hemisphere, and seen from
-// the stretched direction: reflecting that direction in visible normals of the hemisphere gives directions uniform on a cap
-// (Dupuy & Benyoub 2023, "Sampling visible GGX normals with spherical caps"). The half vector leads back.
+// Stretched to alpha 1, the surface has the normal distribution of a hemisphere, and is seen from the stretched direction.
+// Reflecting that direction about the visible normals of the hemisphere gives directions uniform on a spherical cap (Dupuy &
+// Benyoub 2023, "Sampling visible GGX normals with spherical caps"). The half-vector of such a direction is the visible normal.
 Vector3 MicrofacetDistribution::sample_visible_ggx(const Vector3& v, Point2 u) const {
   const Vector3 w = normalize(Vector3{alpha_x * v.x, alpha_y * v.y, v.z});
   const float z = (1 - u.x) * (1 + w.z) - w.z, r = safe_sqrt(1 - z * z);
@@ -51,13 +51,13 @@ Vector3 MicrofacetDistribution::sample_visible_ggx(const Vector3& v, Point2 u) c
   return normalize(Vector3{alpha_x * (r * cosine + w.x), alpha_y * (r * sine + w.y), std::max(z + w.z, 1e-7f)});
 }
 
-// After the same stretch, and a turn of v into the xz plane, slopes (x, y) of facets have the density exp(-x^2 - y^2) / pi,
-// and visible ones that times max(c - s x, 0) / norm, with c, s the cosine and sine of the angle to v (Heitz & d'Eon 2014; a
-// slope x leans away from v). y is normal; x has the cumulative function
+// After the same stretch, and a rotation of v into the xz plane, slopes (x, y) of facets have the pdf exp(-x^2 - y^2) / pi, and
+// visible slopes this times max(c - s x, 0) / norm, with c, s the cosine and sine of v's angle with the normal (Heitz & d'Eon
+// 2014; a slope x > 0 leans away from v). y is normally distributed; x has the cumulative distribution
 //   H(x) = c (1 + erf x) / 2 + s exp(-x^2) / (2 sqrt pi)   up to x = c / s, over H(c / s).
-// As in Jakob 2014, "An improved visible normal sampling routine for the Beckmann distribution", the unknown is
-// e = erf x: dH/de = (c - s x) / 2 falls towards 0, so H is concave and Newton's steps, begun below the root, stay below it and
-// grow; what starts above lands below after one.
+// As in Jakob 2014, "An improved visible normal sampling routine for the Beckmann distribution", the unknown is e = erf x:
+// dH/de = (c - s x) / 2 falls towards 0, so H is concave, and Newton iterates that start below the root stay below it and
+// increase; one that starts above is below after one step.
 Vector3 MicrofacetDistribution::sample_visible_beckmann(const Vector3& v, Point2 u) const {
   const Vector3 w = normalize(Vector3{alpha_x * v.x, alpha_y * v.y, v.z});
   const float c = w.z, s = std::sqrt(w.x * w.x + w.y * w.y);
@@ -72,7 +72,7 @@ Vector3 MicrofacetDistribution::sample_visible_beckmann(const Vector3& v, Point2
       return 0.5f * (c * (1 + erf_x) + s * inverse_sqrt_pi * std::exp(-slope * slope));
     };
     const float wanted = u.x * cumulative(highest, std::min(end, inverse_erf(highest)));
-    // A guess, exact at both ends of u.
+    // Initial guess, exact for u = 0 and u = 1.
     float e = clamp(-1 + (1 + highest) * (c * u.x + s * (1 - std::sqrt(1 - u.x))) / (c + s), -almost, highest);
     x = inverse_erf(e);
     for (int i = 0; i < 12; ++i) {
@@ -87,7 +87,7 @@ Vector3 MicrofacetDistribution::sample_visible_beckmann(const Vector3& v, Point2
     }
     x = std::min(x, end);
   }
-  // Turned back and stretched; the normal is along (-slope, 1).
+  // Rotated back and stretched; the normal is along (-slope, 1).
   const float cosine = s > 0 ? w.x / s : 1, sine = s > 0 ? w.y / s : 0;
   return normalize(Vector3{-alpha_x * (cosine * x - sine * across), -alpha_y * (sine * x + cosine * across), 1});
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Microfacet surfaces: distributions of normals, Smith's masking, sampling of visible normals, half vectors, and what
-// light scattered more than once adds.
+// Microfacet surfaces: distributions of normals, Smith's masking, sampling of visible normals, half vectors, and energy
+// compensation for multiple scattering.
 //
 // All functions are local: z is along the mean normal. Directions `out` and `in` point away from the surface and may lie on
 // either side; micronormals m have m.z > 0. Walter et al. 2007, "Microfacet models for refraction through rough surfaces";
@@ -13,20 +13,20 @@ namespace etendue {
 
 struct MicrofacetDistribution {
   enum Kind { ggx, beckmann };
-  /// A surface whose alphas are both below this is taken for smooth: the lobe is narrower than any pixel or lamp.
+  /// A surface whose alphas are both at most this is treated as smooth: the lobe is narrower than any pixel or light source.
   static constexpr float smooth_below = 1e-3f;
 
-  /// How high facets lie that hide light on its way in, and on its way out. On one side of the surface the same heights hide
-  /// both ways; through it neither the top nor the bottom is likelier than the other to hide. Other programs take the two for
-  /// independent everywhere, or for correlated everywhere: at a slant that is up to a tenth of what is reflected.
+  /// How masking and shadowing are correlated by the heights of facets. by_side: by the same heights in reflection
+  /// (correlated), and independent in transmission. Other renderers take the two for independent everywhere, or for correlated
+  /// everywhere: at oblique angles this changes up to a tenth of the reflected light.
   enum class Heights : std::uint8_t { by_side, independent, correlated };
 
   Kind kind = ggx;
   Heights heights = Heights::by_side;
-  float alpha_x = 1, alpha_y = 1;  ///< root of twice the mean square slope along x and y (Beckmann); GGX has the same scale
+  float alpha_x = 1, alpha_y = 1;  ///< root of twice the mean square slope along x and y (Beckmann); the same scale for GGX
 
   MicrofacetDistribution() = default;
-  /// Roughness is alpha. What is no number, or outside [smooth_below, 1], becomes the nearest end.
+  /// Roughness is alpha, clamped to [smooth_below, 1]; not-a-number becomes smooth_below.
   MicrofacetDistribution(Kind k, float roughness_x, float roughness_v)
       : kind(k), alpha_x(valid(roughness_x)), alpha_y(valid(roughness_v)) {}
   MicrofacetDistribution(Kind k, float roughness) : MicrofacetDistribution(k, roughness, roughness) {}
@@ -34,7 +34,8 @@ struct MicrofacetDistribution {
   bool smooth() const { return std::max(alpha_x, alpha_y) <= smooth_below; }
   bool isotropic() const { return alpha_x == alpha_y; }
 
-  /// Area of micronormals around m, per area of the surface and solid angle [1/sr]: the integral of D(m) m.z is 1.
+  /// The distribution of normals: area of facets with normals around m, per area of the surface and solid angle [1/sr]. The
+  /// integral of D(m) m.z is 1.
   float D(const Vector3& m) const {
     if (!(m.z > 0)) return 0;
     const float x = m.x / alpha_x, y = m.y / alpha_y, z2 = m.z * m.z, front = inverse_pi / (alpha_x * alpha_y);
@@ -42,14 +43,14 @@ struct MicrofacetDistribution {
     return front * std::exp(-(x * x + y * y) / z2) / (z2 * z2);
   }
 
-  /// Smith's auxiliary function: the area of hidden front-facing facets over that of visible ones, seen from v.
+  /// Smith's auxiliary function: the area of masked front-facing facets over that of visible ones, seen from v.
   float lambda(const Vector3& v) const { return kind == ggx ? 0.5f * (stretched(v) / std::abs(v.z) - 1) : beckmann_lambda(v); }
 
-  /// The fraction of facets of normal m that is seen from v (it does not depend on m, but for facing v).
+  /// Masking: the fraction of facets of normal m that is visible from v (independent of m, except that m must face v).
   float G1(const Vector3& v, const Vector3& m) const { return dot(v, m) * v.z > 0 ? 1 / (1 + lambda(v)) : 0; }
 
-  /// The fraction seen from both directions on the same side, heights correlated (Heitz 2014, eq. 99) unless it is said
-  /// otherwise.
+  /// Masking-shadowing in reflection: the fraction visible from both directions, on the same side. Heights are correlated
+  /// (Heitz 2014, eq. 99) unless `heights` says independent.
   float G2(const Vector3& out, const Vector3& in) const {
     return heights == Heights::independent ? independent_G2(out, in) : correlated_G2(out, in);
   }
@@ -59,28 +60,28 @@ struct MicrofacetDistribution {
       return 0.5f / (std::abs(out.z) * stretched(in) + std::abs(in.z) * stretched(out));
     return G2(out, in) / (4 * std::abs(out.z * in.z));
   }
-  /// The fraction seen from directions on opposite sides, heights independent (Walter et al. 2007, eq. 23) unless it is said
-  /// otherwise.
+  /// Masking-shadowing in transmission, for directions on opposite sides. Heights are independent (Walter et al. 2007, eq. 23)
+  /// unless `heights` says correlated.
   float G2_through(const Vector3& out, const Vector3& in) const {
     return heights == Heights::correlated ? correlated_G2(out, in) : independent_G2(out, in);
   }
 
-  /// Density [1/sr] of sample_visible: of the facets seen from `out`, the share of area across `out` with normals around m:
-  /// G1(out) |out . m| D(m) / |out.z| (Heitz 2014, eq. 16).
+  /// The pdf [1/sr] of sample_visible, the distribution of visible normals: of the projected area visible from `out`, the share
+  /// with normals around m: G1(out) |out . m| D(m) / |out.z| (Heitz 2014, eq. 16).
   float visible_pdf(const Vector3& out, const Vector3& m) const {
     const float cosine = out.z > 0 ? dot(out, m) : -dot(out, m);
     if (!(cosine > 0)) return 0;
     if (kind == ggx) return 2 * cosine * D(m) / (std::abs(out.z) + stretched(out));
     return cosine * D(m) / (std::abs(out.z) * (1 + beckmann_lambda(out)));
   }
-  /// A normal among those seen from `out`.
+  /// Samples a visible normal.
   Vector3 sample_visible(const Vector3& out, Point2 u) const {
     const bool above = out.z > 0;
-    const Vector3 v = above ? out : -out;  // normals seen from below are those seen from the opposite direction
+    const Vector3 v = above ? out : -out;  // normals visible from below are those visible from the opposite direction
     return kind == ggx ? sample_visible_ggx(v, u) : sample_visible_beckmann(v, u);
   }
 
-  /// A typical |v . m| of facets seen from v, fitted: for estimates of what they reflect.
+  /// A typical |v . m| of the facets visible from v, by a fit: for estimates of their reflectance.
   float typical_cosine(const Vector3& v) const {
     const float slope2 = (kind == ggx ? 2.0f : 0.75f) * (square(alpha_x * v.x) + square(alpha_y * v.y));
     return std::sqrt((v.z * v.z + slope2) / (1 + slope2));
@@ -90,7 +91,7 @@ struct MicrofacetDistribution {
   float correlated_G2(const Vector3& out, const Vector3& in) const { return 1 / (1 + lambda(out) + lambda(in)); }
   float independent_G2(const Vector3& out, const Vector3& in) const { return 1 / ((1 + lambda(out)) * (1 + lambda(in))); }
   static float valid(float roughness) { return roughness > smooth_below ? std::min(roughness, 1.0f) : smooth_below; }
-  /// Length of v after the stretch that makes the surface one of alpha 1.
+  /// Length of v after the surface is stretched to alpha 1.
   float stretched(const Vector3& v) const { return std::sqrt(square(alpha_x * v.x) + square(alpha_y * v.y) + v.z * v.z); }
   float beckmann_lambda(const Vector3& v) const;
   Vector3 sample_visible_ggx(const Vector3& v, Point2 u) const;
@@ -106,7 +107,7 @@ inline Vector3 reflection_half_vector(const Vector3& out, const Vector3& in) {
 }
 /// `out` reflected by a facet of normal m.
 inline Vector3 reflect(const Vector3& out, const Vector3& m) { return 2 * dot(out, m) * m - out; }
-/// Solid angle of normals over that of reflected directions (Walter et al. 2007, eq. 14), from out . m.
+/// Jacobian of reflection: solid angle of normals over that of reflected directions (Walter et al. 2007, eq. 14), from out . m.
 inline float reflection_jacobian(float out_m) { return 1 / (4 * std::abs(out_m)); }
 
 /// The micronormal (m.z > 0) that refracts `out` into `in`, on opposite sides; eta: index on the side of `in` over that on
@@ -122,17 +123,18 @@ inline Vector3 refract(const Vector3& out, const Vector3& m, float eta, float co
   const float out_m = dot(out, m);
   return (-1 / eta) * out + (out_m / eta - std::copysign(cosine_behind, out_m)) * m;
 }
-/// Solid angle of normals over that of refracted directions (Walter et al. 2007, eq. 17), from out . m and in . m.
+/// Jacobian of refraction: solid angle of normals over that of refracted directions (Walter et al. 2007, eq. 17), from out . m
+/// and in . m.
 inline float refraction_jacobian(float out_m, float in_m, float eta) {
   return eta * eta * std::abs(in_m) / square(out_m + eta * in_m);
 }
 
 // ---- light scattered more than once -----------------------------------------------------------------------------------
 
-/// What single scattering loses of light reflected by a surface of F = 1, given back as a lobe of its own (Kulla & Conty
-/// 2017, "Revisiting physically based shading at Imageworks"): with E the albedo of single scattering and Em its mean under
-/// diffuse light, f = (1 - E(out)) (1 - E(in)) / (pi (1 - Em)) is reciprocal, and has the albedo 1 - E(out).
-/// E comes from a table, computed when first needed.
+/// Energy compensation for reflection: the light that single scattering loses at a surface of F = 1, returned as a lobe of its
+/// own (Kulla & Conty 2017, "Revisiting physically based shading at Imageworks"). With E the albedo of single scattering and Em
+/// its mean under diffuse light, f = (1 - E(out)) (1 - E(in)) / (pi (1 - Em)) is reciprocal, and has the albedo 1 - E(out). E
+/// comes from a table, computed at first use.
 class MultipleReflection {
  public:
   explicit MultipleReflection(const MicrofacetDistribution&);
@@ -146,9 +148,9 @@ class MultipleReflection {
   float value(float missing_out, float missing_in) const {
     return missing_out * missing_in * inverse_pi / std::max(mean_missing_, 1e-7f);
   }
-  /// What that is multiplied by when F is not 1, given F's mean under diffuse light (mean_fresnel_...): of light that is
-  /// reflected k times F^k is left, so F (1 - Em) goes to a second facet and of that the series
-  /// F Em (1 + F (1 - Em) + ...) leaves, over 1 - Em which all leaves for F = 1.
+  /// The factor of the lobe for F < 1, given F's mean under diffuse light (mean_fresnel_...). Each reflection multiplies by F:
+  /// F (1 - Em) of the light hits a second facet, and of that the series F Em (1 + F (1 - Em) + ...) leaves. This is divided by
+  /// 1 - Em, which leaves for F = 1.
   Spectrum factor(Spectrum mean_fresnel) const {
     return mean_fresnel * mean_fresnel * (1 - mean_missing_) / (Spectrum(1.0f) - mean_fresnel * mean_missing_);
   }
@@ -158,19 +160,21 @@ class MultipleReflection {
   float mean_missing_;
 };
 
-/// The same for a boundary between dielectrics, which loses nothing: with M the mean of 1 - E on the side of `in`,
-/// f = x (1 - E(out)) (1 - E(in)) / (pi M), where x is the share of what single scattering loses that leaves on that side.
+/// Energy compensation for a boundary between dielectrics, which absorbs nothing: with M the mean of 1 - E under diffuse light
+/// on the side of `in`, f = x (1 - E(out)) (1 - E(in)) / (pi M), where x is the share of the light lost by single scattering
+/// that leaves on that side.
 class MultipleRefraction {
  public:
-  /// eta: index below the surface (z < 0) over that above. Where it is not `known`, of the nearest that is.
+  /// eta: index below the surface (z < 0) over that above; if it is outside the tables (see `known`), the nearest one inside is
+  /// used.
   MultipleRefraction(const MicrofacetDistribution&, float eta);
 
-  /// Whether albedos are known for a distribution and an eta: the former isotropic, the latter from 1 / 4 to 4.
+  /// Whether albedos are tabulated for a distribution and an eta: isotropic distributions, and eta from 1 / 4 to 4.
   static bool known(const MicrofacetDistribution& d, float eta) { return d.isotropic() && eta >= 0.25f && eta <= 4; }
 
-  /// 1 - E(v), E being what is reflected and refracted together.
+  /// 1 - E(v), with E the albedo of single reflection and refraction together.
   float missing(const Vector3& v) const;
-  /// Of light that comes from the side of v and is lost, the share that leaves through the surface.
+  /// Of the light from the side of v that single scattering loses, the share that is transmitted.
   float transmitted_share(const Vector3& v) const { return transmitted_[v.z < 0]; }
   /// f [1/sr], in the convention of importance; reciprocal: f(out, in) / n_in^2 = f(in, out) / n_out^2.
   float value(const Vector3& out, const Vector3& in) const {
@@ -184,8 +188,8 @@ class MultipleRefraction {
   float eta_[2], mean_missing_[2], transmitted_[2];
 };
 
-/// What a rough dielectric coat lets through to what lies under it: 1 less the albedo of what it reflects at once. What is
-/// scattered more than once on the way is counted as let through. For isotropic distributions, and eta from 1 / 4 to 4.
+/// The transmittance of a rough dielectric coat: 1 minus the albedo of single reflection. Light scattered more than once by the
+/// coat counts as transmitted. For isotropic distributions, and eta from 1 / 4 to 4.
 class CoatTransmittance {
  public:
   /// eta: index of the coat over that in front.

@@ -1,10 +1,10 @@
 // MultipleReflection, MultipleRefraction and CoatTransmittance: albedos of single scattering, in tables computed at first use.
 //
-// Masking changes with v most where v is as flat as the facets are, Fresnel's F over all angles. The coordinate
-// t = (c (1 + b) / (c + b) + c) / 2 with b = a / 2, of the cosine c of v and the alpha a along v, gives half of the table to
-// each, and the flat directions the same place for all a; so tables are linear between few values. For isotropic surfaces
-// they are within 0.001 (F = 1) or 0.0035 (dielectrics; 0.005 from the denser side where the index is below 1.2), for others
-// within 0.01 of E. Each takes 3 to 30 ms to compute, those of dielectrics as much for each step of the index.
+// Masking changes most with v where v is as steep as the facets' slopes, Fresnel's F over all angles. The coordinate t = (c (1
+// + b) / (c + b) + c) / 2 with b = a / 2, of the cosine c of v and the alpha a along v, gives half of the table to each range,
+// and puts grazing directions at the same t for all a; so few entries are enough for linear interpolation. For isotropic
+// surfaces the tables are within 0.001 (F = 1) or 0.0035 (dielectrics; 0.005 from the denser side where the index is below
+// 1.2), for others within 0.01 of E. Each takes 3 to 30 ms to compute, those of dielectrics as much for each step of the index.
 
 #include <array>
 #include <memory>
@@ -22,7 +22,7 @@ using Kind = MicrofacetDistribution::Kind;
 
 // ---- coordinates of tables ---------------------------------------------------------------------------------------------
 
-/// Between which two of n values, at equal steps over [0, 1], a coordinate lies.
+/// The interval of a coordinate among n values at equal steps over [0, 1], and the fraction within it.
 struct Place {
   int index;
   float fraction;
@@ -42,7 +42,7 @@ float cosine_coordinate(float c, float a) {
   return 0.5f * (c * (1 + b) / (c + b) + c);
 }
 float cosine_at(int k, int n, float a) {
-  // c^2 + p c - 2 t b = 0
+  // Solves c^2 + p c - 2 t b = 0.
   const double t = double(k) / (n - 1), b = 0.5 * double(a), p = 1 + 2 * b - 2 * t, root = std::sqrt(p * p + 8 * t * b);
   return clamp(float(p > 0 ? 4 * t * b / (p + root) : (root - p) / 2), 1e-6f, 1);
 }
@@ -62,7 +62,7 @@ float diffuse_mean(const std::vector<Node>& rule, F&& f) {
 
 // ---- one boundary ------------------------------------------------------------------------------------------------------
 
-/// 1 - E of isotropic surfaces for one eta, by alpha and cosine.
+/// Table of 1 - E of isotropic surfaces for one eta, by alpha and cosine.
 template <Boundary boundary, int alphas, int cosines>
 class IsotropicPlane {
  public:
@@ -91,8 +91,8 @@ class IsotropicPlane {
   float missing_[alphas][cosines], mean_[alphas];
 };
 
-/// The same for two alphas and F = 1, by both, azimuth and cosine. The azimuth is that of v after the stretch by alpha, over a
-/// quarter turn: so it tells across which of the alphas v is flat, however much they differ.
+/// Table of 1 - E of anisotropic surfaces of F = 1, by both alphas, azimuth and cosine. The azimuth is that of v after the
+/// stretch by alpha, over a quarter turn: so it resolves which of the alphas matters along v, however much they differ.
 template <int alphas, int azimuths, int cosines>
 class AnisotropicPlane {
  public:
@@ -144,7 +144,7 @@ class AnisotropicPlane {
 
 // ---- all boundaries ----------------------------------------------------------------------------------------------------
 
-/// F = 1.
+/// Reflection at F = 1.
 struct ReflectionTable {
   explicit ReflectionTable(Kind kind) : isotropic(kind, 1, Slopes(kind, 48, 24, pi), gauss_legendre(32)) {}
   IsotropicPlane<Boundary::mirror, 40, 40> isotropic;
@@ -154,10 +154,10 @@ struct AnisotropicReflectionTable {
   AnisotropicPlane<14, 13, 18> anisotropic;
 };
 
-/// Isotropic dielectrics, by the index behind the surface over that in front: at equal steps of the root of 1 - 1 / n, n being
-/// the higher index over the lower, up to 4, and by side. For n near 1 that is in proportion to the cosine of the critical
-/// angle, which changes albedos most: seen from the denser side through facets of one direction, all else being flat, light is
-/// lost or not. So steps are small, and what lies between two of them is computed when it is first asked for.
+/// Tables of isotropic dielectrics, by the index behind the surface over that in front: at equal steps of sqrt(1 - 1 / n), n
+/// being the higher index over the lower, up to 4, and by side. For n near 1 this is proportional to the cosine of the critical
+/// angle, on which albedos depend most: seen from the denser side, light at facets of one orientation is abruptly either lost
+/// or not. So the steps are small, and the table of each is computed at first use.
 template <Boundary boundary>
 class EtaTable {
  public:
@@ -200,7 +200,7 @@ class EtaTable {
 using RefractionTable = EtaTable<Boundary::dielectric>;
 using CoatTable = EtaTable<Boundary::coat>;
 
-/// The table of a kind, made when first asked for.
+/// The table of a kind of distribution, computed at first use.
 template <class Table>
 const Table& table(Kind kind) {
   if (kind == Kind::ggx) {
@@ -213,7 +213,7 @@ const Table& table(Kind kind) {
 
 }  // namespace
 
-// Grooves more than 20 times as rough across as along make little difference to less, and the table is too coarse for them.
+// The ratio of the alphas is limited to 20: stronger anisotropy makes little difference, and the table is too coarse for it.
 MultipleReflection::MultipleReflection(const MicrofacetDistribution& made)
     : distribution_(made.kind, std::max(made.alpha_x, made.alpha_y / 20), std::max(made.alpha_y, made.alpha_x / 20)) {
   const MicrofacetDistribution& d = distribution_;
@@ -227,10 +227,10 @@ float MultipleReflection::missing(const Vector3& v) const {
                        : table<AnisotropicReflectionTable>(d.kind).anisotropic.missing(d, v);
 }
 
-// Seen from side a the share x_a of what is lost goes through and 1 - x_a back. Across the boundary, where n^2 goes with
-// solid angle, f is reciprocal if x_a n_a^2 Ma = x_b n_b^2 Mb with the means M of what is missing. (1 - F) n^2, with the mean F
-// of a smooth boundary, is the same on both sides; so x_a = (1 - F_a) min(1, Mb / Ma) is such a share, and that of a smooth
-// boundary where as much is missing on both sides.
+// Of the energy that single scattering misses for light from side a, the share x_a is transmitted and 1 - x_a reflected. f is
+// reciprocal across the boundary (up to n^2, as in MultipleRefraction::value) if x_a n_a^2 Ma = x_b n_b^2 Mb with the means M
+// of the missing energy. With the mean F of a smooth boundary, (1 - F) n^2 is the same on both sides; so x_a = (1 - F_a) min(1,
+// Mb / Ma) fulfils this, and equals the transmittance of a smooth boundary where both sides miss the same energy.
 MultipleRefraction::MultipleRefraction(const MicrofacetDistribution& d, float eta) : distribution_(d), eta_{eta, 1 / eta} {
   const RefractionTable& albedos = table<RefractionTable>(d.kind);
   for (const int side : {0, 1}) mean_missing_[side] = albedos.mean(eta_[side], d);

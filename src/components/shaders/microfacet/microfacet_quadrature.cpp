@@ -1,14 +1,15 @@
 // The integral behind the tables of microfacet_energy.cpp.
 //
-// With slopes (x, y) of facets scaled by alpha to their common distribution P(r) of lengths, the albedo seen from v is
+// Divided by alpha, the slopes (x, y) of facets have lengths r of a common distribution, with P(> r) the probability of a
+// greater length. The albedo seen from v is
 //   E(v) = integral of G1(v) A(v, m) D(m) max(v . m, 0) / v.z dm = mean over slopes of A' max(v.z - slope . v, 0) / v.z,
-// where A' = F G2(v, r) + (1 - F) G2'(v, t) holds what leaves along the reflected r, if above, and the refracted t, if below.
-// The mean is a product rule: Gauss-Legendre in q with P(> r) = q^2, which crowds points where slopes are large, and equal
-// steps of the azimuth.
+// where A' = F G2(v, r) + (1 - F) G2'(v, t) is the light that leaves along the reflected direction r, if it is above the
+// surface, and along the refracted t, if it is below. The mean is computed by a product rule: Gauss-Legendre in q with P(> r) =
+// q^2, which concentrates nodes at large slopes, and equal steps of the azimuth.
 
 #include "microfacet_quadrature.h"
 
-// GCC does not vectorise what follows at the level the rest is compiled at.
+// GCC does not vectorize the following loops at the optimization level of the other code.
 #if defined(__GNUC__) && !defined(__clang__)
 #define ETENDUE_VECTORIZE [[gnu::optimize("O3")]]
 #else
@@ -70,7 +71,7 @@ inline float lambda(float z, float across2) {
   return 0.5f * e * std::max(0.56418958354775628695f / a - p, 0.0f);
 }
 
-/// The loop is one for vector instructions: what does not leave is multiplied by 0.
+/// The loop has no branches, for vector instructions: light that does not leave is multiplied by 0.
 template <Kind kind, Boundary boundary>
 ETENDUE_VECTORIZE float missing_of(const MicrofacetDistribution& d, const Slopes& slopes, const Vector3& v, float eta) {
   constexpr int chunk = 64;

@@ -12,20 +12,20 @@
 namespace etendue {
 namespace {
 
-// The coat reflects F (or, rough, the lobe F D G2 / (4 |out.z in.z|)) and lets T(v) through, which is all the rest. Under it
-// the body reflects rho diffusely; of that the coat reflects the part Fi back to the body, again and again. With eta the index
-// of the coat over that in front, the light that leaves is spread over eta^2 times the solid angle:
+// The coat reflects F (or, if rough, the lobe F D G2 / (4 |out.z in.z|)) and transmits all the rest, T(v). Under it the body
+// reflects rho diffusely; of this light the coat reflects the fraction Fi back to the body, repeatedly. With eta the index of
+// the coat over that in front, the light that leaves is spread over eta^2 times the solid angle:
 //   f_d = T(out) T(in) rho / (pi eta^2 (1 - rho Fi))  [1/sr]
-// (Saunderson 1942, with the angles of Wolff 1994, "Diffuse-reflectance model for smooth dielectric surfaces"). A boundary lets
-// as much light through from both sides in units of eta^2, so with Tm the mean of T under diffuse light 1 - Fi = Tm / eta^2,
-// for a smooth coat the mean Fresnel reflectance from inside. So f_d has the albedo T(out) rho (1 - Fi) / (1 - rho Fi), and
-// where rho = 1 nothing is lost. f_d is reciprocal.
+// (Saunderson 1942, with the angles of Wolff 1994, "Diffuse-reflectance model for smooth dielectric surfaces"). By reciprocity,
+// the transmittance from inside is that from outside over eta^2: 1 - Fi = Tm / eta^2 with Tm the mean of T under diffuse light.
+// For a smooth coat Fi is thus the mean Fresnel reflectance from inside. So f_d has the albedo T(out) rho (1 - Fi) / (1 - rho
+// Fi), and where rho = 1 nothing is lost. f_d is reciprocal.
 //
-// Without `nonlinear`, rho Fi is replaced by Fi below the bar: the colour is then that of the body, T(out) rho, and not
-// the deeper one that light gets by meeting it often.
+// Without `nonlinear`, rho Fi in the denominator is replaced by Fi: the albedo is then T(out) rho, without the more saturated
+// colour that repeated reflection at the body causes.
 struct Coat {
   float eta, through_mean;                   ///< Tm
-  std::optional<CoatTransmittance> rough{};  ///< none: polished
+  std::optional<CoatTransmittance> rough{};  ///< empty: polished
 
   Coat(float index, const MicrofacetDistribution& d) : eta(index) {
     if (!d.smooth()) rough.emplace(d, index);
@@ -141,13 +141,13 @@ class Plastic final : public Shader {
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     float eta = ior;
-    // The coat's own dispersion is left out, and that of what lies in front, too, which is the same at all wavelengths then.
+    // Dispersion of the coat and of the medium in front is ignored: the index ratio is the same at all wavelengths.
     if (const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr)
       eta /= MediumStack::index(outside, w).average();
     const MicrofacetDistribution d = distribution_at(distribution, *roughness, nullptr, p);
     return arena.make<PlasticScatter>(p, d, Coat(eta, d), reflectance_at(*color, p, w), nonlinear);
   }
-  /// Of the table.
+  /// Interpolation error of the albedo table.
   float albedo_error() const override { return everywhere(roughness, 0) ? 0 : 0.02f; }
   Lobes possible_lobes() const override {
     return Lobes(diffuse_reflection | specular_reflection | (everywhere(roughness, 0) ? 0 : glossy_reflection));

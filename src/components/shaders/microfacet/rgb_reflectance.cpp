@@ -10,7 +10,7 @@ RgbReflectance::RgbReflectance(const RgbSpace& space, const Vector3& n, const Ve
   mean_ = spectrum_of(mean_fresnel_conductor(n_, k_));
 
   for (int i = 0; i <= cells; ++i) nodes_[size_t(i)] = {exact(float(i) / cells), false};
-  // Spectra are smooth (sigmoids of parabolas): some wavelengths stand for all.
+  // Spectra are smooth (sigmoids of parabolas): checking a few wavelengths is enough.
   Wavelengths w;
   for (int i = 0; i < spectrum_size; ++i)
     w.place(i, wavelength_low + (wavelength_high - wavelength_low) * (float(i) + 0.5f) / spectrum_size, 1);

@@ -1,5 +1,5 @@
 #pragma once
-// What a metal reflects of which n and k are known for red, green and blue, and no more.
+// RgbReflectance: the spectral reflectance of a metal whose n and k are given for red, green and blue only.
 
 #include <array>
 
@@ -8,16 +8,16 @@
 
 namespace etendue {
 
-/// Renderers of three channels take Fresnel's reflectance of each channel for the colour of what is reflected, and that is what
-/// such numbers were chosen for. So the colour becomes a spectrum, at each angle, and not the index, of which it is no linear
-/// function. Which spectrum is tabulated by the cosine of the angle: to find it for a colour takes longer than all the rest of
-/// a metal (7 % of a scene's time, measured on Bitterli's veach-mis).
+/// RGB renderers use the Fresnel reflectance of each channel as the colour of the reflected light, and such n and k are chosen
+/// for that. So the reflected colour is converted to a spectrum, at each angle; n and k are not, because reflectance is not
+/// linear in them. The spectrum's coefficients are tabulated by the cosine of the angle: computing them for a colour takes
+/// longer than all the rest of a metal (7 % of a scene's time, measured on Bitterli's veach-mis).
 class RgbReflectance {
  public:
-  /// `n`, `k`: of red, green and blue, over the index of what is in front.
+  /// `n`, `k`: of red, green and blue, over the index of the medium in front.
   RgbReflectance(const RgbSpace&, const Vector3& n, const Vector3& k);
 
-  /// Those of red, green and blue, in the first places.
+  /// n and k of red, green and blue, in the first three elements.
   const Spectrum& n() const { return n_; }
   const Spectrum& k() const { return k_; }
 
@@ -30,22 +30,22 @@ class RgbReflectance {
     return RgbCoefficients{lerp(t, low.c.c0, high.c.c0), lerp(t, low.c.c1, high.c.c1), lerp(t, low.c.c2, high.c.c2)}.evaluate(
         w);
   }
-  /// Over diffuse illumination, see mean_fresnel_conductor.
+  /// The mean reflectance over diffuse illumination, see mean_fresnel_conductor.
   Spectrum mean_reflectance(const Wavelengths& w) const { return mean_.evaluate(w); }
 
-  /// Of a colour that is reflected.
+  /// The spectrum of a reflected colour.
   RgbCoefficients spectrum_of(const Spectrum& rgb) const { return rgb_coefficients(*space_, rgb[0], rgb[1], rgb[2]); }
 
-  /// By how much a spectrum may differ from that of the very angle, in the middle between two of the table: no more than
-  /// the spectrum itself is exact to (rgb_coefficients). Where it would differ by more (near grazing angles, where all is
-  /// reflected and the coefficients grow beyond all bounds) nothing is interpolated.
+  /// The greatest accepted difference between interpolated and exact spectrum, midway between two entries of the table: the
+  /// precision of the spectrum itself (rgb_coefficients). Intervals with a greater difference are not interpolated but computed
+  /// exactly (near grazing angles, where everything is reflected and the coefficients diverge).
   static constexpr float tolerance = 2e-4f;
 
  private:
   static constexpr int cells = 256;
   struct Node {
     RgbCoefficients c;
-    bool coarse = false;  ///< from here to the next
+    bool coarse = false;  ///< the interval from here to the next is not interpolated
   };
   RgbCoefficients exact(float cosine) const { return spectrum_of(fresnel_conductor(cosine, n_, k_)); }
 

@@ -1,5 +1,5 @@
 #pragma once
-// RoughDielectric: scattering at a boundary of facets between two transparent bodies.
+// RoughDielectric: scattering by a microfacet boundary between two dielectrics.
 
 #include "components/shaders/fresnel.h"
 #include "components/shaders/joint_scatter.h"
@@ -8,13 +8,13 @@
 
 namespace etendue {
 
-/// What a boundary's reflected and refracted light are multiplied by, which no clear body does: for looks, and for files of
-/// programs that have such factors.
+/// Factors of a boundary's reflected and refracted light. Real boundaries have none: they are for artistic effect, and for
+/// scenes of other renderers that have them.
 struct BoundaryTint {
   Spectrum reflected = Spectrum(1.0f), transmitted = Spectrum(1.0f);
 
   bool none() const { return reflected.minimum() == 1 && transmitted.minimum() == 1; }
-  /// The probability of reflection, in proportion to what is left of both.
+  /// The probability of choosing reflection, in proportion to the tinted reflectance and transmittance.
   float probability(float fresnel) const {
     const float r = fresnel * reflected.average(), t = (1 - fresnel) * transmitted.average();
     return r + t > 0 ? r / (r + t) : fresnel;
@@ -25,23 +25,24 @@ struct BoundaryTint {
 // `out`, in the convention of importance (Walter et al. 2007, eq. 20 and 21):
 //   f = F D(m) G2 / (4 |out.z in.z|)                                                                      in reflection,
 //   f = (1 - F) D(m) G2' |out.m in.m| eta^2 / ((out.m + eta in.m)^2 |out.z in.z|)   [1/sr]                in refraction.
-// To this comes what is scattered more than once (see MultipleRefraction) where that is asked for. A tint multiplies what
-// leaves on either side, once.
+// Light scattered more than once is added if requested (see MultipleRefraction). A tint multiplies the reflected or refracted
+// light once.
 //
-// Sampling: with the probability 1 - E(out) light is scattered more than once, to either side by their shares, by the
-// cosine. Else a visible normal is drawn, which reflects with the probability F.
+// Sampling: with the probability 1 - E(out), E being the albedo of single scattering, the lobe of multiple scattering is
+// sampled: a side by its share, then a direction with the pdf cos / pi. Otherwise a visible normal is sampled, which reflects
+// with the probability F.
 //
-// Dispersion. One direction `in` takes another facet at each wavelength, and f is known for all of them. A density of the
-// hero's alone would let f / density of the others grow without bound where lobes are narrow. So each of the path's
-// wavelengths is as likely to choose the direction, and the density is the mean of theirs (the balance heuristic of Wilkie et
-// al. 2014, "Hero wavelength spectral sampling", at a single vertex): no weight exceeds 4 times that of a path of its own, and
-// no wavelength needs to be dropped. Light scattered more than once is known for the hero: that which gets through is
-// multiplied by eta / eta_hero, which keeps both transports adjoint at every wavelength; what it gains or loses by that is the
-// relative difference of the indices times the few hundredths of light that are scattered so.
+// Dispersion. A given direction `in` belongs to another facet normal at each wavelength, and f is evaluated for all of them.
+// With the hero's pdf alone, f / pdf of the others would be unbounded for narrow lobes. So each of the path's wavelengths
+// chooses the direction with equal probability, and the pdf is the mean of theirs (the balance heuristic of Wilkie et al. 2014,
+// "Hero wavelength spectral sampling", at a single vertex): no weight exceeds 4 times that of a path of a single wavelength,
+// and no wavelength needs to be dropped. Multiple scattering is tabulated for the hero: its transmitted part is multiplied by
+// eta / eta_hero, which keeps both transports adjoint at every wavelength. The resulting error of energy is the relative
+// difference of the indices times the few hundredths of the light that are scattered more than once.
 class RoughDielectric final : public JointScatter<RoughDielectric> {
  public:
-  /// eta: index below (z < 0) over that above. `multiple`: whether light scattered more than once is counted, where it is
-  /// known. `single`: the path has only its hero left.
+  /// eta: index below (z < 0) over that above. `multiple`: whether multiple scattering is added, where it is tabulated.
+  /// `single`: only the path's hero wavelength is left.
   RoughDielectric(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution, Spectrum eta,
                   bool multiple, bool single, const BoundaryTint& tint)
       : JointScatter(p, frame, glossy_reflection | glossy_transmission),
@@ -53,7 +54,8 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
         varies_(eta.minimum() != eta.maximum()),
         choosing_(varies_ && !single ? spectrum_size : 1) {}
 
-  /// Whether a boundary is as good as smooth: light is bent, or at least reflected, by next to nothing.
+  /// Whether a boundary is treated as smooth: alpha is below smooth_below, or the index ratio is so close to 1 that facets
+  /// hardly deflect light, and reflect next to none.
   static bool smooth(const MicrofacetDistribution& d, const Spectrum& eta) {
     const float bend = std::max(std::abs(eta.maximum() - 1), std::abs(1 - eta.minimum()));
     return d.smooth() || std::max(d.alpha_x, d.alpha_y) * bend < 3e-4f;
@@ -89,9 +91,9 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
       float cosine_behind = 0;
       const float reflected = fresnel_dielectric(std::abs(dot(out, m)), eta, cosine_behind);
       const bool reflects = choice < reflect_probability(reflected, which);
-      if (!reflects && reflected >= 1) return false;  // only refraction was asked for, and there is none
+      if (!reflects && reflected >= 1) return false;  // only refraction was requested, and reflection is total
       s.in = reflects ? reflect(out, m) : refract(out, m, eta, cosine_behind);
-      if ((s.in.z * out.z > 0) != reflects) return false;  // another facet is in the way
+      if ((s.in.z * out.z > 0) != reflects) return false;  // blocked by another facet
     }
     const bool above = s.in.z * out.z > 0;
     const ScatterValue both = local_value_and_pdf(out, s.in, which);
@@ -102,8 +104,8 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
     return s.pdf > 0;
   }
 
-  // What is reflected once, and what is lost to more than one facet, stand in tables for isotropic distributions. Of others
-  // it is taken for a mean of that of the alphas along and across `out`.
+  // Single reflection, and the energy that single scattering misses, are tabulated for isotropic distributions. For anisotropic
+  // ones a weighted mean of the values for the alphas along and across `out` is used.
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
     Spectrum reflected, refracted;
     float missing = 0;
@@ -129,7 +131,7 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
   }
 
  private:
-  /// Of light from all sides, what leaves towards `out` by one facet's reflection, and what leaves by more than one facet.
+  /// The directional albedo of single reflection, and the energy that single scattering misses.
   struct Once {
     float reflected = 0, missing = 0;
   };
@@ -149,7 +151,7 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
     return once;
   }
 
-  /// The same for indices that are in no table: the mean weight of samples, 8 x 8 of them.
+  /// The same for indices outside the tables: the mean weight of 8 x 8 samples.
   Once beyond_tables(const Vector3& out, float eta) const {
     constexpr int side = 8;
     float reflected = 0, refracted = 0;
@@ -172,7 +174,7 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
   /// Index behind the boundary over index in front, seen from `out`.
   static float towards(const Vector3& out, float eta) { return out.z > 0 ? eta : 1 / eta; }
 
-  /// Of light scattered more than once: eta / eta_hero through the surface.
+  /// Factor of multiple scattering per wavelength: eta / eta_hero in transmission, 1 in reflection.
   Spectrum side_factor(const Vector3& out, const Vector3& in) const {
     if (!varies_ || out.z * in.z > 0) return Spectrum(1.0f);
     return relative_index(out, in) / towards(out, eta_[0]);

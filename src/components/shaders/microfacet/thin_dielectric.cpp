@@ -10,19 +10,19 @@
 namespace etendue {
 namespace {
 
-// Inside a slab light goes to and fro: with R the reflectance of one boundary, the same from both sides, and a what is left
-// after one passage, its parts sum to geometric series (Stokes 1862):
+// Light is reflected back and forth inside a slab: with R the reflectance of one boundary, the same from both sides, and a the
+// transmittance of one passage, the contributions sum to geometric series (Stokes 1862):
 //   R' = R + (1 - R)^2 a^2 R / (1 - a^2 R^2),  T' = (1 - R)^2 a / (1 - a^2 R^2);  T' = (1 - R) / (1 + R) where a = 1.
-// They hold for each polarization on its own, which all passages keep; unpolarized light is half of each. The slab is thicker
-// than the light's coherence, so intensities add. A passage at the angle of cosine c' inside is 1 / c' times as long as one
-// along the normal: a = color^(1 / c'). pbrt and Mitsuba put the mean of both polarizations' R into the series instead, which
-// is what `polarizations: averaged` does: at a slant, where the two differ most, less is reflected (R_s = 0.3 and R_p = 0.05
-// give 0.298 apart and 0.278 averaged).
+// They hold for each polarization separately, as no passage or reflection changes it; unpolarized light is half of each. The
+// slab is thicker than the light's coherence length, so intensities add. A passage at the angle of cosine c' inside is 1 / c'
+// times as long as one along the normal: a = color^(1 / c'). pbrt and Mitsuba use the mean of both polarizations' R in the
+// series instead, as `polarizations: averaged` does: at oblique angles, where the two differ most, less is reflected (R_s = 0.3
+// and R_p = 0.05 give 0.298 apart and 0.278 averaged).
 enum class Polarizations : std::uint8_t { apart, averaged };
 
 class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
  public:
-  /// eta: index of the slab over that around it; `passage`: what is left after one passage along the normal.
+  /// eta: index of the slab over that around it; `passage`: transmittance of one passage along the normal.
   ThinDielectricScatter(const SurfacePoint& p, Spectrum eta, Spectrum passage, const BoundaryTint& tint, Polarizations kept)
       : ScatterModel(p, specular_reflection | null_scattering),
         eta_(eta),

@@ -1,4 +1,4 @@
-// ThinFilm: oil on water, a soap bubble, the coating of a lens, the tarnish on steel.
+// ThinFilm: interference in one film: oil on water, a soap bubble, the coating of a lens, the tarnish on steel.
 
 #include "components/shaders/scalar_map.h"
 #include "etendue/object_map.h"
@@ -9,17 +9,18 @@
 namespace etendue {
 namespace {
 
-// A film is thin when it is shorter than the light is coherent: what its two faces reflect adds up in amplitude, and depends
-// on the wavelength. The path's wavelengths are all computed, each for itself; there is no image in RGB to be band-limited
-// as by Belcour & Barla 2017, who give the colours that must come out. Nothing is absorbed between dielectrics, so what is
-// not reflected goes on, refracted as if the film were not there (its faces are parallel: Snell's law holds across it).
+// A film is thin if it is thinner than the light's coherence length: the reflections of its two faces then add up in amplitude,
+// and depend on the wavelength. The reflectance is computed separately for each of the path's wavelengths. Belcour & Barla 2017
+// prefilter it for RGB renderers, which is not needed here, but their colours must come out. Nothing is absorbed between
+// dielectrics, so light that is not reflected is refracted as if the film were not there (its faces are parallel: Snell's law
+// holds across it).
 //
-// Whether a path is reflected is drawn with the mean of the reflectances over its wavelengths, not the hero's alone: the
-// hero's may vanish where the others' do not. The weights R_i / mean R are then at most their number.
+// Reflection is chosen with the mean of the reflectances over the path's wavelengths, not with the hero's alone, which may
+// vanish where the others' do not. The weights R_i / mean R are then at most the number of wavelengths.
 class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
  public:
   struct Layers {
-    Spectrum outside, film, base, absorbing;  ///< indices; that of the base is base + i absorbing
+    Spectrum outside, film, base, absorbing;  ///< indices; the base's is base + i absorbing
     Spectrum thickness;                       ///< in wavelengths
     bool through = false;                     ///< light goes on into the base
     bool dispersive = false, single = false;
@@ -47,7 +48,7 @@ class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
       return true;
     }
     const float eta = towards(out), cosine2 = 1 - (1 - out.z * out.z) / (eta * eta);
-    if (!(cosine2 > 0)) return false;  // total reflection of the hero, which alone says where the path would go
+    if (!(cosine2 > 0)) return false;  // total reflection of the hero, whose direction the path would take
     s.in = {-out.x / eta, -out.y / eta, out.z > 0 ? -std::sqrt(cosine2) : std::sqrt(cosine2)};
     s.value = Spectrum(1.0f) - reflected;
     s.pdf = 1 - reflect_probability;
@@ -147,7 +148,7 @@ class ThinFilm final : public Shader {
   bool opaque = false;
 
  private:
-  static constexpr float thickest = 1e5f;  // [nm]; no lamp's light is coherent for longer
+  static constexpr float thickest = 1e5f;  // [nm]; more than the coherence length of any lamp
 
   bool through() const { return !opaque && !base_ior->imaginary(); }
 

@@ -16,7 +16,7 @@ void append(std::string& to, const T& value) {
   to.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// The answer, read from its beginning; lists of numbers are passed over.
+/// The helper's answer, read from its beginning; arrays are skipped.
 class Answer {
  public:
   explicit Answer(const std::string& bytes) : bytes_(bytes) {}
@@ -28,7 +28,7 @@ class Answer {
     std::memcpy(&v, bytes_.data() + begin, sizeof v);
     return v;
   }
-  /// Where they begin.
+  /// Skips an array and returns its offset.
   std::uint64_t pass(std::uint64_t count, std::uint64_t size) {
     if (size > 0 && count > (bytes_.size() - at_) / size) throw Error("what etendue_draco made of it ends too early");
     at_ += count * size;
@@ -66,8 +66,8 @@ DracoMeshes decode_all(std::span<const DracoRequest> requests) {
 
 }  // namespace
 
-// One process for all: to start one takes as long as to read some thousand triangles. Where it fails, halves are tried for the
-// first mesh that does.
+// One process decodes all meshes: starting one takes as long as reading some thousand triangles. On failure bisection finds the
+// first mesh that fails.
 DracoMeshes decode_draco(const std::vector<DracoRequest>& requests, size_t& failed) {
   try {
     return decode_all(requests);

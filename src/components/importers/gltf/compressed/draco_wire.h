@@ -1,8 +1,9 @@
 #pragma once
-// How this program asks etendue_draco (src/draco), and what it answers. Numbers as they lie in memory: both run on one machine.
+// The protocol between this program and etendue_draco (src/draco). Numbers are in native byte order: both run on one machine.
 //
-// Asked, for each mesh: MeshAsked, so many AttributeAsked, its compressed bytes. Answered, for each: MeshMade, so many
-// AttributeMade, three vertices of 32 bits for each triangle, then each attribute for all vertices.
+// Request, for each mesh: MeshAsked, that many AttributeAsked, the compressed bytes. Answer, for each mesh: MeshMade, one
+// AttributeMade for each attribute, three 32-bit vertex indices for each triangle, then the values of each attribute for all
+// vertices.
 
 #include <cstdint>
 
@@ -12,14 +13,14 @@ struct MeshAsked {
   std::uint64_t bytes, attributes;
 };
 struct AttributeAsked {
-  std::uint32_t id;         ///< within the compressed data
-  std::uint32_t component;  ///< type of its numbers, by glTF's code
+  std::uint32_t id;         ///< attribute id in the compressed data
+  std::uint32_t component;  ///< component type, by glTF's code
 };
 struct MeshMade {
   std::uint64_t triangles, vertices;
 };
 struct AttributeMade {
-  std::uint64_t width, bytes;  ///< numbers for a vertex, and what these take
+  std::uint64_t width, bytes;  ///< components per vertex, and their size
 };
 
 }  // namespace etendue::draco_wire

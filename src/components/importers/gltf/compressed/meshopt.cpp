@@ -10,7 +10,7 @@
 namespace etendue::gltf {
 namespace {
 
-/// Bytes that are read one after another, and never beyond their end.
+/// Reads bytes in order; throws Error instead of reading beyond the end.
 class Bytes {
  public:
   explicit Bytes(std::string_view bytes) : bytes_(bytes) {}
@@ -21,7 +21,7 @@ class Bytes {
     return reinterpret_cast<const std::uint8_t*>(bytes_.data()) + at_ - count;
   }
   std::uint8_t byte() { return *take(1); }
-  /// Seven bits in each byte, the lowest first; the eighth says that more follow.
+  /// Seven bits in each byte, the lowest first; the eighth bit is set if more bytes follow.
   std::uint32_t varint() {
     std::uint32_t value = 0;
     for (int shift = 0; shift < 35; shift += 7) {
@@ -40,7 +40,7 @@ class Bytes {
   size_t at_ = 0;
 };
 
-/// 0, 1, 2, 3, … stand for 0, -1, 1, -2, …
+/// Zigzag decoding: 0, 1, 2, 3, … stand for 0, -1, 1, -2, …
 template <class T>
 T from_zigzag(T v) {
   return T((v >> 1) ^ (0 - (v & 1)));
@@ -50,7 +50,7 @@ T from_zigzag(T v) {
 
 constexpr size_t group = 16, most_in_block = 256;
 
-/// The differences of a group's bytes. Those that do not fit into so many bits are all ones, and follow whole.
+/// The differences of a group's bytes, `bits` wide. If all bits of one are set, a full byte follows that replaces it.
 void read_group(Bytes& bytes, int bits, std::uint8_t* to) {
   if (bits == 0 || bits == 8) {
     if (bits == 0)
@@ -70,7 +70,7 @@ void read_group(Bytes& bytes, int bits, std::uint8_t* to) {
 
 enum Control { narrow, wide, zeros, whole };  // of version 1
 
-/// The differences of one byte of each of a block's elements.
+/// The differences of one byte of each element in a block.
 void read_plane(Bytes& bytes, bool first_version, int control, size_t elements, std::uint8_t* to) {
   if (control == zeros) std::fill_n(to, elements, std::uint8_t(0));
   if (control == whole) std::copy_n(bytes.take(elements), elements, to);
@@ -86,7 +86,8 @@ std::uint32_t rotated_right(std::uint32_t v, int by) { return v >> by | v << ((3
 
 using Planes = std::array<std::array<std::uint8_t, most_in_block>, 4>;
 
-/// Four bytes of each element from their differences; `last`: those of the element before, and afterwards of the last.
+/// Reconstructs four bytes of each element from their differences; `last`: the bytes of the previous element, updated to the
+/// last.
 void add_differences(const Planes& planes, int channel, size_t elements, size_t stride, std::uint8_t* last, std::uint8_t* to) {
   enum Channel { bytes, pairs, exclusive };
   const int kind = channel & 15;
@@ -110,7 +111,7 @@ void add_differences(const Planes& planes, int channel, size_t elements, size_t 
   }
 }
 
-/// What the last bytes say: the element before the first, and for each four bytes how differences are meant.
+/// The end of the stream: the element before the first, and for each four bytes the kind of differences.
 struct Tail {
   std::array<std::uint8_t, 256> last{};
   std::array<std::uint8_t, 64> channels{};
@@ -136,7 +137,7 @@ std::string decode_attributes(std::string_view compressed, size_t count, size_t 
   const bool first_version = head == 0xa0;
   const size_t tail_size = first_version ? std::max<size_t>(stride, 32) : std::max<size_t>(stride + stride / 4, 24);
   const size_t in_block = std::min((8192 / stride) & ~(group - 1), most_in_block);
-  // Of each block at least what says that all differences are 0 (of the first version for four groups).
+  // Each block has at least the control data for differences that are all 0 (in the first version for four groups).
   const std::uint64_t blocks = (count + in_block - 1) / in_block, groups = (count + group - 1) / group;
   const std::uint64_t least = first_version ? stride * ((groups + 3) / 4) : blocks * (stride / 4);
   if (compressed.size() < 1 + tail_size || compressed.size() - 1 - tail_size < least)
@@ -162,7 +163,7 @@ std::string decode_attributes(std::string_view compressed, size_t count, size_t 
 
 // ---- modes TRIANGLES and INDICES -----------------------------------------------------------------------------------------
 
-/// Numbers of two or four bytes, one after another.
+/// Collects indices of two or four bytes.
 class IndexWriter {
  public:
   IndexWriter(size_t count, size_t stride) : stride_(stride) {
@@ -180,12 +181,12 @@ class IndexWriter {
   std::string bytes_;
 };
 
-/// The last sixteen of what was put in.
+/// A ring buffer of the sixteen most recent items.
 template <class T>
 class Recent {
  public:
   void push(const T& one) { all_[count_++ % 16] = one; }
-  /// 0: the last.
+  /// 0 is the latest item.
   const T& operator[](size_t back) const {
     if (back >= std::min<size_t>(count_, 16)) throw Error("its triangles name edges or vertices before the first");
     return all_[(count_ - 1 - back) % 16];
@@ -218,7 +219,7 @@ class TriangleReader {
   void require_end() const { data_.require_end(); }
 
  private:
-  // Four bits for each of b and c: a new vertex, a recent one, or one whose number follows.
+  // Four bits for each of b and c: a new vertex, a recent vertex, or an explicit index that follows.
   std::array<std::uint32_t, 3> new_triangle(int low) {
     const bool by_table = low < 14;
     const std::uint8_t how = by_table ? table_[low] : data_.byte();
@@ -247,7 +248,7 @@ class TriangleReader {
   std::uint32_t next_ = 0, last_ = 0;
 };
 
-/// A byte, a code for each triangle, what these need, and a table of sixteen bytes.
+/// The stream: a header byte, a code for each triangle, data of the codes, and a table of sixteen bytes.
 std::string decode_triangles(std::string_view compressed, size_t count, size_t stride) {
   constexpr size_t table_size = 16;
   if (count % 3 != 0) throw Error("its 'count' of " + std::to_string(count) + " is no multiple of 3");
@@ -269,7 +270,7 @@ std::string decode_triangles(std::string_view compressed, size_t count, size_t s
   return indices.taken();
 }
 
-/// A byte, differences from one of two numbers, and four bytes of nothing.
+/// The stream: a header byte, differences from one of two previous indices, and four unused bytes.
 std::string decode_indices(std::string_view compressed, size_t count, size_t stride) {
   constexpr size_t tail = 4;
   if (compressed.empty() || std::uint8_t(compressed[0]) != 0xd1) throw Error("it does not begin as compressed indices");

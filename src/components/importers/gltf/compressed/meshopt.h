@@ -1,6 +1,6 @@
 #pragma once
-// Bytes of buffer views as EXT_meshopt_compression and KHR_meshopt_compression keep them. Source: the appendices A (Bitstream)
-// and B (Filters) of the latter, The Khronos Group 2026.
+// Decodes the buffer views of EXT_meshopt_compression and KHR_meshopt_compression. Source: the appendices A (Bitstream) and B
+// (Filters) of the latter, The Khronos Group 2026.
 
 #include <cstdint>
 #include <string>
@@ -11,15 +11,15 @@ namespace etendue::gltf {
 enum class MeshoptMode : std::uint8_t { attributes, triangles, indices };
 enum class MeshoptFilter : std::uint8_t { none, octahedral, quaternion, exponential, color };
 
-/// What a view holds: `count` elements of `stride` bytes.
+/// The decoded content of a view: `count` elements of `stride` bytes.
 struct MeshoptLayout {
   MeshoptMode mode = MeshoptMode::attributes;
   MeshoptFilter filter = MeshoptFilter::none;
   std::uint64_t count = 0, stride = 0;
 };
 
-/// The view's bytes. Throws Error with the reason alone; nothing is allocated that the compressed bytes cannot stand for, which
-/// is at most 1024 for each.
+/// The view's decoded bytes. Throws Error with the reason, without a location. Nothing is allocated before it is checked that
+/// the compressed bytes can encode the result, at most 1024 bytes for each.
 std::string decode_meshopt(std::string_view compressed, const MeshoptLayout&);
 
 /// Undoes a filter, in place.

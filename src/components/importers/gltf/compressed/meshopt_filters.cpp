@@ -13,14 +13,14 @@
 namespace etendue::gltf {
 namespace {
 
-/// The nearest whole number, of what damaged files make of it the nearest that T has.
+/// The nearest integer, clamped to the range of T; NaN, from damaged files, becomes 0.
 template <class T>
 T rounded(float x) {
   if (!(x == x)) return 0;
   return T(std::round(std::clamp(x, float(std::numeric_limits<T>::min()), float(std::numeric_limits<T>::max()))));
 }
 
-/// Calls with four numbers of type T at a time.
+/// Calls `undo` for each element of four numbers of type T.
 template <class T, class Undo>
 void each_four(std::uint64_t count, char* bytes, Undo undo) {
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -31,7 +31,7 @@ void each_four(std::uint64_t count, char* bytes, Undo undo) {
   }
 }
 
-/// Unit vectors as x and y on an octahedron that is unfolded to a square; the third number stands for 1.
+/// Unit vectors, stored as x and y on an octahedron unfolded to a square; the third number represents 1.
 template <class T>
 void undo_octahedral(std::uint64_t count, char* bytes) {
   each_four<T>(count, bytes, [](std::array<T, 4>& v) {
@@ -45,8 +45,8 @@ void undo_octahedral(std::uint64_t count, char* bytes) {
   });
 }
 
-/// Unit quaternions without their largest component, which is positive; the last number stands for 1, but for its two lowest
-/// bits, which say which it is.
+/// Unit quaternions without their largest component, which is positive. The last number represents 1, except for its two lowest
+/// bits, which are the index of the largest component.
 void undo_quaternion(std::uint64_t count, char* bytes) {
   each_four<std::int16_t>(count, bytes, [](std::array<std::int16_t, 4>& q) {
     const float scale = float(1 / std::numbers::sqrt2) / float(q[3] | 3);
@@ -57,7 +57,7 @@ void undo_quaternion(std::uint64_t count, char* bytes) {
   });
 }
 
-/// Numbers as 24 bits times two to the power of 8 bits.
+/// Numbers stored as a 24-bit mantissa times two to the power of an 8-bit exponent.
 void undo_exponential(std::uint64_t count, char* bytes) {
   for (std::uint64_t i = 0; i < count; ++i) {
     std::int32_t packed = 0;
@@ -68,7 +68,8 @@ void undo_exponential(std::uint64_t count, char* bytes) {
   }
 }
 
-/// Luma, two chromas with a sign, and alpha with half as many steps; its highest bit says how many there are.
+/// Luma, two signed chroma values, and alpha with one bit less; the highest set bit of the last number determines the number of
+/// bits.
 template <class T>
 void undo_color(std::uint64_t count, char* bytes) {
   each_four<T>(count, bytes, [](std::array<T, 4>& v) {

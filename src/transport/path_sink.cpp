@@ -1,11 +1,11 @@
-#include "etendue/transport/observer.h"
+#include "etendue/transport/path_sink.h"
 
 #include "etendue/describe/color.h"
 
 namespace etendue {
 
-std::string object_name(const SceneObject& emitter_hit) {
-  const SceneObject& object = emitter_hit.original();
+std::string object_name(const SceneObject& placed) {
+  const SceneObject& object = placed.original();
   const std::string& name = object.class_info().name;
   return object.origin && !object.origin->name.empty() ? object.origin->name + " (" + name + ")" : name;
 }
@@ -18,12 +18,12 @@ std::string lobe_name(Lobe lobe) {
     case glossy_transmission: return "glossy transmission";
     case specular_reflection: return "specular reflection";
     case specular_transmission: return "specular transmission";
-    case null_scattering: return "pass through";
+    case null_scattering: return "null scattering";
   }
   return "unknown";
 }
 
-void PathObserver::surface_slowly(const SurfacePoint& p, const Spectrum& throughput) {
+void PathSink::record_surface(const SurfacePoint& p, const Spectrum& throughput) {
   PathRecord::Vertex v;
   v.kind = "surface";
   v.object = object_name(*p.object);
@@ -33,7 +33,7 @@ void PathObserver::surface_slowly(const SurfacePoint& p, const Spectrum& through
   record->add(std::move(v));
 }
 
-void PathObserver::medium_slowly(const Point3& position, const Spectrum& throughput) {
+void PathSink::record_medium(const Point3& position, const Spectrum& throughput) {
   PathRecord::Vertex v;
   v.kind = "volume";
   v.position = position;
@@ -41,7 +41,7 @@ void PathObserver::medium_slowly(const Point3& position, const Spectrum& through
   record->add(std::move(v));
 }
 
-void PathObserver::escape_slowly(const SceneObject& far, const Ray& ray, const Spectrum& throughput) {
+void PathSink::record_escape(const SceneObject& far, const Ray& ray, const Spectrum& throughput) {
   PathRecord::Vertex v;
   v.kind = "escaped";
   v.object = object_name(far);
@@ -51,21 +51,21 @@ void PathObserver::escape_slowly(const SceneObject& far, const Ray& ray, const S
   record->add(std::move(v));
 }
 
-void PathObserver::scattered_slowly(const ScatterSample& s) {
+void PathSink::record_scattering(const ScatterSample& s) {
   PathRecord::Vertex& v = record->vertices.back();
   v.lobe = lobe_name(s.lobe);
   v.pdf = s.pdf;
   if (s.dispersive) v.note = "dispersion: only the hero wavelength goes on";
 }
 
-void PathObserver::emitter_hit_slowly(const Spectrum& light, int length, float weight) {
+void PathSink::record_emitter_hit(const Spectrum& light, int length, float weight) {
   record->vertices.back().emitted += light;
-  record->contribute({"luminaire met", length, weight, light, {}, false});
+  record->contribute({"emitter hit", length, weight, light, {}, false});
 }
 
-void PathObserver::next_event_slowly(const Spectrum& light, int length, float weight) {
+void PathSink::record_next_event(const Spectrum& light, int length, float weight) {
   record->vertices.back().direct = light;
-  record->contribute({"luminaire sampled", length, weight, light, {}, false});
+  record->contribute({"next event estimation", length, weight, light, {}, false});
 }
 
 namespace {
@@ -93,8 +93,8 @@ int place_in(const Scene& scene, const SceneObject* object) {
 
 }  // namespace
 
-void PathObserver::first_surface_slowly(const Scene& scene, const SurfacePoint& point, const Hit& hit, const Scatter* scatter,
-                                        const Vector3& out, const Wavelengths& wavelengths, float before) {
+void PathSink::store_features(const Scene& scene, const SurfacePoint& point, const Hit& hit, const Scatter* scatter,
+                              const Vector3& out, const Wavelengths& wavelengths, float before) {
   Features& f = *features;
   features = nullptr;
   f.normal = Vector3(dot(point.shading_normal, out) < 0 ? -point.shading_normal : point.shading_normal);

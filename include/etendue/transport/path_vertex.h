@@ -11,7 +11,7 @@
 namespace etendue {
 
 /// Where a path is scattered, begins or ends.
-struct Vertex {
+struct PathVertex {
   enum class Kind : std::uint8_t { camera, luminaire, surface, medium, escape };
 
   Kind kind = Kind::surface;
@@ -34,7 +34,7 @@ struct Vertex {
 
 /// f |cos| of light scattered at a surface or a point of a medium from `out` towards `in` [1/sr], and the solid-angle density
 /// with which a walk that came from `out` is scattered to `in` [1/sr].
-inline ScatterValue scattering(const Vertex& v, const Vector3& out, const Vector3& in, Transport transport) {
+inline ScatterValue scattering(const PathVertex& v, const Vector3& out, const Vector3& in, Transport transport) {
   if (v.in_medium()) {
     const float phase = v.medium.phase(v.point.position, v.point.time, out, in);
     return {Spectrum(phase), phase};
@@ -42,7 +42,7 @@ inline ScatterValue scattering(const Vertex& v, const Vector3& out, const Vector
   return v.scatter ? v.scatter->value_and_pdf(out, in, transport, v.lobes) : ScatterValue{};
 }
 /// The same density alone.
-inline float scattering_pdf(const Vertex& v, const Vector3& out, const Vector3& in, Transport transport) {
+inline float scattering_pdf(const PathVertex& v, const Vector3& out, const Vector3& in, Transport transport) {
   if (v.in_medium()) return v.medium.phase(v.point.position, v.point.time, out, in);
   return v.scatter ? v.scatter->pdf(out, in, transport, v.lobes) : 0;
 }
@@ -51,7 +51,7 @@ inline float scattering_pdf(const Vertex& v, const Vector3& out, const Vector3& 
 /// Smooth lobes alone scatter there, so a guide must leave some chance to `sample_direction`, which knows of the others.
 /// `density` is that of the whole mixture; what `sample_direction` gives is to be weighted by (its density / the mixture's) if
 /// smooth, and over its share if specular. Empty: nothing is scattered that way.
-inline std::optional<ScatterSample> scattered_towards(const Vertex& v, const Vector3& in, float pdf, Transport transport) {
+inline std::optional<ScatterSample> scattered_towards(const PathVertex& v, const Vector3& in, float pdf, Transport transport) {
   const ScatterValue f = scattering(v, v.out, in, transport);
   if (!(pdf > 0) || f.value.black()) return {};
   ScatterSample s;
@@ -63,16 +63,16 @@ inline std::optional<ScatterSample> scattered_towards(const Vertex& v, const Vec
 }
 
 /// A ray from one vertex to another that ends just before it.
-Ray connecting_ray(const Vertex& from, const Vertex& to);
+Ray connecting_ray(const PathVertex& from, const PathVertex& to);
 /// Whether the camera does not see what a vertex lies on.
-inline bool unseen(const Vertex& v) {
-  return (v.on_surface() || v.kind == Vertex::Kind::luminaire) && !v.point.object->visible_to_camera;
+inline bool unseen(const PathVertex& v) {
+  return (v.on_surface() || v.kind == PathVertex::Kind::luminaire) && !v.point.object->visible_to_camera;
 }
 /// A ray from a vertex to a point of the lens.
-Ray lens_ray(const Vertex&, const LensSample&);
+Ray lens_ray(const PathVertex&, const LensSample&);
 /// A ray that leaves a vertex.
-Ray leaving_ray(const Vertex& from, const Vector3& direction);
+Ray leaving_ray(const PathVertex& from, const Vector3& direction);
 /// The media along a ray that leaves a vertex; `scratch` holds them when they differ from those around the vertex.
-const MediumStack* media_towards(const Vertex&, const Vector3& direction, MediumStack& scratch);
+const MediumStack* media_towards(const PathVertex&, const Vector3& direction, MediumStack& scratch);
 
 }  // namespace etendue

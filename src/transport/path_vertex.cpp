@@ -1,11 +1,11 @@
-#include "etendue/transport/vertex.h"
+#include "etendue/transport/path_vertex.h"
 
 #include "etendue/transport/boundaries.h"
 
 namespace etendue {
 
-Ray leaving_ray(const Vertex& from, const Vector3& direction) {
-  if (from.on_surface() || (from.kind == Vertex::Kind::luminaire && from.point.normal != Normal3{}))
+Ray leaving_ray(const PathVertex& from, const Vector3& direction) {
+  if (from.on_surface() || (from.kind == PathVertex::Kind::luminaire && from.point.normal != Normal3{}))
     return from.point.leave(direction);
   Ray ray;
   ray.origin = from.point.position;
@@ -14,7 +14,7 @@ Ray leaving_ray(const Vertex& from, const Vector3& direction) {
   return ray;
 }
 
-Ray connecting_ray(const Vertex& from, const Vertex& to) {
+Ray connecting_ray(const PathVertex& from, const PathVertex& to) {
   const Vector3 direction = normalize(to.point.position - from.point.position);
   Ray ray = leaving_ray(from, direction);
   // At both ends on the side for which scattering was asked, which between two points of one wall is a matter of rounding: with
@@ -26,14 +26,14 @@ Ray connecting_ray(const Vertex& from, const Vertex& to) {
   return ray;
 }
 
-Ray lens_ray(const Vertex& v, const LensSample& lens) {
+Ray lens_ray(const PathVertex& v, const LensSample& lens) {
   Ray ray = leaving_ray(v, lens.direction);
   ray.maximum = (lens.distance - lens.nearest) * SurfacePoint::almost_there;
   ray.of_camera = true;
   return ray;
 }
 
-const MediumStack* media_towards(const Vertex& v, const Vector3& direction, MediumStack& scratch) {
+const MediumStack* media_towards(const PathVertex& v, const Vector3& direction, MediumStack& scratch) {
   if (!v.media || !v.on_surface()) return v.media;
   // On the other side of the surface than the path came from, the object's inside begins or ends.
   const bool through = (dot(v.point.normal, v.out) > 0) != (dot(v.point.normal, direction) > 0);
