@@ -9,10 +9,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "components/importers/permissions.h"
 #include "etendue/language/language.h"
 #include "etendue/render/job.h"
 #include "files/gzip.h"
+#include "formats/permissions.h"
 
 namespace etendue {
 

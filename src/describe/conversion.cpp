@@ -114,7 +114,8 @@ FilePath to_file(const Value& v) {
 int to_choice(const Value& v, const Member& m) {
   std::string known;
   for (const std::string& c : m.choices) known += (known.empty() ? "" : ", ") + c;
-  const auto* s = v.as<std::string>();
+  const std::string none = "none";  // a choice, written like the keyword
+  const std::string* s = v.none() ? &none : v.as<std::string>();
   if (!s) mismatch("one of " + known, v);
   for (size_t i = 0; i < m.choices.size(); ++i)
     if (m.choices[i] == *s) return int(i);

@@ -12,6 +12,7 @@
 #include "etendue/describe/description.h"
 #include "faults.h"
 #include "files/input_files.h"
+#include "format_library.h"
 #include "guard.h"
 #include "plugin.h"
 #include "words.h"
@@ -193,7 +194,11 @@ void Registry::adopt() {
 const ClassInfo* Registry::find(std::string_view name) const {
   const_cast<Registry*>(this)->adopt();
   const std::lock_guard lock(s->mutex);
-  const auto found = s->by_name.find(name);
+  auto found = s->by_name.find(name);
+  if (found == s->by_name.end() && load_format_library()) {
+    const_cast<Registry*>(this)->adopt();
+    found = s->by_name.find(name);
+  }
   return found == s->by_name.end() ? nullptr : found->second.get();
 }
 
@@ -205,8 +210,9 @@ const ClassInfo* Registry::find(std::type_index type) const {
 }
 
 std::vector<const ClassInfo*> Registry::all() const {
-  const_cast<Registry*>(this)->adopt();
   const std::lock_guard lock(s->mutex);
+  load_format_library();
+  const_cast<Registry*>(this)->adopt();
   // Omits classes without a subclass that can be created by name, such as base classes used only in tests.
   std::set<const ClassInfo*> wanted;
   for (const auto& [name, info] : s->by_name)

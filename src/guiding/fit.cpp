@@ -1,4 +1,4 @@
-// How a region's lobes are fitted to samples.
+// Fits the lobes and the share of a region to a batch of samples, by weighted expectation maximization (guiding/guide.h).
 
 #include <algorithm>
 #include <cmath>
@@ -12,22 +12,24 @@ namespace {
 using DoubleLanes = double __attribute__((vector_size(64)));
 constexpr int lobes = LobeMixture::size;
 
-// A learned share stays between these: scattering alone finds what the guide does not know of, and must keep a chance.
+// The range of a learned share: scattering finds light that the guide has not learned, and must keep a positive probability.
 constexpr double least_share = 0.05, most_share = 0.85;
-// What is known counts as no more effective samples than so many, so that what was learned from worse lobes is forgotten.
+// Maximum of known_: earlier batches count as no more effective samples than this, so that results learned with worse lobes
+// fade out.
 constexpr double most_known = 4000;
-// Of so many samples, at most, it is remembered how much they found.
+// Maximum of seen_: the moments of X cover about this number of the latest samples.
 constexpr double most_seen = 20000;
-// Of a lobe's mean direction, so many samples more that are spread over all directions: one sample alone makes no narrow lobe.
+// Added to the number of samples of a lobe's mean direction, as if spread over all directions: one sample alone makes no narrow
+// lobe.
 constexpr double spread_samples = 0.05;
-// A lobe with less of the whole is worth none, and begins anew where the density is too low.
+// A lobe with a smaller weight is restarted at samples where the pdf is too low.
 constexpr float least_weight = 0.004f;
-// Iterations over a batch: of the first, which begins from nothing, and of others.
+// Iterations per batch: for the first one, which has no earlier fit, and for the others.
 constexpr int first_iterations = 10, iterations = 3;
-// The concentration with which a lobe begins.
+// The concentration of a lobe at its start.
 constexpr float new_concentration = 30;
 
-/// Numbers that follow from a region's samples: what is made by chance must not depend on who makes it when.
+/// Random numbers that follow from a region's samples, so that results do not depend on threads and their timing.
 class Chance {
  public:
   explicit Chance(std::uint64_t bits) : bits_(bits) {}
@@ -42,19 +44,20 @@ class Chance {
 
 /// The mean cosine between a lobe's directions and its axis, coth k - 1 / k.
 double mean_cosine(double k) { return 1 / std::tanh(k) - 1 / k; }
-/// Its inverse, about (Banerjee et al. 2005, "Clustering on the unit hypersphere using von Mises-Fisher distributions").
+/// An approximation of its inverse (Banerjee et al. 2005, "Clustering on the unit hypersphere using von Mises-Fisher
+/// distributions").
 double concentration_of(double r) {
   return std::clamp(r * (3 - r * r) / (1 - std::min(r * r, 1 - 1e-9)), double(LobeMixture::least_concentration),
                     double(LobeMixture::most_concentration));
 }
 
-/// Whether numbers are such: of a place at no distance, for one, nothing is to be learned.
+/// Whether a sample is valid: its numbers are finite, which fails for a source at distance 0, for example.
 bool tells(const GuideSample& s) {
   return s.found > 0 && std::isfinite(s.found) && std::isfinite(s.scatter) && s.nearness < 1e15f && is_finite(s.position) &&
          is_finite(s.direction);
 }
 
-/// A sample's place as seen from the region's centre.
+/// The source of a sample's light as seen from the centre of the region.
 struct Seen {
   Vector3 direction;
   float nearness;
@@ -94,7 +97,8 @@ class Guide::Fit {
       variance += std::max(r_.squares_[i] / r_.count_ - mean[i] * mean[i], 0.0);
     }
     centre_ = {float(mean[0]), float(mean[1]), float(mean[2])};
-    // Places nearer to the centre than a part of the region's size are seen in all directions from it.
+    // A source closer to the centre than half the spread of the samples is seen in very different directions from them:
+    // nearness is limited.
     most_nearness_ = float(2 / std::max(std::sqrt(variance), 1e-20));
   }
 
@@ -117,7 +121,8 @@ class Guide::Fit {
     return {scale * v, std::min(scale * s.nearness, most_nearness_)};
   }
 
-  /// Lobes at samples: each far from those there are, and where much was found (Arthur & Vassilvitskii 2007, "k-means++").
+  /// Starts the lobes at samples: with a probability in proportion to X, and to the distance from existing lobes (Arthur &
+  /// Vassilvitskii 2007, "k-means++").
   void begin() {
     Chance chance(used_.size());
     std::vector<double> weight;
@@ -126,7 +131,7 @@ class Guide::Fit {
     for (int k = 0; k < lobes; ++k) {
       double sum = 0;
       for (const double w : weight) sum += w;
-      if (!(sum > 0)) {  // nothing is left: even
+      if (!(sum > 0)) {  // no samples are left: uniform directions
         r_.lobes_.set(
             centre_, k,
             {warp::sphere({(float(k) + 0.5f) / lobes, float(k) * 0.618f - float(int(float(k) * 0.618f))}), 0, 1, 1.0f / lobes});
@@ -195,7 +200,7 @@ class Guide::Fit {
           float(std::clamp((guided + 1) / (guided + scattered + r_.known_ * (1 - share_before_) + 2), least_share, most_share));
   }
 
-  /// Lobes of no use begin anew at samples that found more than the density there made likely.
+  /// Restarts lobes of negligible weight at samples with a large X, where the pdf is too low.
   void replace() {
     Chance chance(used_.size() + (std::uint64_t(r_.gathered_) << 20));
     const double mean = r_.found_ / r_.seen_;

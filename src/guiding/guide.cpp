@@ -8,7 +8,7 @@
 namespace etendue {
 namespace {
 
-/// The axis a normal is nearest to, and which way along it: one of six; without a normal the seventh.
+/// The signed axis that a normal is closest to, one of six; without a normal 6.
 std::uint32_t facing(const Normal3& n) {
   const float x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
   if (!(x + y + z > 0)) return 6;
@@ -38,7 +38,7 @@ void Guide::divide(std::uint32_t cell) {
   if (bytes() + sizeof(Region) + 2 * sizeof(Cell) > settings_.memory) return;
   const std::uint32_t region = cells_[cell].what;
   Region& r = regions_[region];
-  // Across where its samples are spread most, at their mean.
+  // At the mean position of the samples, across the axis of their largest variance.
   int axis = 0;
   double widest = 0;
   for (int i = 0; i < 3; ++i) {

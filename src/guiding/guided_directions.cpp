@@ -28,7 +28,7 @@ std::vector<GuideSample> GuidedDirections::learned(std::span<const SubpathVertex
                                                    std::span<const Spectrum> arrived) const {
   std::vector<GuideSample> samples;
   Spectrum light;
-  // From the end, so that light is of all paths with the next vertex.
+  // From the end, so that `light` is that of all paths that contain the next vertex.
   for (size_t k = walk.size(); k-- > 1;) {
     if (k + 2 < arrived.size()) light += arrived[k + 2];
     if (k + 1 >= walk.size() || k > notes_.size()) continue;
@@ -43,7 +43,7 @@ std::vector<GuideSample> GuidedDirections::learned(std::span<const SubpathVertex
       }
     if (!(sum > 0)) continue;
     s.found = sum / float(carried);
-    // Behind a mirror a place is as far as the way to it is long.
+    // Behind specular vertices the distance of a source is the length of the path to it.
     for (size_t m = k + 1; m < walk.size(); ++m) {
       distance_met +=
           walk[m].kind == PathVertex::Kind::escape ? infinity : distance(walk[m - 1].point.position, walk[m].point.position);

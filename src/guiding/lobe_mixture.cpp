@@ -21,8 +21,8 @@ void LobeMixture::set(const Point3& c, int i, const Lobe& lobe) {
 Vector3 SeenLobes::sample(float choice, Point2 u) const {
   int lobe = 0;
   while (lobe + 1 < LobeMixture::size && choice >= weight_[lobe]) choice -= weight_[lobe++];
-  // The cosine's distribution function inverted (Jakob 2012, "Numerically stable sampling of the von Mises-Fisher distribution
-  // on S^2"), for h = 1 - cosine.
+  // The inverse of the cosine's cumulative distribution function (Jakob 2012, "Numerically stable sampling of the von
+  // Mises-Fisher distribution on S^2"), for h = 1 - cosine.
   const float k = concentration_[lobe];
   const float h = clamp(-std::log(1 - (1 - std::exp(-2 * k)) * u.x) / k, 0, 2);
   const float r = safe_sqrt(h * (2 - h));

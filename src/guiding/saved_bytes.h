@@ -1,5 +1,5 @@
 #pragma once
-// Numbers to bytes and back, for states that are saved.
+// Conversion of values to bytes and back, for saved states.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +19,7 @@ void append(std::vector<std::byte>& to, const T& value) {
   to.insert(to.end(), bytes.begin(), bytes.end());
 }
 
-/// Takes a value off the front of bytes.
+/// Reads a value from the front of the bytes, and removes it there.
 template <class T>
 T take(std::span<const std::byte>& from) {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -30,7 +30,7 @@ T take(std::span<const std::byte>& from) {
   return value;
 }
 
-/// A list, with its length before it.
+/// A list, preceded by its length.
 template <class T>
 void append_all(std::vector<std::byte>& to, const std::vector<T>& values) {
   append(to, std::uint64_t(values.size()));

@@ -74,7 +74,7 @@ ShownPhotons PhotonProcess::some_of(std::initializer_list<const Photons*> maps, 
     for (size_t i = step / 2; i < photons->map.size() && shown.some.size() < most; i += step) {
       const Photon& p = photons->map[i];
       Wavelengths w = wavelengths_;
-      if (p.single) w.drop_secondary();
+      if (p.hero_only) w.drop_secondary();
       const Xyz power = to_xyz(p.throughput, w);
       const double n = photons->walks;
       shown.some.push_back(

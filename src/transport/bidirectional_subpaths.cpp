@@ -8,7 +8,7 @@ namespace {
 
 bool emitter_can_be_hit(const SubpathVertex& luminaire) { return !luminaire.point.object->delta(); }
 
-/// Memory of this thread that is used again by each sample: the rendering loop allocates nothing.
+/// Memory of this thread that every sample reuses, so that the rendering loop allocates nothing.
 template <class T>
 std::vector<T>& reused(int which) {
   static thread_local std::vector<T> memory[2];

@@ -4,18 +4,18 @@ namespace etendue {
 
 namespace {
 
-/// A path as the strategies see it. `merges`: the strategy at hand merges at vertex s, so the light walk went on there, and not
-/// by a connection.
+/// The pdfs of a path by all strategies. `merges`: the strategy that made the path merges at vertex s, which the light subpath
+/// sampled as well; otherwise it connects vertices s - 1 and s.
 class Strategies {
  public:
   Strategies(const ConnectedPath& p, Heuristic h, bool merges) : path_(p), heuristic_(h), merges_(merges) {}
 
   double raised(double ratio) const { return heuristic_ == Heuristic::balance ? ratio : ratio * ratio; }
-  /// What p_1 is multiplied by since D_0 stands for L_0.
+  /// The factor of p_j that replaces L_0 by D_0, for j = 1.
   double first(int j) const { return j == 1 ? double(path_.pdf_next_event) / path_.pdf_emission_origin : 1.0; }
 
-  /// The sum of (p_j / p_s)^beta over strategies with more vertices from the luminaire than s, connecting or merging, where
-  /// `ratio` stands for p_s.
+  /// The sum of (p_j / p_s)^beta over the strategies with more vertices from the luminaire than s, connecting and merging.
+  /// `ratio` is prod_{i<s} L_i prod_{i>=s} E_i over p_s: 1, or L_0 / D_0 if s = 1.
   double after(double ratio) const {
     double sum = 0;
     const int last = path_.s + path_.t - 1;
@@ -27,7 +27,7 @@ class Strategies {
     }
     return sum;
   }
-  /// The same of those with fewer.
+  /// The same for the strategies with fewer vertices from the luminaire.
   double before(double ratio) const {
     double sum = 0;
     for (int j = path_.s - 1; j >= 0; --j) {
@@ -38,7 +38,7 @@ class Strategies {
     }
     return sum;
   }
-  /// Of merging at vertex i, where `ratio` stands for p_i.
+  /// The term of merging at vertex i. `ratio` is prod_{j<i} L_j prod_{j>=i} E_j over p_s.
   double merged(double ratio, int i) const {
     const int last = path_.s + path_.t - 1;
     if (!(path_.merging.surface > 0) || i <= 0 || i >= last || !connectable(i)) return 0;
@@ -49,12 +49,13 @@ class Strategies {
   bool possible(int j) const {
     const int last = path_.s + path_.t - 1;
     if (j == 0) return path_.emitter_can_be_hit;
-    if (j == last && last == 1) return false;  // a luminaire seen by the lens is met, never connected
+    if (j == last && last == 1) return false;  // an emitter that the camera sees directly is hit, never connected to the lens
     return connectable(j - 1) && connectable(j);
   }
 
  private:
-  // Vertex i of the whole path, its densities, and whether it can stand at a connection: those at this one can.
+  // Vertex i of the whole path, whether it can be connected (the two vertices of the connection that was made can), and its
+  // pdfs.
   const SubpathVertex& vertex(int i) const { return i < path_.s ? path_.light[i] : path_.camera[path_.s + path_.t - 1 - i]; }
   bool connectable(int i) const { return i == 0 || (i == path_.s - 1 && !merges_) || i == path_.s || !vertex(i).specular; }
   double from_light(int i) const {

@@ -5,10 +5,10 @@
 namespace etendue {
 namespace {
 
-/// Whether light goes on behind the surface, in whatever medium.
+/// Whether light continues behind the surface, in any medium.
 bool lets_in(const SceneObject& object) { return object.shader && (object.shader->transmits() || is_sheet(*object.shader)); }
 
-/// Whether it bounds nothing itself: light goes on behind it in what is around.
+/// Whether the surface is a sheet without a medium inside: behind it light continues in the medium around it.
 bool mere_sheet(const SceneObject& object) { return is_sheet(*object.shader) && !enterable(object); }
 
 }  // namespace
@@ -18,20 +18,20 @@ bool boundary_goes_before(const SceneObject& a, const SceneObject& b) {
   if (!lets_in(a)) return false;
   if (mere_sheet(a) || mere_sheet(b)) return mere_sheet(a) && !mere_sheet(b);
   if (a.priority != b.priority) return a.priority > b.priority;
-  // What only bounds a medium gives way to what refracts.
+  // A boundary that only encloses a medium comes after one that refracts.
   return a.shader->possible_lobes() != null_scattering && b.shader->possible_lobes() == null_scattering;
 }
 
 float reach_of_coincidence(const Scene& scene, const SurfacePoint& point) {
-  // Each of two surfaces in one place is found within its error, which may be nothing (in a plane z = 0, say): then within a
-  // few roundings of the position.
+  // Each of two coincident surfaces is found within its error bound, which may be zero (in a plane z = 0, for example): then
+  // within a few roundings of the position.
   const float largest = std::max({std::abs(point.position.x), std::abs(point.position.y), std::abs(point.position.z)});
   return 4 * point.error + 2.5e-7f * largest + 1e-9f * scene.radius();
 }
 
 namespace {
 
-/// Whether two hits are on the same object in the same place: one object may stand in several scenes.
+/// Whether two hits are on the same object in the same instance: one object may be in several scenes.
 bool same_thing(const Hit& a, const Hit& b) {
   if (a.object != b.object || a.depth != b.depth) return false;
   for (int i = 0; i < a.depth; ++i)
@@ -47,7 +47,7 @@ bool enterable_once_prepared(const SceneObject& object) {
     const Ref<SceneObject> twin = ref_cast<SceneObject>(copy(object));
     prepare_tree(*twin);
     return enterable(*twin);
-  } catch (const Error&) {  // whoever prepares the object itself says why
+  } catch (const Error&) {  // the error is reported when the object itself is prepared
   } catch (const Errors&) {
   }
   return false;
@@ -60,7 +60,7 @@ void coincident_hits(const Scene& scene, const Ray& ray, const Hit& hit, const S
   probe.origin = point.position - reach * probe.direction;
   probe.maximum = 2 * reach;
   HitList all;
-  all.add(hit);  // so that a scene need not find it once more
+  all.add(hit);  // so that the scene need not report it again
   scene.all(probe, all);
   for (int i = 1; i < all.size; ++i) {
     bool known = same_thing(all.hits[i], hit);
@@ -76,7 +76,7 @@ void resolve_coincident(const Scene& scene, const Ray& ray, Hit& hit, SurfacePoi
   Ray probe;
   coincident_hits(scene, ray, hit, point, probe, others);
   if (others.size == 0) return;
-  const float error = length(probe.origin - point.position);  // the next ray must start beyond all of them
+  const float error = length(probe.origin - point.position);  // the next ray must start beyond all of these surfaces
 
   int first = -1;  // the hit itself
   for (int i = 0; i < others.size; ++i)

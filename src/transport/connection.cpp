@@ -24,7 +24,7 @@ std::optional<Connection> connect(const Scene& scene, const SubpathVertex& y, co
   if (at_z.value.black()) return {};
   const ScatterValue at_y = scattering(y, y.out, -c.direction, Transport::importance);
   c.light = y.throughput * at_y.value * at_z.value * z.throughput / squared;
-  // Both walks have made up for the wavelengths they dropped: once is enough.
+  // If both subpaths have dropped wavelengths, both contain the factor spectrum_size, which must be applied once only.
   if (y.single && z.single) c.light /= float(spectrum_size);
   if (c.light.black()) return {};
   MediumStack scratch;
@@ -89,7 +89,7 @@ std::optional<LensConnection> connect_to_lens(const RenderContext& context, cons
   const Ray ray_to_lens = lens_ray(y, *lens);
   MediumStack scratch;
   const MediumStack* media = media_towards(y, lens->direction, scratch);
-  if (emits && media) {  // those of the subpath are on the side where it began
+  if (emits && media) {  // the stack of the vertex is for the side on which the subpath started
     media_at(context.scene, ray_to_lens.origin, ray_to_lens.time, scratch);
     media = &scratch;
   }

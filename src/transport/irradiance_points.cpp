@@ -7,15 +7,15 @@
 namespace etendue {
 namespace {
 
-constexpr float same_way = 0.9f;  // cosine between normals of surfaces that are taken for one
+constexpr float same_way = 0.9f;  // minimum cosine between normals of surfaces that are taken as one
 
-/// Of the photons near one of them, itself included: where a photon lies there is one more than by chance, and of others, whose
-/// walks are well spread, about one less.
+/// The irradiance at a photon from the photons near it, including the photon itself: at the position of a photon there is one
+/// more than on average, and of the others, whose subpaths are well stratified, about one less.
 Spectrum irradiance_at(const Scene& scene, const PhotonMap& map, size_t i, const Vector3& normal,
                        const IrradiancePoints::Estimate& estimate) {
   std::vector<PointTree::Near>& near = PointTree::near_on_this_thread();
   map.tree().nearest(map[i].position, estimate.farthest, estimate.nearest, near);
-  // The farthest says how large the disc is, and lies on its edge.
+  // The farthest photon gives the radius of the disc; as it lies on its edge, it is not counted.
   const bool all = near.size() == estimate.nearest;
   const float radius = all ? std::sqrt(near.front().squared) : estimate.farthest;
   Spectrum sum;

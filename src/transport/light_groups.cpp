@@ -11,7 +11,7 @@
 namespace etendue {
 namespace {
 
-/// The names that a luminaire is known by.
+/// The names by which a luminaire can be in a group: that of its object, and that of its emission.
 std::vector<std::string> names_of(const SceneObject& luminaire) {
   std::vector<std::string> names;
   for (const Component* part :
@@ -25,7 +25,7 @@ std::string trimmed(std::string_view s) {
   return first == s.npos ? std::string() : std::string(s.substr(first, last - first + 1));
 }
 
-/// The names of luminaires in a group's: that of one, or of several with '+' between them.
+/// The names of luminaires in the name of a group: one, or several separated by '+'.
 std::vector<std::string> names_in(const std::string& group, const std::set<std::string>& known) {
   if (known.contains(group)) return {group};
   std::vector<std::string> names;
@@ -72,7 +72,7 @@ LightGroups::LightGroups(const Scene& scene, const ImageBuffer& image) {
 
 LightParts::LightParts(const ImageBuffer& image, const LightGroups& groups)
     : groups_(groups), lengths_(size_t(image.path_lengths)), before_(collecting) {
-  // Who is told of lengths is told of groups, so that there is one length at least for the observer.
+  // report_light only calls LightParts::add if lengths are stored, so groups need at least one length.
   first_group_ = groups.count() > 0 ? std::max<size_t>(lengths_, 1) : lengths_;
   parts_.resize(first_group_ + size_t(groups.count()));
   collecting = groups.count() > 0 ? this : nullptr;

@@ -12,7 +12,7 @@ double squared_distance(const Point3& a, const Point3& b) {
 }
 double cosine(const ChainVertex& v, const Vector3& direction) { return double(std::abs(dot(v.point.normal, direction))); }
 
-/// Whether two unit vectors are the same, up to what the places of vertices near each other are exact to.
+/// Whether two unit vectors are equal, up to the rounding of the positions of vertices near each other.
 bool same(const Vector3& a, const Vector3& b) { return dot(a, b) > 0.999f; }
 
 }  // namespace
@@ -53,7 +53,7 @@ void PathSpace::move(LightPath& path, Arena& to) const {
   path.arena = &to;
   for (ChainVertex& v : path.x)
     if (!v.on_surface()) {
-      v.point.media = v.media = nullptr;  // of a luminaire that was met; a walk from there finds them anew
+      v.point.media = v.media = nullptr;  // on a luminaire that a walk hit; a walk from there finds the media again
       v.scatter = nullptr;
     } else {
       if (v.media) v.point.media = v.media = to.make<MediumStack>(*v.media);
@@ -61,7 +61,8 @@ void PathSpace::move(LightPath& path, Arena& to) const {
     }
 }
 
-/// Of a specular vertex: what it does to light either way. False: radiance does not come this way.
+/// Computes fraction, beam and lobe probabilities of a specular vertex. False: the lobe does not scatter radiance along this
+/// path.
 bool PathSpace::fill_specular(LightPath& path, int i) const {
   ChainVertex& v = path.x[size_t(i)];
   const Vector3 out = v.out, in = -path.x[size_t(i) - 1].out;
@@ -79,7 +80,7 @@ bool PathSpace::fill_specular(LightPath& path, int i) const {
   return true;
 }
 
-/// Multiplies f by what the camera makes of light that comes along a ray. False: nothing.
+/// Multiplies f by the weight of the camera for light along a ray. False: it is 0.
 bool PathSpace::weigh_camera(LightPath& path, const Ray& ray) const {
   CameraRay sent;
   Wavelengths left = path.wavelengths;
@@ -96,7 +97,7 @@ bool PathSpace::weigh_camera(LightPath& path, const Ray& ray) const {
 
 namespace {
 
-/// Lets `out` be another direction, and the media stay those on its side: a walk from a luminaire had come from the other one.
+/// Sets `out`, and the media to those on its side: a walk from a luminaire came to the vertex from the other side.
 void turn(ChainVertex& v, const Vector3& out, Arena& arena) {
   MediumStack other;
   if (media_towards(v, out, other) == &other) v.point.media = v.media = arena.make<MediumStack>(other);
@@ -119,7 +120,7 @@ bool PathSpace::complete(LightPath& path) const {
   }
   for (int i = 1; i < k; ++i)
     if (path.specular(i) && !fill_specular(path, i)) return false;
-  // From the luminaire.
+  // Pdfs of walks from the luminaire.
   const SceneObject& luminaire = *at(0).point.object;
   at(0).from_light = double(lights.probability(luminaire)) * double(luminaire.area_pdf(at(0).point));
   for (int i = 1; i < k; ++i) {
@@ -133,10 +134,10 @@ bool PathSpace::complete(LightPath& path) const {
       const Vector3 before = -at(i - 2).out;
       p = double(scattering_pdf(from, before, from.out, Transport::importance)) * lobe_share(from, before, smooth_lobes);
     }
-    // Along a surface no light leaves, but light_angle is without bound there.
+    // Along the surface p is 0, but light_angle is unbounded.
     at(i).from_light = path.specular(i) || !(p > 0) ? p : p * path.light_angle(i);
   }
-  // From the camera.
+  // Pdfs of walks from the camera, and f.
   Ray ray;
   ray.origin = at(k).point.position;
   ray.direction = -at(k - 1).out;
@@ -171,7 +172,7 @@ bool PathSpace::complete(LightPath& path) const {
 double PathSpace::pdf(const LightPath& path, int l, int r) {
   double sum = 0;
   for (int b = 0; b <= r; ++b) {
-    // A walk that meets a luminaire is joined to nothing.
+    // For b = 0 and l = 0 the camera walk hits the luminaire, and nothing is connected.
     if ((l > 0 || b > 0) && (path.specular(l + b - 1) || path.specular(l + b))) continue;
     double product = 1;
     for (int i = l; i < l + r; ++i) product *= i < l + b ? path.x[size_t(i)].from_light : path.x[size_t(i)].from_camera;

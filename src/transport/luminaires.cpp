@@ -5,8 +5,8 @@
 namespace etendue {
 namespace {
 
-/// The beginning of light that passes `p`, unit `outward` the way it came. All bounded objects lie behind p, but surfaces
-/// without end may lie before it, and light meets them first: it begins beyond the last of them. False: there is no last.
+/// The origin of light from infinity that passes `p`; `outward` is unit, against the light. All bounded objects lie behind p,
+/// but light may hit unbounded surfaces before p: the origin lies beyond the last of them. False: there is no last one.
 bool begin_before_all(const Scene& scene, const Point3& p, const Vector3& outward, float time, Point3& origin) {
   constexpr int most = 1000;
   Ray ray;
@@ -18,7 +18,7 @@ bool begin_before_all(const Scene& scene, const Point3& p, const Vector3& outwar
     Hit hit;
     if (!scene.nearest(ray, hit)) return true;
     scene.locate(ray, hit, point);
-    // So far that rounding on the long way does not matter.
+    // So far that rounding over the long distance has no effect.
     origin = point.position + (scene.radius() + 1e-3f * length(point.position - p)) * outward;
     ray.origin = point.exit(outward);
   }

@@ -10,7 +10,7 @@
 namespace etendue {
 namespace {
 
-/// exp(-s d) with 0 * infinity = 0: nothing is lost where nothing absorbs.
+/// exp(-s d) with 0 * infinity = 0: full transmittance without extinction.
 Spectrum exponential(const Spectrum& extinction, float distance) {
   return map(extinction, [distance](float s) { return s > 0 ? std::exp(-s * distance) : 1.0f; });
 }
@@ -26,7 +26,7 @@ Spectrum emitted_along(const VolumeCoefficients& c, float distance) {
   return light;
 }
 
-/// Probabilities of the wavelengths, in proportion to what a walk carries of each.
+/// Probabilities w_k of the wavelengths, in proportion to the walk's throughput.
 Spectrum shares(const Spectrum& throughput) {
   const float sum = throughput.average() * spectrum_size;
   return sum > 0 ? throughput / sum : Spectrum(1.0f / spectrum_size);
@@ -35,13 +35,13 @@ Spectrum shares(const Spectrum& throughput) {
 FreeFlight through_homogeneous(const VolumeCoefficients& c, float reach, const Spectrum& throughput, NumberStream& numbers) {
   const Spectrum extinction = c.extinction();
   const float choice = numbers.next(), u = numbers.next();
-  // Where nothing scatters, nothing is drawn.
+  // Without scattering there is no distance to sample.
   if (c.scattering.black()) return {false, reach, exponential(extinction, reach)};
 
   const Spectrum weights = shares(throughput);
   int k = 0;
   for (float rest = choice - weights[0]; rest >= 0 && k + 1 < spectrum_size; rest -= weights[k]) ++k;
-  while (k > 0 && !(weights[k] > 0)) --k;  // by rounding, behind the last that counts
+  while (k > 0 && !(weights[k] > 0)) --k;  // after rounding: back to the last wavelength with a positive probability
 
   const float distance = extinction[k] > 0 ? -std::log1p(-u) / extinction[k] : infinity;
   const bool scattered = distance < reach;
@@ -53,17 +53,17 @@ FreeFlight through_homogeneous(const VolumeCoefficients& c, float reach, const S
   return {scattered, scattered ? distance : reach, (scattered ? c.scattering * t : t) / pdf};
 }
 
-/// A weight this small is not followed further without a chance to end: media may go on for ever.
+/// Below this weight Russian roulette is applied: media may be infinite.
 constexpr float small = 0.05f;
 
-/// Goes from one tentative collision to the next: calls `at(t, coefficients)` at each of them until that says false, or the ray
-/// ends. `local` is the ray in the medium's coordinates, `m` the bound of extinction [1/m]. Returns whether the ray's end was
-/// reached.
+/// Delta tracking: calls `at(t, coefficients)` at each tentative collision until it returns false, or the ray ends. `local` is
+/// the ray in object space, `m` the majorant of the extinction [1/m]. Returns whether the end of the ray was reached.
 template <class At>
 bool collide(const VolumeShader& volume, const Ray& local, float reach, float m, const Wavelengths& w, NumberStream& numbers,
              const At& at) {
   if (!(m > 0)) return true;
-  // In double: far along the ray a step through dense matter would be lost in a float, and the loop would never end.
+  // In double: far along the ray a step through a dense medium would be lost to rounding in a float, and the loop would never
+  // end.
   for (double along = 0;;) {
     along -= double(std::log1p(-numbers.next())) / double(m);
     if (!(along < double(reach))) return true;
@@ -72,17 +72,17 @@ bool collide(const VolumeShader& volume, const Ray& local, float reach, float m,
   }
 }
 
-/// What is left of a bound when matter with this extinction is there. A bound that is none would make light out of nothing:
-/// that it is one is the medium's promise, which `conform` tests.
+/// The null-scattering coefficient n = m - s. m must be an upper bound of the extinction, otherwise energy is created;
+/// `conform` tests the majorants of media.
 Spectrum left_of(float m, const VolumeCoefficients& c) { return max(Spectrum(m) - c.extinction(), 0); }
 
-/// So many tentative collisions at least, on average, along a ray through a medium that shines.
+/// Minimum mean number of tentative collisions along a ray through a medium that emits.
 constexpr float collisions_for_light = 4;
 
 FreeFlight through_heterogeneous(const VolumeShader& volume, const Ray& local, float reach, const Spectrum& throughput,
                                  const Wavelengths& w, NumberStream& numbers) {
   float m = volume.majorant(w).maximum();
-  // Light of a medium is found at collisions, so there must be some where it is thin, or is no matter at all but shines.
+  // Emission is estimated at collisions, so there must be some even if the medium is thin, or has emission only.
   if (volume.emits() && std::isfinite(reach) && reach > 0) m = std::max(m, collisions_for_light / reach);
   FreeFlight flight{false, reach, Spectrum(1.0f)};
   collide(volume, local, reach, m, w, numbers, [&](float t, const VolumeCoefficients& c) {
@@ -102,7 +102,7 @@ FreeFlight through_heterogeneous(const VolumeShader& volume, const Ray& local, f
     }
     flight.weight *= null / (m * (1 - p));
     const float most = flight.weight.maximum();
-    if (most < small) {  // absorbed almost for sure
+    if (most < small) {  // Russian roulette: most of the light was absorbed
       if (numbers.next() >= most)
         flight.weight = {};
       else
@@ -113,8 +113,8 @@ FreeFlight through_heterogeneous(const VolumeShader& volume, const Ray& local, f
   return flight;
 }
 
-/// A ray's reach where something ends it, and else as far as the medium goes: further on there may be no matter at all, and a
-/// walk from one tentative collision to the next would never come to an end.
+/// The reach of a ray if a surface ends it, otherwise the distance to the end of the medium: beyond that there may be no matter
+/// at all, and delta tracking would never end.
 float reach_within(const Medium& medium, const Ray& ray, float reach) {
   return std::isfinite(reach) ? reach : within_object(medium, ray);
 }
@@ -125,7 +125,8 @@ MediumInterval medium_interval(const Medium& medium, const Ray& ray, float reach
   if (!medium.object || !medium.object->surrounds()) return {0, reach_within(medium, ray, reach)};
   const float far = medium.object->surrounding_reach(ray);
   if (!std::isfinite(far)) return {0, reach};
-  // From its far end back through the sphere: what is left of the way to there lies before it.
+  // The near end of the surroundings: a ray from the far end backwards gives the length inside, and the rest of the distance
+  // lies before it.
   Ray back = ray;
   back.origin = ray(far);
   back.direction = -ray.direction;
@@ -187,7 +188,7 @@ Spectrum weighting_transmittance(const Medium& medium, const Ray& ray, float dis
   Spectrum depth;
   for (int i = 0; i < points; ++i)
     depth += volume.coefficients(local(length * (float(i) + 0.5f) / points), ray.time, w).extinction();
-  // Never so small that a strategy is thought to be impossible.
+  // Bounded from below, so that no strategy gets the pdf 0.
   return max(exponential(depth, length / points), 1e-6f);
 }
 
@@ -207,8 +208,9 @@ FreeFlight sample_free_flight(const Medium& medium, const Ray& ray, float reach,
   return flight;
 }
 
-// A ray from the point to infinity crosses the surfaces of all objects around it. Walking the same way from outside,
-// where there is nothing, to the point enters and leaves them as any path would.
+// A ray from the point to infinity crosses the surfaces of all objects around the point. The crossings are then applied in
+// reverse order, from outside, where the stack is empty, to the point: the objects are entered and left as by a path on that
+// ray.
 void media_at_slowly(const Scene& scene, const Point3& p, float time, MediumStack& media) {
   struct Crossing {
     const SceneObject* object;

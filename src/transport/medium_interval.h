@@ -1,15 +1,15 @@
 #pragma once
-// MediumInterval: where along a ray a medium is.
+// MediumInterval: the part of a ray that lies in a medium.
 
 #include "etendue/transport/medium.h"
 
 namespace etendue {
 
-/// From `begin` to `end` [m] of the ray; of a medium that the ray passes by, nothing.
+/// From `begin` to `end` [m] along the ray; empty if the ray misses the medium.
 struct MediumInterval {
   float begin = 0, end = 0;
   float length() const { return end - begin; }
-  /// The ray from where it comes in.
+  /// The ray with its origin at `begin`.
   Ray within(const Ray& ray) const {
     Ray from = ray;
     if (begin > 0) from.origin = ray(begin);
@@ -17,8 +17,8 @@ struct MediumInterval {
   }
 };
 
-/// Where a medium is of a ray that something ends at `reach` [m], or nothing (infinity): as far as its object's bounds; of
-/// surroundings that have an end within their sphere alone, wherever the ray begins.
+/// The part of a ray in a medium, for a ray that a surface ends at `reach` [m], or that nothing ends (infinity): then up to the
+/// bounding box of the medium's object. Bounded surroundings fill their sphere only, wherever the ray starts.
 MediumInterval medium_interval(const Medium&, const Ray&, float reach);
 
 }  // namespace etendue

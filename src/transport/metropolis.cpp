@@ -20,7 +20,7 @@ FilmWeights::FilmWeights(std::span<const double> light) : weights_(cells) {
           sum += light[size_t(j * side + i)];
           count += 1;
         }
-      // A cell where nothing was found may have light all the same.
+      // A cell in which no light was found may contain some nevertheless.
       const double mean = all / double(cells);
       weights_[size_t(y * side + x)] = float(mean / (sum / count + 0.03 * mean));
     }

@@ -18,10 +18,10 @@ Names joined(const Names& a, const Names& b) {
 Names delta(const SceneTraits& t) { return joined(t.points, t.distant); }
 Names extended(const SceneTraits& t) { return joined(t.areas, t.environments); }
 
-/// A verb as it follows names: "the Sphere sends", "the Sphere and the Box send".
+/// A verb that follows names: "the Sphere sends", "the Sphere and the Box send".
 std::string verb(const Names& names, const std::string& plural) { return " " + plural + (names.size() == 1 ? "s" : ""); }
 
-/// "<before><names><after>"; empty when there are no names.
+/// "<before><names><after>"; empty if there are no names.
 std::string told(const char* before, const Names& names, const std::string& after = "") {
   return names.empty() ? std::string() : before + some_of(names) + after;
 }

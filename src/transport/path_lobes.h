@@ -1,14 +1,14 @@
 #pragma once
-// What walks in path space choose among at a vertex, and how likely.
+// The lobes that walks in path space sample at a vertex, and their probabilities.
 
 #include "etendue/transport/light_path.h"
 
 namespace etendue {
 
-/// All smooth lobes together, or a specular one.
+/// A walk chooses between all smooth lobes together and each specular lobe.
 inline constexpr Lobes lobe_groups[] = {smooth_lobes, specular_reflection, specular_transmission};
 
-/// The probability of one of them, for a walk that came from `out`: in proportion to the light that it sends on.
+/// The probability of a group for a walk that came from `out`: in proportion to its albedo.
 inline double lobe_share(const ChainVertex& v, const Vector3& out, Lobes group) {
   if (!v.scatter || !v.scatter->has(group)) return 0;
   if (!v.scatter->has(Lobes(vertex_lobes & ~group))) return 1;
@@ -21,7 +21,8 @@ inline double lobe_share(const ChainVertex& v, const Vector3& out, Lobes group) 
   return sum > 0 ? own / sum : 0;
 }
 
-/// Where a specular lobe leads.
+/// The direction and weight of a specular lobe. Empty: it scatters nothing, or enters an object with subsurface scattering.
+/// Throws Error if the lobe has several directions.
 inline std::optional<ScatterSample> follow_specular(const ChainVertex& v, const Vector3& out, Transport transport, Lobe lobe) {
   if (!v.scatter) return {};
   const auto s = v.scatter->sample(out, 0, {}, transport, lobe);

@@ -70,8 +70,8 @@ void PathSink::record_next_event(const Spectrum& light, int length, float weight
 
 namespace {
 
-/// An object's place among the scene's own. Of many objects each thread keeps a sorted list for the scene it last asked about,
-/// which is told by its version.
+/// The index of an object among the scene's objects. For scenes with many objects each thread caches a sorted list for the last
+/// scene, identified by its version.
 int place_in(const Scene& scene, const SceneObject* object) {
   constexpr size_t few = 32;
   if (scene.objects.size() <= few) {

@@ -1,4 +1,4 @@
-// How paths are made: rays, walks, and what joins them.
+// Path space: traces rays, chains and walks, and connects them to paths (light_path.h).
 
 #include "etendue/transport/boundaries.h"
 #include "etendue/transport/visibility.h"
@@ -13,7 +13,7 @@ Point2 next_pair(ChoiceNumbers& choices) {
   return {x, next(choices)};
 }
 
-/// Even media, and surfaces that only hide one another, ask for none.
+/// Homogeneous media and surfaces hidden by priority take no random numbers.
 struct NoNumbers final : NumberSource {
   float number(SampleKey, std::uint32_t) const override { return 0.5f; }
   Point2 pair(SampleKey, std::uint32_t) const override { return {0.5f, 0.5f}; }
@@ -146,9 +146,9 @@ bool PathSpace::walk(Walk& walk, int count, Transport transport, ChoiceNumbers& 
       double u = choices.next();
       for (; chosen < std::size(lobe_groups); ++chosen)
         if ((u -= lobe_share(from, out, lobe_groups[chosen])) < 0) break;
-      if (chosen == std::size(lobe_groups)) return false;  // nothing is sent on; or by rounding
+      if (chosen == std::size(lobe_groups)) return false;  // nothing is scattered; or by rounding
       const bool specular_one = lobe_groups[chosen] != smooth_lobes;
-      if (specular_one && walk.size() == given) return false;  // what was given stays smooth
+      if (specular_one && walk.size() == given) return false;  // the vertices that were given stay smooth
       const auto s = specular_one ? follow_specular(from, out, transport, Lobe(lobe_groups[chosen]))
                                   : from.scatter->sample(out, next(choices), next_pair(choices), transport, smooth_lobes);
       if (!s || enters_subsurface(from.point, *s)) return false;
@@ -192,7 +192,7 @@ bool PathSpace::visible(const LightPath& path, int i) const {
 bool PathSpace::joined(LightPath& y, const Walk& light, int b, const Walk& camera, int c) const {
   y.x.assign(light.begin(), light.begin() + b);
   y.x.insert(y.x.end(), camera.rend() - c, camera.rend());
-  // Where a walk ends it has not gone on by a mirror.
+  // The last vertex of each walk is connected here, so it does not count as specular.
   if (b == 0) {
     if (!is_luminaire(y.x.front())) return false;
     y.x.front().specular = false;
@@ -211,7 +211,7 @@ bool PathSpace::join(LightPath& y, const std::vector<ChainVertex>& rest, int r, 
   const int b = std::min(int(choices.next() * (r + 1)), r);
   const bool meets = y.x.empty() && b == 0;
   if (!walk(y.x, b, Transport::importance, choices, y)) return false;
-  // The camera's walk comes against the order of vertices.
+  // The camera walk is in reverse order of the vertices.
   std::vector<ChainVertex> camera(rest.rbegin(), rest.rend());
   if (!walk(camera, r - b, Transport::radiance, choices, y, meets)) return false;
   const auto joins = [](const ChainVertex& v) { return !v.on_surface() || v.scatters_smoothly(); };

@@ -17,8 +17,8 @@ Ray leaving_ray(const PathVertex& from, const Vector3& direction) {
 Ray connecting_ray(const PathVertex& from, const PathVertex& to) {
   const Vector3 direction = normalize(to.point.position - from.point.position);
   Ray ray = leaving_ray(from, direction);
-  // At both ends on the side for which scattering was asked, which between two points of one wall is a matter of rounding: with
-  // light on its outside, a ray that ended within would bring it in.
+  // Both ends lie on the side for which scattering was evaluated. Between two points of one wall that side is a matter of
+  // rounding: if the light is on the outside of the wall, a ray that ended inside would let it in.
   const Vector3 way = to.point.exit(-direction) - ray.origin;
   const float distance = length(way);
   ray.direction = 1 / distance * way;
@@ -35,7 +35,7 @@ Ray lens_ray(const PathVertex& v, const LensSample& lens) {
 
 const MediumStack* media_towards(const PathVertex& v, const Vector3& direction, MediumStack& scratch) {
   if (!v.media || !v.on_surface()) return v.media;
-  // On the other side of the surface than the path came from, the object's inside begins or ends.
+  // On the side of the surface opposite to that from which the path came, the stack differs by the object.
   const bool through = (dot(v.point.normal, v.out) > 0) != (dot(v.point.normal, direction) > 0);
   if (!through || !v.point.object->shader) return v.media;
   scratch = *v.media;

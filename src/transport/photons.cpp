@@ -23,7 +23,7 @@ Spectrum scattered_from_photon(const PathVertex& at, const Photon& photon, const
     for (int i = 0; i < spectrum_size; ++i) scattered.set(i, s[i] > 0 ? phase * light[i] / s[i] : 0);
     return scattered;
   }
-  // The cosine of the light's direction is in the density of photons already.
+  // The density of photons already includes the cosine of the incident direction.
   const float cosine = std::abs(dot(at.point.normal, photon.out));
   if (photon.in_medium || !at.scatter || !(cosine > 0)) return {};
   return at.scatter->evaluate(at.out, photon.out, Transport::radiance, at.lobes) * light / cosine;
@@ -48,7 +48,7 @@ void PhotonMap::build(std::vector<Photon>&& photons) {
   std::vector<Point3> places(photons_.size());
   for (size_t i = 0; i < photons_.size(); ++i) places[i] = photons_[i].position;
   std::vector<std::uint32_t> order = tree_.build(places);
-  // Put into that order where they lie, cycle by cycle, so that no second list of them is needed.
+  // Sorted in place, cycle by cycle of the permutation, so that no second list is needed.
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     if (order[i] == i) continue;
     const Photon first = photons_[i];
@@ -65,14 +65,14 @@ void PhotonMap::build(std::vector<Photon>&& photons) {
 
 namespace {
 
-/// What the weight of merging with vertex i of a light walk needs.
+/// The part of the weight of merging with vertex i that depends on the light subpath.
 PhotonWeight weight_of(const std::vector<SubpathVertex>& walk, size_t i, float pdf_next_event, const StrategyWeights& against,
                        const EmissionPlane& front) {
   const SubpathVertex &photon = walk[i], &luminaire = walk[0];
   ConnectedPath path;
   path.light = walk.data();
   path.s = int(i);
-  path.t = 2;  // at least: what merges is no end of the path
+  path.t = 2;  // at least: the merged vertex is not an end of the path
   path.light_last_from_camera = vertex_pdf(1, photon, walk[i - 1], photon.out, photon.mean_transmittance, front);
   path.pdf_next_event = pdf_next_event;
   path.pdf_emission_origin = luminaire.pdf_forward;
@@ -96,7 +96,7 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
     if (!generate_light_subpath(context.scene, lights, time, limits, sample, walk, light, targets)) continue;
     if (sample.aborted()) return;
     const float luminaire_pdf = walk.size() > 1 && against ? pdf_next_event(lights, walk[1], walk[0], walk[1].out) : 0;
-    bool specular = true;  // all the way from the luminaire
+    bool specular = true;  // whether all vertices since the luminaire are specular
     for (size_t i = 1; i < walk.size(); ++i) {
       const SubpathVertex& v = walk[i];
       const bool caustic = i > 1 && specular;

@@ -16,7 +16,7 @@ std::vector<std::uint32_t> PointTree::build(std::span<const Point3> points) {
   if (points.size() > std::numeric_limits<std::uint32_t>::max()) throw Error("a tree of points holds at most 2^32 of them");
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0u);
-  // Halving goes on as long as the larger half has more than a leaf: all nodes above are numbered level by level.
+  // Ranges are halved until the larger half fits in a leaf: the nodes above are numbered level by level.
   size_t levels = 0;
   for (size_t n = points.size(); n > leaf; n -= n / 2) ++levels;
   planes_.assign((size_t(1) << levels) - 1, {});
@@ -39,7 +39,7 @@ void PointTree::divide(std::span<const Point3> points, std::uint32_t* order, siz
   const Vector3 edge = high - low;
   const int axis = edge.x >= edge.y && edge.x >= edge.z ? 0 : edge.y >= edge.z ? 1 : 2;
   const size_t middle = begin + (end - begin) / 2;
-  // Points at one place are told apart by their number, so that the order is the same whatever the library does.
+  // Points with equal coordinates are ordered by their index, so that the order does not depend on the standard library.
   std::nth_element(order + begin, order + middle, order + end, [&](std::uint32_t a, std::uint32_t b) {
     const float x = points[a][axis], y = points[b][axis];
     return x != y ? x < y : a < b;

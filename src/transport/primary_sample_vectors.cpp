@@ -76,10 +76,11 @@ float MutatedPrimarySamples::proposed(Walk& walk, std::uint32_t dimension, const
   Coordinate& c = walk[dimension];
   if (c.changed == time_) return c.value;
   if (!large_) {
-    // First, where it stands in the state that this proposal is made of: since the last large step as that would have drawn it
-    // (one that was never asked for is such a one), then moved as often as it was left out. That belongs to the state, and
-    // stays when the proposal is rejected. Were it drawn afresh for the next proposal, states that leave numbers out would try
-    // those numbers again and again from where they once were good: they would be left too early, for states that ask for more.
+    // The value of the number in the current state, which this proposal mutates. If the number was not used since the last
+    // large step (or never), it is drawn now, as that step would have done; then it gets the small steps that it missed. This
+    // value belongs to the current state, and stays if the proposal is rejected. If it were drawn again for each proposal,
+    // states that do not use a number would repeatedly try new values of it, starting from one that once was good: such states
+    // would be left too early, for states that use more numbers.
     if (c.changed < last_large_) {
       c.value = draw();
       c.changed = last_large_;

@@ -11,7 +11,8 @@ namespace {
 constexpr Lobes mirrors = specular_reflection | specular_transmission;
 constexpr size_t most_spheres = 64;
 
-/// Whether something in an object throws light on. `instead`: the shader of all within; null: their own.
+/// Whether an object, or one inside it, has specular lobes and so casts caustics. `instead`: the shader that replaces those of
+/// all objects inside; null: their own.
 bool throws_on(const SceneObject& object, const Shader* instead) {
   const Shader* shader = instead ? instead : object.shader.get();
   if (const Scene* inner = scene_within(object)) {
@@ -41,7 +42,8 @@ ProjectionMap::ProjectionMap(const Scene& scene) {
   useful_ = sum > 0 && (scene.unbounded() || sum < square(scene.radius()));
 }
 
-/// Halves the list across its longest extent until `most` spheres are enough for each half.
+/// Halves the list at the median of its longest extent, with half of the `most` spheres for each half, until a half has no more
+/// spheres than that. A half with `most` = 1 gets one bounding sphere.
 void ProjectionMap::share(std::vector<Sphere>& spheres, size_t begin, size_t end, size_t most) {
   Bounds3 bounds, centres;
   for (size_t i = begin; i < end; ++i) {
@@ -67,7 +69,7 @@ void ProjectionMap::share(std::vector<Sphere>& spheres, size_t begin, size_t end
   }
 }
 
-/// A place on the disc of a target, uniform over all of them together; how many they are there. [0, 1)^2 to the place.
+/// A point on the disc of a sphere, uniform over all discs together, with its pdf: it counts the discs that contain the point.
 Point3 ProjectionMap::place(Point2 u, const Vector3& direction, float& pdf) const {
   const float sum = up_to_.back(), at = u.x * sum;
   const size_t k = std::min(size_t(std::ranges::upper_bound(up_to_, at) - up_to_.begin()), spheres_.size() - 1);
@@ -79,10 +81,11 @@ Point3 ProjectionMap::place(Point2 u, const Vector3& direction, float& pdf) cons
   return through;
 }
 
-/// A direction towards a target from a point, or one that its emission shader chooses.
+/// A direction towards a sphere from a point of a luminaire, or one sampled by its emission shader, with the pdf of the
+/// mixture.
 Vector3 ProjectionMap::direction(const SurfacePoint& from, Point2 u, float& pdf) const {
   const EmissionShader& emission = *from.object->emission;
-  // 1 - cosine of the half angle under which each target is seen; 2 from within.
+  // 1 - cosine of the half angle under which each sphere is seen; 2 from inside.
   static thread_local std::vector<float> opening;
   opening.clear();
   float sum = 0;
@@ -107,12 +110,12 @@ Vector3 ProjectionMap::direction(const SurfacePoint& from, Point2 u, float& pdf)
   return to;
 }
 
-/// How many targets a line meets, or a ray that begins at a point of it.
+/// The number of spheres that a line hits; with `ahead_alone` a ray that starts at the point.
 int ProjectionMap::met_by(const Point3& p, const Vector3& direction, bool ahead_alone) const {
   int met = 0;
   for (const Sphere& s : spheres_) {
     const Vector3 to = s.centre - p;
-    const float beyond = 1 + 1e-5f;  // rounding: who chose a target meets it
+    const float beyond = 1 + 1e-5f;  // rounding: a direction sampled in a cone must count as a hit
     const bool within = ahead_alone && length_squared(to) <= square(s.radius);
     const bool ahead = !ahead_alone || dot(to, direction) > 0;
     met += within || (ahead && length_squared(cross(to, direction)) <= square(s.radius) * beyond);

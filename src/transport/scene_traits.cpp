@@ -1,4 +1,4 @@
-// What kinds of light transport a scene asks for.
+// Collects the traits of a scene: visits all objects, with the shaders that instances give them.
 
 #include "etendue/transport/scene_traits.h"
 
@@ -7,24 +7,25 @@
 namespace etendue {
 namespace {
 
-/// As the user knows it: the name it has in the file, or what it is and where.
+/// The name of an object for users: its name in the file, or its class and line.
 std::string label(const SceneObject& object) {
   if (object.origin && !object.origin->name.empty()) return "'" + object.origin->name + "'";
-  const int line = object.location_of().line;  // 0: of a file without lines, such as a model's
+  const int line = object.location_of().line;  // 0: in a file without lines, such as that of a model
   return "the " + object.class_info().name + (line > 0 ? " of line " + std::to_string(line) : "");
 }
 
-/// Looks into each scene once with each shader that instances replace all of its own by, and notes each object once in a list.
+/// Visits each scene once per shader by which instances replace those of its objects, and adds each object once to a list.
 class Look {
  public:
   explicit Look(SceneTraits& traits) : traits_(traits) {}
 
-  /// `instead`: what all objects have for their own shaders; null: those.
+  /// `instead`: the shader of an instance that replaces those of all objects; null: their own.
   void at(const Scene& scene, const Shader* instead) {
     if (!seen_.insert({&scene, instead}).second) return;
     for (const Ref<SceneObject>& object : scene.objects) {
       if (const Scene* inner = scene_within(*object)) {
-        const bool replaces = inner != object.get() && object->shader;  // an instance's shader does, a nested scene's does not
+        const bool replaces = inner != object.get() && object->shader;  // an instance's shader does, that of a nested scene
+                                                                        // does not
         at(*inner, instead ? instead : replaces ? object->shader.get() : nullptr);
       } else {
         at(*object, instead ? instead : object->shader.get());
@@ -64,7 +65,7 @@ class Look {
 
   SceneTraits& traits_;
   std::set<std::pair<const Scene*, const Shader*>> seen_;
-  std::set<std::pair<const void*, const SceneObject*>> noted_;  // in which list what is
+  std::set<std::pair<const void*, const SceneObject*>> noted_;  // pairs of list and object
 };
 
 }  // namespace
@@ -72,7 +73,7 @@ class Look {
 SceneTraits scene_traits(const Scene& scene, const Camera& camera) {
   SceneTraits traits;
   Look(traits).at(scene, nullptr);
-  // Rays of a lens with an extent begin at different places.
+  // The rays of a lens with an area start at different points.
   const Ray a = camera.ray({0.25f, 0.25f}, {0.1f, 0.2f}, camera.shutter_open);
   const Ray b = camera.ray({0.25f, 0.25f}, {0.9f, 0.7f}, camera.shutter_open);
   traits.pinhole = a.origin == b.origin;

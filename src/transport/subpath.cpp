@@ -9,7 +9,7 @@ namespace {
 
 using Growing = Walk<false>;
 
-/// Adds the vertex a walk has come to.
+/// Appends the last vertex of a walk.
 SubpathVertex& add(const Growing& walk, float pdf, const EmissionPlane& front, std::vector<SubpathVertex>& subpath) {
   SubpathVertex& v = subpath.emplace_back();
   store_vertex(walk, subpath[subpath.size() - 2], pdf, front, v);
@@ -37,13 +37,14 @@ struct StoringEvents : NoEvents {
   }
 };
 
-/// Lets a walk grow whose first vertex is kept already. `density`: of its first direction.
+/// Traces a walk whose first vertex is stored already, and stores its vertices with their pdfs. `pdf`: of the first direction.
 void grow(Growing& walk, float pdf, const SubpathLimits& limits, std::vector<SubpathVertex>& subpath, SegmentEvents* events) {
   const EmissionPlane front(walk.scene);
   const Roulette roulette{limits.roulette_depth};
   const bool from_camera = walk.transport == Transport::radiance;
   CameraDirections* const chosen = from_camera ? limits.directions : nullptr;
-  float more = 1;  // the product of what directions are more likely than by scattering: so much more would be left without
+  float more = 1;  // product of p / p_scatter: without a guide the throughput would be larger by this factor, and that decides
+                   // the roulette
   walk.stores_subpath = walk.observed = true;
   const StoringEvents at{{}, walk, front, subpath, events, pdf};
   while (walk.length < walk.longest && walk.next_vertex(at)) {
@@ -61,7 +62,8 @@ void grow(Growing& walk, float pdf, const SubpathLimits& limits, std::vector<Sub
     walk.leave(*next);
     v.specular = walk.specular;
     pdf = v.specular ? 1 : next->pdf;
-    // Of the vertex before, had the walk come the other way through this one.
+    // pdf_reverse of the vertex before: its pdf for a subpath from the other end, which comes to this vertex from
+    // `next->direction`.
     float back = v.specular ? 1 : scattering_pdf(v, next->direction, v.out, adjoint(walk.transport));
     if (!from_camera && !v.specular) back = camera_pdf(limits.directions, v, next->direction, v.out, back);
     SubpathVertex& before = subpath[subpath.size() - 2];
@@ -135,7 +137,8 @@ bool generate_light_subpath(const Scene& scene, const LightSampler& lights, floa
     first.media = sample.arena.make<MediumStack>(walk.media);
   }
   if (const SceneObject* around = light.infinite ? scene.surroundings() : nullptr) {
-    // It begins where what surrounds the scene does, and never comes through what has no beginning, but where nothing absorbs.
+    // Light from infinity starts at the boundary of the surroundings. If they have none, the light comes an infinite distance
+    // through them, and is absorbed unless the extinction is 0.
     walk.media.surround(*around);
     Ray back = light.ray;
     back.direction = -light.ray.direction;
@@ -144,7 +147,8 @@ bool generate_light_subpath(const Scene& scene, const LightSampler& lights, floa
       if (walk.throughput.black()) return false;
     }
   }
-  // From infinity, places in the scene are given by where the ray crosses the disc around it.
+  // For a luminaire at infinity the pdf of the next vertex is that of the ray on the emission plane (vertex_pdf): the factor of
+  // the direction is 1.
   grow(walk, light.infinite ? 1 : light.direction, limits, subpath, events);
   return true;
 }

@@ -1,11 +1,12 @@
 #pragma once
-// Questions about objects that are not prepared, such as those that are imported or exported.
+// Properties of objects that are not prepared, such as those that are imported or exported.
 
 #include "etendue/scene_object.h"
 
 namespace etendue {
 
-/// Whether paths will enter an object (`enterable`, medium_stack.h): a copy of it is prepared and asked. False if it cannot be.
+/// Whether paths can enter an object (`enterable`, medium_stack.h), found by preparing a copy of it. False if it cannot be
+/// prepared.
 bool enterable_once_prepared(const SceneObject&);
 
 }  // namespace etendue

@@ -43,14 +43,14 @@ Spectrum shadow_transmittance_slowly(const Scene& scene, const Ray& shadow, cons
       const Scatter* scatter = bound(*object.shader, point, wavelengths, arena);
       const auto straight = scatter ? scatter->sample(-ray.direction, 0, {}, transport, null_scattering) : std::nullopt;
       if (!straight) return {};
-      // Asked alone, the lobe is certain, and its weight the fraction that gets through.
+      // Requested alone, the lobe has probability 1, and its weight is the fraction that is let through.
       fraction *= straight->weight;
       if (likely) *likely *= straight->weight;
     }
     if (around) cross_boundary(media, object, point.normal, ray.direction);
     ray.origin = point.exit(ray.direction);
     if (std::isfinite(ray.maximum)) {
-      // Aimed again: from the shifted origin the old direction might meet the luminaire's own surface too soon.
+      // The ray is aimed again: from the shifted origin the old direction could hit the luminaire's own surface too early.
       const Vector3 rest = end - ray.origin;
       if (!(dot(rest, ray.direction) > 0)) return fraction;
       ray.maximum = length(rest);

@@ -1,4 +1,4 @@
-// The program, interrupted, killed, continued and asked to merge.
+// Checkpoints of the program: renders that are interrupted, killed and continued, and parts that are merged.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ TEST_F(CheckpointProgramTest, continues_and_merges) {
   ASSERT_EQ(run(rendering(samples, again)), 0) << err;
   for (const char* ending : {".npy", ".exr", ".png"})
     EXPECT_TRUE(same_files(std::string("one") + ending, std::string("two") + ending)) << ending;
-  // The checkpoint has become that of the whole; to go on from it changes nothing, and --continue does as --resume.
+  // The checkpoint now holds the whole render: continuing from it changes nothing, and --continue works like --resume.
   EXPECT_EQ(read_checkpoint(folder / "b").done, (std::vector<IndexRange>{{0, 3 * step + 5}}));
   ASSERT_EQ(run(rendering(samples, {"--continue", "b", "-o", "two.npy"})), 0) << err;
   EXPECT_TRUE(same_files("one.npy", "two.npy"));
@@ -53,7 +53,7 @@ TEST_F(CheckpointProgramTest, continues_and_merges) {
   EXPECT_TRUE(has(err, "note: samples 32768 to 49151 (--passes 2:3)")) << err;
   EXPECT_TRUE(has(out, "32773 samples per pixel of 2 parts")) << out;
   ASSERT_EQ(run(rendering(samples, {"--passes", "2:3", "--checkpoint", "d"})), 0) << err;
-  // Without -o to where the description says: here a PNG named after it.
+  // Without -o the picture is written where the description says: here to a PNG named after the description.
   ASSERT_EQ(run({"image", "merge", "d", "ac"}), 0) << err;
   EXPECT_EQ(err, "");
   EXPECT_TRUE(has(out, "scene.png\n")) << out;
@@ -117,7 +117,7 @@ TEST_F(CheckpointProgramTest, an_interrupted_render_says_how_to_go_on) {
   EXPECT_TRUE(same_files("a.npy", "b.npy"));
 }
 
-/// ETENDUE_KILLS: how often; 5 unless set.
+/// The environment variable ETENDUE_KILLS sets the number of kills; 5 if it is not set.
 TEST_F(CheckpointProgramTest, killed_at_any_moment_it_goes_on_to_the_same_bits) {
   const char* asked = std::getenv("ETENDUE_KILLS");
   const int kills = asked ? std::atoi(asked) : 5;
@@ -135,7 +135,7 @@ TEST_F(CheckpointProgramTest, killed_at_any_moment_it_goes_on_to_the_same_bits) 
   std::mt19937 random(7);
   std::uniform_real_distribution<double> delay(0.5 * start, 0.8 * start + 0.4 * whole);
   int killed = 0, with_state = 0;
-  // Without the state there is nothing that could differ: some of the kills must have come after its first writing.
+  // Without a written state a restart could not differ: some of the kills must come after the state was first written.
   for (int tries = 0; killed < kills && tries < 20 * kills; ++tries) {
     Process process(program, arguments, folder);
     std::this_thread::sleep_for(std::chrono::duration<double>(delay(random)));
@@ -148,7 +148,7 @@ TEST_F(CheckpointProgramTest, killed_at_any_moment_it_goes_on_to_the_same_bits) 
       EXPECT_EQ(complaint([&] { read_checkpoint(folder / "state"); }), "");
     }
     if (was_killed) continue;
-    // Finished before it could be killed: from the beginning.
+    // The render finished before the kill; the next one starts from the beginning.
     EXPECT_TRUE(same_files("one.npy", "two.npy"));
     std::filesystem::remove(folder / "state");
   }

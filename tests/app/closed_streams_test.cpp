@@ -1,4 +1,5 @@
-// What becomes of the program when its streams, its terminal, its folder or its arguments are not what they should be.
+// The program with closed or full standard streams, with signals, with meaningless option values, and with unusual folders and
+// names.
 
 #include <gtest/gtest.h>
 
@@ -47,9 +48,9 @@ TEST_F(StreamsTest, lost_output_is_failure_for_every_command) {
     EXPECT_EQ(shell("\"$E\" " + std::string(command) + " >&-"), 1) << command;
     EXPECT_TRUE(says("cannot write to standard output")) << command << ": " << err;
   }
-  // What goes to files is written all the same.
+  // Output to files is written nevertheless.
   for (const char* picture : {"b.npy", "c.npy", "f.npy", "m.npy"}) EXPECT_TRUE(exists(picture)) << picture;
-  // Who prints nothing loses nothing.
+  // A command that prints nothing cannot lose output, so it succeeds.
   EXPECT_EQ(shell("\"$E\" render tiny.etd -o d.npy --quiet > /dev/full"), 0) << err;
 }
 
@@ -61,7 +62,7 @@ TEST_F(StreamsTest, lost_errors_change_nothing) {
     std::filesystem::remove(folder / "e.npy");
     EXPECT_NE(shell("\"$E\" classes Nothing " + std::string(streams)), 0);
   }
-  for (const char* streams : {"2>&-", "2> /dev/full"}) {  // with much to be said about progress
+  for (const char* streams : {"2>&-", "2> /dev/full"}) {  // with much progress output
     EXPECT_EQ(shell("\"$E\" render tiny.etd -o e.npy --progress bar " + std::string(streams)), 0) << streams;
     EXPECT_TRUE(exists("e.npy")) << streams;
     std::filesystem::remove(folder / "e.npy");
@@ -72,7 +73,8 @@ TEST_F(StreamsTest, lost_errors_change_nothing) {
 
 TEST_F(StreamsTest, nothing_is_written_into_a_file_that_took_the_place_of_a_closed_stream) {
   ASSERT_EQ(run({"render", scene, "-o", "good.npy"}), 0) << err;
-  // The checkpoint and the picture are opened where descriptors are free, while progress and messages are printed.
+  // The closed stream's descriptor is free, so the checkpoint and the picture could be opened under its number while progress
+  // and messages are printed to it.
   const std::string render = "\"$E\" render tiny.etd --progress json --checkpoint s.part --every 0 -o ";
   EXPECT_EQ(shell(render + "a.npy >&-"), 1) << err;
   shell(render + "b.npy >&- 2>&-");
@@ -123,7 +125,7 @@ TEST_F(StreamsTest, no_option_takes_an_empty_value) {
                               "image tonemap", "image merge", "verify", "conform"}) {
     ASSERT_EQ(shell("\"$E\" " + std::string(command) + " --help"), 0);
     const std::string help = out;
-    // "  --checkpoint FILE   …", "  -o,--output FILE …": an option's long name and that of its value.
+    // "  --checkpoint FILE   …", "  -o,--output FILE …": an option's long name and the name of its value.
     const std::regex option("(?:^|\n) +(?:-[A-Za-z],)?(--[a-z-]+) (?!Excludes|Needs)[A-Z]");
     for (std::sregex_iterator found(help.begin(), help.end(), option), end; found != end; ++found) {
       const std::string name = (*found)[1];

@@ -1,4 +1,4 @@
-// --denoise, as whoever types it sees it.
+// The option --denoise of the program.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ class DenoiseProgramTest : public RunsProgram {
     std::string text = lamp;
     folder.write("lamp.etd", text.replace(text.find("OUTPUT"), 6, output));
   }
-  /// Whether the library is there; else the test has nothing to say.
+  /// Whether the library Open Image Denoise is found; if not, the test is skipped.
   bool there() {
     const bool found = run({"render", "lamp.etd", "--denoise", "-o", "probe.png"}) == 0;
     return found;
@@ -48,7 +48,7 @@ TEST_F(DenoiseProgramTest, WithoutTheLibraryItIsSaidAtOnceHowToGetIt) {
   describe("DenoisedOutput {}");
   EXPECT_EQ(run({"render", "lamp.etd"}), 2);
   EXPECT_TRUE(says("lamp.etd:6")) << err;
-  // Some library, but another.
+  // An existing library that is not Open Image Denoise.
   setenv("ETENDUE_OIDN", "libm.so.6", 1);
   EXPECT_EQ(run({"render", "lamp.etd", "--denoise", "-o", "a.png"}), 2);
   EXPECT_TRUE(says("no Open Image Denoise of version 2")) << err;
@@ -81,7 +81,7 @@ TEST_F(DenoiseProgramTest, DescriptionsAskForIt) {
   ASSERT_EQ(run({"render", "lamp.etd"}), 0) << err;
   EXPECT_TRUE(exists("lamp.npy") && exists("lamp.denoised.npy"));
   EXPECT_FALSE(says("BoxFilter")) << err;
-  // Its settings go with the same format elsewhere.
+  // The settings of a DenoisedOutput also apply to other files of the same format.
   ASSERT_EQ(run({"render", "lamp.etd", "-o", "b.npy", "-o", "b.png", "--set", "image.filter=TriangleFilter"}), 0) << err;
   EXPECT_TRUE(says("noise will stay") && says("BoxFilter")) << err;
   EXPECT_TRUE(exists("b.npy") && exists("b.denoised.npy") && exists("b.png"));
@@ -92,7 +92,7 @@ TEST_F(DenoiseProgramTest, DescriptionsAskForIt) {
   std::filesystem::remove(folder / "b.denoised.npy");
   ASSERT_EQ(run({"render", "lamp.etd", "-o", "b.npy", "--skip-existing"}), 0) << err;
   EXPECT_TRUE(exists("b.denoised.npy"));
-  // Two pictures of one name.
+  // Two pictures would be written to the same name.
   EXPECT_EQ(run({"render", "lamp.etd", "--denoise", "-o", "c.npy", "-o", "c.denoised.npy"}), 2);
   EXPECT_TRUE(says("c.denoised.npy")) << err;
 }

@@ -1,4 +1,4 @@
-// Mistakes in options are told at the option, and options that mean nothing are refused.
+// Mistakes in options are reported at the option, and options without effect are refused.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -24,7 +24,7 @@ ball = Sphere { radius: 1 m, shader: Lambertian { color: 0.5 } }
 class OptionErrors : public RunsProgram {
  protected:
   void SetUp() override { scene = folder.write("ball.etd", scene_text); }
-  /// What is said of a render with these options, which is refused.
+  /// The error message of a render with these options, which must be refused.
   std::string refused(std::vector<std::string> options) {
     options.insert(options.begin(), {"render", scene});
     EXPECT_EQ(run(options), 2) << err;
@@ -80,7 +80,7 @@ TEST_F(OptionErrors, APathGoesByMembers) {
 }
 
 TEST_F(OptionErrors, APictureLargerThanTheMemoryIsRefusedAtOnce) {
-  // 64 bytes for each pixel at least.
+  // A picture needs at least 64 bytes per pixel.
   if (double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE)) > 65536. * 65536. * 64)
     GTEST_SKIP() << "this machine's memory holds such a picture";
   EXPECT_TRUE(has(refused({"--size", "65536x65536"}), "more than the")) << err;

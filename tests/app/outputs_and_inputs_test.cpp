@@ -1,4 +1,5 @@
-// No output takes the place of a file that is read, none is found to be impossible after hours, and none is written twice.
+// No output replaces a file that is read, none turns out to be impossible only after hours of rendering, and no file is written
+// twice.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 class OutputsTest : public RunsProgram {
  protected:
-  /// A scene with a file of each kind: an include, a mesh, a texture, a spectrum, a plugin.
+  /// A scene that reads a file of each kind: an include, a mesh, a texture, a spectrum, a plugin.
   std::string write_scene(const std::string& name, const std::string& outputs = "") {
     folder.write("lamp.etd", "lamp = DiffuseEmission { radiance: spectrum(\"light.csv\") }\n");
     folder.write("light.csv", "400, 1\n700, 2\n");
@@ -38,7 +39,7 @@ class OutputsTest : public RunsProgram {
                                   "emission: lamp } ] } }\n");
   }
 
-  /// Refused by a command, which leaves the file as it was and writes nothing else.
+  /// Expects that a command is refused, that it leaves the input file unchanged, and that it writes nothing else.
   void expect_refused(std::vector<std::string> arguments, const std::string& input, const std::string& why) {
     const std::string before = file_text(folder / input);
     arguments.insert(arguments.end(), {"-o", "other.npy"});
@@ -63,7 +64,7 @@ TEST_F(OutputsTest, an_input_is_not_overwritten_by_whatever_name) {
     for (const char* name : {"link.npy", "hard.npy", "in/twice.npy", "./in/../link.npy"})
       expect_refused({"render", scene, "-o", name}, input, "would be overwritten");
     expect_refused({"render", scene, "-o", folder / "hard.npy"}, input, "would be overwritten");
-    // A checkpoint can have any name, so those of the inputs too.
+    // A checkpoint can have any name, so it can have the name of an input too.
     expect_refused({"render", scene, "--checkpoint", input}, input, "would be overwritten");
     expect_refused({"render", scene, "--checkpoint", "in/../" + input}, input, "would be overwritten");
     for (const char* name : {"link.npy", "hard.npy", "in/twice.npy"}) fs::remove(folder / name);
@@ -81,7 +82,7 @@ TEST_F(OutputsTest, the_outputs_of_the_description_and_the_usual_name_are_looked
   const std::string scene = write_scene("scene.etd", "outputs: [ HdrOutput { file: \"texture.hdr\" } ]\n");
   EXPECT_EQ(run({"render", scene}), 2);
   EXPECT_TRUE(says("scene.etd:6:") && says("would be overwritten")) << err;
-  // Without a name the picture is called as the description is.
+  // Without an output name the picture is named after the description.
   const std::string png = write_scene("scene.png");
   EXPECT_EQ(run({"render", png}), 2);
   EXPECT_TRUE(says("would be overwritten")) << err;
@@ -119,12 +120,12 @@ TEST_F(OutputsTest, checkpoints_that_are_read_are_inputs) {
   EXPECT_EQ(run({"image", "merge", "a.part", "-o", "b.npy", "--checkpoint", "part.npy"}), 2);
   EXPECT_TRUE(says("would be overwritten")) << err;
   EXPECT_TRUE(file_text(folder / "a.part") == before);
-  // The state is kept where it came from, as --resume and --continue say.
+  // The new state is written to the checkpoint that was read, as --resume and --continue document.
   EXPECT_EQ(run({"render", scene, "--resume", "a.part", "--samples", "2", "-o", "a.npy"}), 0) << err;
   EXPECT_EQ(run({"render", scene, "--continue", "a.part", "--samples", "4", "-o", "a.npy"}), 0) << err;
   EXPECT_EQ(run({"render", scene, "--resume", "a.part", "--checkpoint", "./a.part", "--samples", "8", "-o", "a.npy"}), 0)
       << err;
-  // Elsewhere it is an output like any other.
+  // A checkpoint with another name is an output like any other.
   EXPECT_EQ(run({"render", scene, "--resume", "a.part", "--checkpoint", "mesh.ply", "--samples", "8", "-o", "a.npy"}), 2);
   EXPECT_TRUE(says("would be overwritten")) << err;
 }
@@ -149,7 +150,7 @@ TEST_F(OutputsTest, what_cannot_be_written_is_refused_before_anything_is_rendere
   fs::create_symlink("/dev/full", folder / "full.npy");
   const std::string long_name(300, 'x');
   const auto refused = [&](const std::string& file) {
-    // So many samples that rendering would be noticed.
+    // So many samples that the test would not end if rendering began.
     EXPECT_EQ(run({"render", scene, "--samples", "1000000000", "-o", file}), 2) << file;
     EXPECT_TRUE(says("cannot write")) << file << ": " << err;
   };
@@ -173,7 +174,7 @@ TEST_F(OutputsTest, what_cannot_be_written_is_refused_before_anything_is_rendere
     EXPECT_EQ(run(command), 2) << command[0];
     EXPECT_TRUE(says("cannot write")) << command[0] << ": " << err;
   }
-  if (geteuid() == 0) return;  // who may write anywhere
+  if (geteuid() == 0) return;  // root may write anywhere
   fs::create_directory(folder / "closed");
   fs::permissions(folder / "closed", fs::perms::owner_read | fs::perms::owner_exec);
   refused("closed/a.npy");
@@ -197,7 +198,7 @@ TEST_F(OutputsTest, devices_are_written_to_not_replaced) {
   EXPECT_TRUE(fs::is_symlink("/dev/stdout"));
 }
 
-// Behind a link to a folder ".." is not the folder that the link stands in.
+// After a symbolic link to a folder, ".." is the parent folder of the link's target, not the folder that contains the link.
 TEST_F(OutputsTest, an_input_behind_a_linked_folder_is_not_overwritten) {
   const std::string scene = write_scene("scene.etd");
   fs::create_directories(folder / "real/sub");
@@ -209,7 +210,7 @@ TEST_F(OutputsTest, an_input_behind_a_linked_folder_is_not_overwritten) {
   expect_refused({"render", folder / "behind.etd", "-o", folder / "real/texture.hdr"}, "real/texture.hdr", "texture.hdr");
 }
 
-// A link to where no file is yet stays a link; a pipe that nobody reads does not hold the program for ever.
+// A symbolic link whose target does not exist yet stays a link; a pipe without a reader does not block the program.
 TEST_F(OutputsTest, links_stay_and_pipes_do_not_hold) {
   const std::string scene = write_scene("scene.etd", "");
   fs::create_symlink("target.npy", folder / "link.npy");

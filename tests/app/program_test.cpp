@@ -1,4 +1,4 @@
-// The command line program, run as people run it.
+// The command line program, run as users run it.
 
 #include <gtest/gtest.h>
 
@@ -109,7 +109,7 @@ TEST_F(ProgramTest, a_picture_that_cannot_be_written_is_a_failure) {
   Process process(program, {"render", scene, "-o", "taken.png", "-o", "good.npy", "--time", "1s", "--progress", "json"},
                   folder);
   ASSERT_TRUE(process.says("progress")) << process.err();
-  std::filesystem::create_directory(folder / "taken.png");  // a folder where the file should be, since a moment ago
+  std::filesystem::create_directory(folder / "taken.png");  // a folder of that name now stands where the file should be
   EXPECT_EQ(process.wait(), 1);
   EXPECT_TRUE(has(process.err(), "taken.png")) << process.err();
   EXPECT_TRUE(std::filesystem::exists(folder / "good.npy"));
@@ -181,7 +181,7 @@ TEST_F(ProgramTest, render_writes_what_is_asked_for) {
   for (const double v : values) sum += v;
   EXPECT_GT(sum, 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "c.EXR"));
-  // Without any output it is a PNG named after the file.
+  // Without any output option the picture is a PNG named after the scene file.
   EXPECT_EQ(run({"render", scene, "--quiet"}), 0) << err;
   EXPECT_EQ(out + err, "");
   EXPECT_EQ(file_text(folder / "tiny.png").substr(1, 3), "PNG");
@@ -200,7 +200,7 @@ TEST_F(ProgramTest, overrides_reach_the_picture) {
   EXPECT_EQ(npy_values(folder / "c.npy").size(), 10u * 4u * 3u);
 }
 
-// A crop of the description is the same part of a picture of another size, smaller or larger.
+// A crop in the description keeps its part of the picture when --size makes the picture smaller or larger.
 TEST_F(ProgramTest, a_crop_keeps_its_part_at_another_size) {
   std::string text = tiny_scene;
   text.replace(text.find("width: 24"), 9, "width: 24, crop: [4, 4, 10, 13]");
@@ -223,7 +223,7 @@ TEST_F(ProgramTest, the_number_of_threads_changes_no_bit_and_the_seed_does) {
   for (const char* ending : {".npy", ".exr", ".png"}) {
     const std::string one = picture(std::string("one") + ending, {"--threads", "1"});
     EXPECT_FALSE(one.empty());
-    // Not EXPECT_EQ: nobody wants to read these bytes.
+    // Not EXPECT_EQ: it would print all bytes.
     EXPECT_TRUE(one == picture(std::string("two") + ending, {"--threads", "2"})) << ending;
     EXPECT_TRUE(one == picture(std::string("five") + ending, {"--threads", "5"})) << ending;
     EXPECT_TRUE(one == picture(std::string("again") + ending, {})) << ending;
@@ -249,7 +249,7 @@ TEST_F(ProgramTest, a_replayed_sample_is_the_one_in_the_picture) {
         double value = -1;
         numbers >> value;
         const double expected = values[size_t(y * 24 + x) * 3 + c];
-        // Printed with six digits; negative components count as they are.
+        // The values are printed with six digits; negative components are not clipped.
         EXPECT_NEAR(value, expected, 2e-5 * std::abs(expected) + 1e-9) << x << "," << y << " channel " << c << "\n" << out;
         lit += expected > 0;
       }

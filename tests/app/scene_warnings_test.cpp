@@ -1,5 +1,4 @@
-// What is said about scenes whose picture will be black, and of parts that have no effect; and that nothing is said about sound
-// ones.
+// Warnings about scenes whose picture will be black and about parts that have no effect; sound scenes give no warnings.
 
 #include "app/scene_warnings.h"
 
@@ -26,7 +25,7 @@ std::vector<SceneWarning> said(const std::string& objects, const std::string& fr
   return scene_warnings(*job);
 }
 
-/// Expects one warning of a kind, which says all of `words`, where `there` begins in the job's text.
+/// Expects exactly one warning, of a kind, which contains all of `words`, at the place where `there` begins in the job's text.
 void expect(const std::string& objects, const std::string& kind, const std::vector<std::string>& words,
             const std::string& there, const std::string& from = camera) {
   const std::vector<SceneWarning> list = said(objects, from);
@@ -112,7 +111,7 @@ TEST(SceneWarnings, GlassThatIsNotClosed) {
   expect("TriangleMesh { " + tetrahedron + "], shader: Dielectric {} }\n" + sky, "open body", {"3 edges", "ThinDielectric"},
          "Dielectric");
   EXPECT_TRUE(said("TriangleMesh { " + tetrahedron + "[1,2,3]], shader: Dielectric {} }\n" + sky).empty());
-  // One triangle the wrong way around: no edge is open, and yet it has no inside.
+  // One triangle with reversed orientation: no edge is open, but the mesh has no inside.
   const auto list = said("TriangleMesh { " + tetrahedron + "[1,3,2]], shader: Dielectric {} }\n" + sky);
   ASSERT_EQ(list.size(), 1u);
   EXPECT_NE(list[0].text.find("same way around"), std::string::npos);
@@ -143,7 +142,7 @@ TEST(SceneWarnings, MaterialsOfFiles) {
     return "TriangleMesh { file: \"" + file.path + "\"" + more + " }\n";
   };
   expect(mesh(two, ", " + diffuse) + sky, "materials", {"2 materials", "'wood'", "'dark iron'"}, "\"" + two.path);
-  EXPECT_TRUE(said(mesh(one, ", " + diffuse) + sky).empty());  // one for all is what it has
+  EXPECT_TRUE(said(mesh(one, ", " + diffuse) + sky).empty());  // the file has a single material, which the one shader replaces
   expect(mesh(one, "") + sky, "no shader", {"'wood'", "not read"}, "TriangleMesh");
 }
 
@@ -199,7 +198,7 @@ TEST(SceneWarnings, MembersThatDoNotMatter) {
   expect("Environment { emission: SkyEmission { time: \"2024-06-21T12:00:00Z\", sun_direction: [1, 2, 0] } }\n", kind,
          {"'time' is not given"}, "[1, 2, 0]");
   expect("Sphere { emission: DiffuseEmission { distance: 2 } }\n", kind, {"'illuminance' is not 0"}, "2 } }");
-  // Within maps of maps, once for a part that is used twice.
+  // In nested maps; a part that is used twice is reported once.
   expect("Sphere { shader: Lambertian { color: AddMap { first: RampMap { input: 0.5 } } } }\n" + sky, kind,
          {"RampMap.input", "'along' is input"}, "0.5 }");
   expect("Sphere {" + diffuse + "}\n" + sky, kind, {"'lens_radius' is not 0"}, "3 }",
@@ -250,7 +249,7 @@ TEST(SceneWarnings, ReflectancesThatTogetherAreMoreThanArrives) {
   EXPECT_EQ(told("PhongShader { color: 0.5, specular: 0.5 }"), "");
 }
 
-// After rendering.
+// Warnings after rendering.
 TEST(PictureWarnings, TooDarkOrTooBrightByHowMuch) {
   const auto after = [](double radiance, const std::string& tone = "ExposureToneMap {}") {
     const Ref<Job> job =
@@ -280,7 +279,7 @@ TEST(PictureWarnings, TooDarkOrTooBrightByHowMuch) {
   EXPECT_EQ(none[0].kind, "black picture");
 }
 
-// A lamp that shines all around, on surfaces of which one side emits.
+// A lamp that emits in all directions, on surfaces of which only one side emits.
 TEST(SceneWarnings, LightBehindSurfaces) {
   const std::string path = (std::filesystem::temp_directory_path() / "etendue-warnings-test.ies").string();
   std::ofstream(path) << "IESNA:LM-63-2002\nTILT=NONE\n1 100 1 3 1 1 2 0 0 0\n1 1 10\n0 90 180\n0\n8 8 8\n";
@@ -298,14 +297,14 @@ TEST(SceneWarnings, LightBehindSurfaces) {
   std::filesystem::remove(path);
 }
 
-// No false alarms: all scenes that come with the program.
+// No false alarms: all scenes that come with the program give no warnings.
 TEST(SceneWarnings, OurOwnScenesAreSilent) {
   namespace fs = std::filesystem;
   int count = 0;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(ETENDUE_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".etd") continue;
     const std::string name = entry.path().string();
-    // These need files that a script makes, or are parts of others.
+    // These scenes need files that a script makes, or are parts of other scenes.
     if (name.find("million_triangles") != name.npos || name.find("highland_cow") != name.npos ||
         name.find("/forest/") != name.npos || name.find("/teapot/") != name.npos || name.ends_with("/forest.etd"))
       continue;

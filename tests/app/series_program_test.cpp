@@ -7,7 +7,7 @@
 namespace etendue {
 namespace {
 
-/// A sphere that moves with the frame, before a lamp.
+/// An emitting sphere whose position depends on the frame and the time.
 const char* const film = R"(Job {
     renderer: PathTracer { samples: 2 }
     camera: PerspectiveCamera { from: [0, 0, -4] m, to: [0, 0, 0] m, fov: 45 deg }
@@ -27,13 +27,13 @@ TEST_F(SeriesProgramTest, frames_are_rendered_each_for_itself) {
   EXPECT_TRUE(exists("f.02.npy") && exists("f.05.npy") && exists("f.08.npy"));
   EXPECT_FALSE(exists("f.03.npy") || exists("f.11.npy") || exists("f.##.npy"));
   EXPECT_NE(file_text(folder / "f.02.npy"), file_text(folder / "f.05.npy"));
-  // The same frame alone, and written out.
+  // The same frame rendered alone, and from a saved description of that frame.
   ASSERT_EQ(run({"render", "film.etd", "--frame", "5", "--fps", "10", "-o", "one.npy"}), 0) << err;
   EXPECT_EQ(file_text(folder / "f.05.npy"), file_text(folder / "one.npy"));
   ASSERT_EQ(run({"save", "film.etd", "--frame", "5", "--fps", "10", "-o", "still.etd"}), 0) << err;
   ASSERT_EQ(run({"render", "still.etd", "-o", "still.npy"}), 0) << err;
   EXPECT_EQ(file_text(folder / "f.05.npy"), file_text(folder / "still.npy"));
-  // Without a name, and with names that the file gives.
+  // Without an output name, and with names given in the file.
   ASSERT_EQ(run({"render", "film.etd", "--frames", "0:2", "--quiet"}), 0) << err;
   EXPECT_TRUE(exists("film.0000.png") && exists("film.0001.png"));
   ASSERT_EQ(run({"render", "film.etd", "--frames", "0:2", "--set", "outputs=[NpyOutput { file: \"g#.npy\" }]"}), 0) << err;

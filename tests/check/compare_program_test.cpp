@@ -1,4 +1,4 @@
-// `etendue compare` on small scenes: what it finds, what it writes, how it goes on, and what it refuses.
+// `etendue compare` on small scenes: its results, its output files, continued comparisons, and refusals.
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ TEST_F(CompareProgram, a_bias_of_one_percent_is_found_and_none_where_there_is_no
   EXPECT_TRUE(bias["found"]) << out;
   EXPECT_NEAR(bias["relative_mean"].get<double>(), 0.01, 4 * bias["standard_error"].get<double>());
   EXPECT_LT(bias["standard_error"], 0.002);
-  // The squared bias is 0.01^2 where the picture is not black, and is the same after any number of samples.
+  // The relative squared bias is 0.01^2 where the image is not black, for any number of samples.
   const Json& last = variant(all, "ScaledPathTracer")["curve"].back()["square_bias"];
   EXPECT_NEAR(last["value"].get<double>(), 1e-4, 4 * last["standard_error"].get<double>() + 3e-5);
   EXPECT_TRUE(has(out, "FOUND")) << out;
@@ -92,7 +92,7 @@ TEST_F(CompareProgram, the_same_number_of_samples_gives_half_the_error_for_half_
   const Json all = json();
   for (const char* name : {"once", "twice"}) {
     const Json& v = variant(all, name);
-    // 1, 2, 4 ... 32 samples; variance falls at least as fast as for independent samples.
+    // Marks at 1, 2, 4 ... 32 samples; the variance falls at least as fast as for independent samples.
     EXPECT_EQ(v["curve"].size(), 6u);
     EXPECT_EQ(v["curve"].back()["samples"], 32);
     EXPECT_LT(v["exponent_over_samples"]["value"], -0.9);
@@ -133,7 +133,7 @@ TEST_F(CompareProgram, tables_and_page_tell_the_same) {
   EXPECT_TRUE(has(html, "a, &quot;b&quot; &lt;i&gt;"));
   EXPECT_TRUE(has(html, "class=\"matrix\""));
   EXPECT_TRUE(has(html, "prefers-color-scheme: dark"));
-  // Pictures are letters too, among which any word may stand.
+  // Images are base64 text, in which any of these words may occur by chance, so they are left out.
   std::string words;
   for (size_t at = 0; at < html.size();) {
     const size_t begin = std::min(html.find("base64,", at), html.size());
@@ -204,7 +204,7 @@ TEST_F(CompareProgram, another_comparison_does_not_go_on_with_kept_runs) {
   EXPECT_EQ(again({}), 2);
   EXPECT_TRUE(says("of another comparison")) << err;
   folder.write("tiny.etd", scene_text("0.5 m"));
-  // More runs are welcome, a damaged one is not.
+  // More runs may be added; a damaged run is refused.
   runs = "4";
   EXPECT_EQ(again({}), 0) << err;
   std::string bytes = file_text(folder / "kept/scene1-variant2-run1.run");
@@ -245,7 +245,7 @@ TEST_F(CompareProgram, references_come_from_pictures_and_checkpoints) {
   EXPECT_EQ(compare({"--renderers", "PathTracer", "--samples", "4", "--reference", "no.exr"}), 2);
   EXPECT_EQ(compare({"--renderers", "PathTracer", "--samples", "4", "--reference", "r.exr", "--reference", "r.npy"}), 2);
   EXPECT_TRUE(says("2 references for 1 scene")) << err;
-  // What is read is not written.
+  // A file that is read must not be an output.
   EXPECT_EQ(compare({"--renderers", "PathTracer", "--samples", "4", "--reference", "r.exr", "--report", "r.exr"}), 2);
   EXPECT_TRUE(says("would be overwritten")) << err;
 }

@@ -63,8 +63,8 @@ TEST(CompareEstimates, exponents_are_those_of_powers) {
 }
 
 TEST(CompareEstimates, errors_of_exponents_cover_the_true_one) {
-  // Runs whose marks depend on each other, as a mean of n samples does on that of its first n/2. The 95 % interval should
-  // hold -1 in 95 of 100 cases; of 400 with a probability of 1 - 1e-4 in more than 88 %.
+  // Values at the marks of a run are correlated, as a mean of n samples is with that of its first n/2. The 95 % interval should
+  // contain -1 in 95 of 100 cases; of 400 cases in more than 88 %, with a probability of 1 - 1e-4.
   Random random(1);
   std::gamma_distribution<double> gamma(20, 1.0 / 20);
   int covered = 0, cases = 400;
@@ -112,8 +112,8 @@ TEST(CompareContests, without_randomness_equal_is_equal_and_different_is_differe
 }
 
 TEST(CompareContests, equal_variants_are_not_told_apart_more_often_than_stated) {
-  // Errors of runs with a heavy tail, as fireflies give; 2 scenes, 3 variants. At a level of 5 %, of 1000 comparisons at most
-  // 50 + 4 sqrt(47.5) = 77 may have anything significant.
+  // Errors of runs with a heavy tail, as fireflies cause; 2 scenes, 3 variants. At a level of 5 %, at most 50 + 4 sqrt(47.5) =
+  // 77 of 1000 comparisons may have a significant difference.
   Random random(2);
   std::lognormal_distribution<double> tail(0, 0.8);
   int alarms = 0;
@@ -127,7 +127,7 @@ TEST(CompareContests, equal_variants_are_not_told_apart_more_often_than_stated) 
     alarms += any;
   }
   EXPECT_LE(alarms, 77);
-  EXPECT_GE(alarms, 10);  // and the test is no stone
+  EXPECT_GE(alarms, 10);  // the test is not too conservative
 }
 
 TEST(CompareContests, a_difference_of_a_tenth_is_found) {
@@ -191,7 +191,7 @@ TEST(ComparePixels, bias_and_variance_are_unbiased_and_known_without_a_run) {
   for (const auto& run : runs) sums.add(run);
   EXPECT_NEAR(sums.relative_square_bias(reference, weights), by_pairs({}), 1e-6);
   EXPECT_NEAR(sums.relative_square_bias_without(runs[2], reference, weights), by_pairs(2), 1e-6);
-  // What a run's error is, it is by both parts: mean over runs of (x - r)^2 = (K - 1)/K var + (mean - r)^2, and the pairs
+  // The error of a run is the sum of both parts: the mean over runs of (x - r)^2 is (K - 1)/K var + (mean - r)^2, and the pairs
   // give (mean - r)^2 - var / K.
   double error = 0;
   for (const auto& run : runs) error += relative_square_error(run, reference, weights) / 4;
@@ -199,7 +199,7 @@ TEST(ComparePixels, bias_and_variance_are_unbiased_and_known_without_a_run) {
 }
 
 TEST(ComparePixels, the_noise_of_a_reference_is_no_error) {
-  // Pictures of 20000 numbers, runs and reference with variances 0.04 and 0.02 around 1: the error is 0.04 / 1.01.
+  // Images of 20000 values: runs and reference have the variances 0.04 and 0.02 around 1, so the error is 0.04 / 1.01.
   Random random(6);
   std::normal_distribution<double> noise(0, 1);
   constexpr size_t n = 20000;
@@ -216,7 +216,7 @@ TEST(ComparePixels, the_noise_of_a_reference_is_no_error) {
 
 TEST(CompareReference, weighs_by_inverse_variance_and_leaves_out_what_it_is_asked_to) {
   RunSums a(3), b(3), none(3);
-  // Means 2 and variances 1 and 4 for all numbers, so that weights are 4/5 and 1/5.
+  // Means 2 and variances 1 and 4 for all values, so that the weights are 4/5 and 1/5.
   for (const float x : {1.f, 2.f, 3.f}) a.add(std::vector<float>(3, x));
   for (const float x : {0.f, 2.f, 4.f}) b.add(std::vector<float>(3, x));
   const AgreedMean agreed({&a, nullptr, &b});

@@ -1,5 +1,5 @@
-// The conformance kit: right parts pass, and each of the deliberately wrong ones in conform_faults/ is found by the check that
-// is there for it.
+// The conformance kit: correct parts pass, and each of the deliberately wrong ones in conform_faults/ fails the check that is
+// meant to find its fault.
 
 #include "check/conform/conformance.h"
 
@@ -36,13 +36,13 @@ std::string failures(const std::vector<Outcome>& outcomes) {
   return all;
 }
 
-/// The built-in classes: those with checks of their interface, and all others.
+/// The built-in classes: those whose interface has checks, or all others.
 std::vector<std::string> built_in(bool with_checks) {
   const Registry& registry = Registry::instance();
   std::vector<std::string> names;
   for (const ClassInfo* info : registry.all()) {
     if (info->abstract() || !info->provider.empty()) continue;
-    // Not those that other tests register.
+    // Excludes classes that other tests register.
     if (!std::filesystem::exists(ETENDUE_SOURCE_DIR "/docs/manual/" + info->name + ".md")) continue;
     bool checked = false;
     for (const std::string& interface : checked_interfaces()) checked = checked || info->is_a(*registry.find(interface));
@@ -51,27 +51,29 @@ std::vector<std::string> built_in(bool with_checks) {
   return names;
 }
 
-/// What could not be tried, though nothing is wrong with it; all else that is not tried is missing data or a broken part.
+/// Checks that are expected not to be tried. Any other check that is not tried means missing data or a broken part.
 const std::multimap<std::string, std::string> never_tried = {
     {"AmbientOcclusionRenderer", "pictures of known value"},
-    {"AdaptiveSampling", "pictures of known value"},  // renderers that bring light to other pixels were drawn for inside
+    {"AdaptiveSampling", "pictures of known value"},  // the inner renderers that were drawn splat
     {"FeatureRenderer", "pictures of known value"},
     {"DirectRenderer", "pictures of known value"},
     {"WhittedRenderer", "pictures of known value"},
-    {"BidirectionalPathTracer", "pictures of known value"},  // with members drawn that leave strategies out
+    {"BidirectionalPathTracer", "pictures of known value"},  // members were drawn that leave strategies out
     {"ManyLights", "pictures of known value"},               // drawn without compensation
     {"PhotonMapper", "pictures of known value"},
-    {"PrimarySampleMetropolis", "pictures of known value"},  // renderers that learn were drawn for inside
-    // Few photons, which were drawn, are all noise.
+    {"PrimarySampleMetropolis", "pictures of known value"},  // the inner renderers that were drawn learn
+    // The numbers of photons that were drawn are small, so the noise is too large.
     {"ProgressivePhotonMapper", "the value of a plane under an environment is the known one"},
     {"ProgressivePhotonMapper", "the value of a plane under a distant light is the known one"},
     {"VertexConnectionMerging", "the value of a plane under an environment is the known one"},
     {"VertexConnectionMerging", "the value of a plane under a distant light is the known one"},
-    {"LightTracer", "the value of a plane under a distant light is the known one"},  // all noise, with few samples
-    {"CosineLobeEmission", "power is the integral of radiance, on a Point"},         // an amount of a black radiance was drawn
+    {"LightTracer", "the value of a plane under a distant light is the known one"},  // too much noise with few samples
+    {"CosineLobeEmission",
+     "power is the integral of radiance, on a Point"},  // a power was drawn together with a black radiance
     {"CosineLobeEmission", "power is the integral of radiance, on a Environment"},
-    {"DiffuseEmission", "power is the integral of radiance, on a Environment"},  // intensities were drawn, which it has none of
-    {"ProjectorEmission", "power is the integral of radiance, on a Rectangle"},  // it shines backwards
+    {"DiffuseEmission",
+     "power is the integral of radiance, on a Environment"},  // intensities were drawn, which an environment does not have
+    {"ProjectorEmission", "power is the integral of radiance, on a Rectangle"},  // it emits to the back
     {"ProjectorEmission", "power is the integral of radiance, on a Environment"},
     {"IesEmission", "power is the integral of radiance, on a Environment"},
     {"GoniometricEmission", "power is the integral of radiance, on a Environment"},
@@ -87,19 +89,19 @@ std::string untried(const std::vector<Outcome>& outcomes) {
   return all;
 }
 
-/// How many checks of a class passed.
+/// The number of checks of a class that passed.
 long passed(const std::vector<Outcome>& outcomes, const std::string& name) {
   return std::count_if(outcomes.begin(), outcomes.end(),
                        [&](const Outcome& o) { return o.class_name == name && o.result == Result::passed; });
 }
 
-// A list of classes that is empty, or lacks some, would let what follows pass without a word.
+// With an empty or incomplete list of classes, the following tests would pass without testing anything.
 TEST(Conform, AllBuiltInClassesAreTried) {
   std::set<std::string> tried;
   for (const bool with_checks : {true, false})
     for (const std::string& name : built_in(with_checks)) tried.insert(name);
   const TemporaryFolder folder;
-  Process program(ETENDUE_BINARY_DIR "/etendue", {"classes", "--json"}, folder);  // which knows no classes of tests
+  Process program(ETENDUE_BINARY_DIR "/etendue", {"classes", "--json"}, folder);  // without the classes that tests register
   ASSERT_EQ(program.wait(), 0) << program.err();
   int all = 0;
   for (const auto& info : nlohmann::json::parse(program.out())) {
@@ -119,7 +121,7 @@ TEST_P(BuiltIn, PartsConform) {
 }
 INSTANTIATE_TEST_SUITE_P(Conform, BuiltIn, ::testing::ValuesIn(built_in(true)), [](const auto& each) { return each.param; });
 
-/// Those whose drawn members do not ask for hours: of renderers how many rays they split into is drawn as well.
+/// Classes whose drawn members do not lead to hours of work: for renderers the number of rays per split is drawn as well.
 std::vector<std::string> quick_to_draw() {
   std::vector<std::string> names = built_in(true);
   const ClassInfo& renderer = *Registry::instance().find("Renderer");
@@ -127,14 +129,14 @@ std::vector<std::string> quick_to_draw() {
   return names;
 }
 
-// The parts and samples of one seed hide what those of another show.
+// The parts and samples drawn with one seed may hide faults that another seed shows.
 class BuiltInAgain : public ::testing::TestWithParam<std::string> {};
 TEST_P(BuiltInAgain, PartsOfAnotherSeedConform) { EXPECT_EQ(failures(outcomes_of(GetParam(), 1, 2)), ""); }
 INSTANTIATE_TEST_SUITE_P(Conform, BuiltInAgain, ::testing::ValuesIn(quick_to_draw()),
                          [](const auto& each) { return each.param; });
 
-// What one seed draws hides what others show. It takes half an hour and is asked for: ETENDUE_CONFORM_SEEDS=3 tries all classes
-// with the seeds 1 to 3, as `etendue conform --quick --seed N` does.
+// One seed may hide faults that others show. This takes half an hour, so it is run on request only: ETENDUE_CONFORM_SEEDS=3
+// tries all classes with the seeds 1 to 3, as `etendue conform --quick --seed N` does.
 TEST(Conform, PartsOfManySeedsConform) {
   const char* asked = std::getenv("ETENDUE_CONFORM_SEEDS");
   if (!asked) GTEST_SKIP() << "ETENDUE_CONFORM_SEEDS says with how many seeds";
@@ -146,14 +148,14 @@ TEST(Conform, PartsOfManySeedsConform) {
 
 TEST(Conform, AllOtherClassesConformAsComponents) {
   const std::vector<std::string> names = built_in(false);
-  ASSERT_FALSE(names.empty());  // an empty list would stand for all classes
+  ASSERT_FALSE(names.empty());  // an empty list would mean all classes
   const std::vector<Outcome> outcomes = conform({names, Effort::quick, 3, 1, 0, {}});
   EXPECT_EQ(failures(outcomes), "");
   EXPECT_EQ(untried(outcomes), "");
   for (const std::string& name : names) EXPECT_GE(passed(outcomes, name), 10) << name;
 }
 
-/// A class of the plugin, the check that must find its fault.
+/// A class of the plugin, and the check that must find its fault.
 struct Fault {
   const char *class_name, *check;
 };
@@ -209,7 +211,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"LooseKnob", "a knob turns back as far as it turned"}),
     [](const auto& each) { return std::string(each.param.class_name) + "_" + std::to_string(each.index); });
 
-// Both sides of a boundary may have an index of their own at each wavelength.
+// Each side of a boundary may have its own index at each wavelength.
 TEST(Conform, ReciprocityIsThatOfEachWavelength) {
   const Fixtures fixtures;
   for (const char* text :
@@ -226,8 +228,8 @@ TEST(Conform, ReciprocityIsThatOfEachWavelength) {
   }
 }
 
-// The poles lie on the flat sides of a long ellipsoid, where a twentieth of its points are so near to one that a step of a
-// thousandth of its length is no small one.
+// The poles of a long ellipsoid lie on its flat sides. A twentieth of its points are so near to a pole that a step of a
+// thousandth of its length is not small.
 TEST(Conform, StepsNearPolesAreSmall) {
   const Fixtures fixtures;
   for (const char* transform :
@@ -291,7 +293,7 @@ TEST(Conform, UnknownClassesAreNamed) {
   }
 }
 
-// The cells find a lobe of a thousandth of a radian, near the pole and near the horizon, and a smooth one alike.
+// The cells integrate lobes as narrow as a thousandth of a radian, near the pole and near the horizon, and wide lobes.
 TEST(SphereCells, IntegrateSharpLobes) {
   std::mt19937 random(2);
   const auto uniform = [&] { return to_unit_float(std::uint32_t(random())); };

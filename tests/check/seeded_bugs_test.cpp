@@ -1,5 +1,5 @@
-// Faults of the kind that give plausible pictures, one at a time in renderers made of the same parts as the program's
-// (faulty_renderers): `verify` must find each, and nothing when none is on.
+// Faults of the kind that give plausible images, one at a time, in renderers built from the same parts as the program's
+// (faulty_renderers): `verify` must find each, and find nothing without a fault.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 const char* const verify_scenes = ETENDUE_SOURCE_DIR "/scenes/verify/";
 
-// A lamp in a ball of glass and a floor around it: light leaves the glass once, and is not refracted back.
+// A lamp in a glass ball and a floor outside: light leaves the glass once and is not refracted back.
 const char* const lamp_in_glass = R"(Job {
   renderer: PathTracer { max_depth: 8 }
   camera: PerspectiveCamera { from: [0, 1, -6], to: [0, 0, 0], fov: 40 }

@@ -1,4 +1,4 @@
-// What `verify` makes of renderers that are exact in the limit only: right ones are not accused, wrong ones are found.
+// `verify` with consistent renderers, which are exact only in the limit: correct ones agree, wrong ones are found.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using Random = std::mt19937_64;
 
 double photon_width(std::uint32_t step) { return std::pow(double(step + 1), -0.15); }
 
-/// The means of a pass until each mark, of steps that are biased by `bias(w)`.
+/// The means of a pass up to each mark, for steps that are biased by `bias(w)`, w being the width of the kernel.
 template <class Bias>
 std::vector<double> means_of(const LimitOfPass& pass, const Bias& bias) {
   std::vector<double> means;
@@ -31,7 +31,7 @@ std::vector<double> means_of(const LimitOfPass& pass, const Bias& bias) {
 }
 
 TEST(VerifyLimit, lines_are_extended_to_zero) {
-  // y = 3 + 2 x whatever the variances are; and by hand: two points (1, 5), (3, 9) have the weights 3/2 and -1/2.
+  // Data on the line y = 3 + 2 x give 3 for any variances; two points at x = 1 and 3 have the weights 3/2 and -1/2.
   const std::vector<double> c = limit_weights({1, 3, 4}, {1, 0.1, 7});
   EXPECT_NEAR(5 * c[0] + 9 * c[1] + 11 * c[2], 3, 1e-12);
   EXPECT_NEAR(c[0] + c[1] + c[2], 1, 1e-12);
@@ -47,7 +47,7 @@ TEST(VerifyLimit, a_bias_as_the_width_or_its_square_is_gone) {
     EXPECT_EQ(pass.marks().back(), samples);
     EXPECT_NEAR(pass.limit_by_width(means_of(pass, [](double w) { return 3 * w; })), 5, 1e-9);
     EXPECT_NEAR(pass.limit_by_square(means_of(pass, [](double w) { return -2 * w * w; })), 5, 1e-9);
-    // What lies between is between.
+    // With a bias between both forms, the limit lies between the two estimates.
     const auto both = means_of(pass, [](double w) { return w + w * w; });
     EXPECT_LT(pass.limit_by_width(both), 5);
     EXPECT_GT(pass.limit_by_square(both), 5);
@@ -57,7 +57,7 @@ TEST(VerifyLimit, a_bias_as_the_width_or_its_square_is_gone) {
 }
 
 TEST(VerifyLimit, its_noise_is_what_it_says) {
-  // Steps whose variance is 1 / w^2, as that of photons.
+  // Steps with the variance 1 / w^2, as with photons.
   constexpr std::uint32_t samples = 128;
   const LimitOfPass pass(samples, 1, photon_width);
   Random random(1);
@@ -77,7 +77,7 @@ TEST(VerifyLimit, its_noise_is_what_it_says) {
     ends += means.back() * means.back();
   }
   EXPECT_NEAR(std::sqrt(limits / ends) / pass.noise(), 1,
-              0.1);  // each known to 1.1 %; the variances of marks are of means of w^2
+              0.1);  // both deviations are known to 1.1 %; noise() takes the variances from means of w^2
 }
 
 TEST(VerifyLimit, rates_are_found_within_their_errors) {
@@ -129,7 +129,7 @@ TEST(VerifyLimit, what_is_not_known_of_a_mean_is_no_disagreement) {
 
 class VerifyLimitProgram : public RunsProgram {
  protected:
-  // A lamp over a ball between a floor and a wall, with a radius of a fifth of all: a bias of 9 % in the first step.
+  // A lamp over a ball between a floor and a wall, with a radius of a fifth of the scene's: a bias of 9 % in the first step.
   int verify(const std::string& renderer, const std::string& samples) {
     const std::string objects = R"(
       Sphere { radius: 1, shader: Lambertian { color: 0.5 } }
@@ -150,7 +150,7 @@ const std::string mapper = "SmallPhotonMapper{photons: 1000, radius: 0.2, alpha:
 TEST_F(VerifyLimitProgram, a_photon_mapper_goes_to_the_truth_at_its_rate) {
   ASSERT_EQ(verify(mapper, "1024"), 0) << out << err;
   const auto rate = pair()["convergence"]["rate"];
-  // N^-(1 - alpha) where a blur is within one surface, N^-(1 - alpha)/2 at edges.
+  // The bias falls as N^-(1 - alpha) where the blur lies within one surface, and as N^-(1 - alpha)/2 at edges.
   EXPECT_GT(rate["value"].get<double>(), 0.3 - 4 * rate["standard_error"].get<double>()) << rate;
   EXPECT_LT(rate["value"].get<double>(), 0.6 + 4 * rate["standard_error"].get<double>()) << rate;
   EXPECT_LT(rate["standard_error"].get<double>(), 0.1);

@@ -1,5 +1,5 @@
-// The scenes each hard for some algorithm, in a size for every day: all renderers that find their light agree. With the
-// budgets of docs/results/agreement.md, which take minutes, an error of 1 % is noticed; here it takes a few per cent.
+// Scenes that are each hard for some algorithm, in a small size for every day: all renderers that find their light agree. With
+// the budgets of docs/results/agreement.md, which take minutes, an error of 1 % is found; here only one of a few per cent.
 
 #include <gtest/gtest.h>
 
@@ -37,8 +37,8 @@ TEST_P(VerifyScenes, RenderersAgree) {
   EXPECT_NE(text.find("PathTracer and BidirectionalPathTracer"), std::string::npos) << text;
 }
 
-// A guide's densities stand in the weights of both walks: where one lacks them light is counted twice. Here the light's walk
-// matters least, and 1 % of the light is too much if the guide is left out of its densities alone.
+// The guide's pdfs enter the weights through both subpaths: if one lacks them, light is counted twice. In this scene the light
+// subpath matters least: if the guide is missing in its pdfs alone, the image is 1 % too bright.
 TEST(VerifyGuide, DensitiesStandInAllWeights) {
   TemporaryFolder folder;
   Process process(ETENDUE_BINARY_DIR "/etendue",
@@ -48,12 +48,12 @@ TEST(VerifyGuide, DensitiesStandInAllWeights) {
   EXPECT_EQ(process.wait(), 0) << process.out();
 }
 
-// A quarter of the light too much is noticed everywhere even so.
+// Even so, a quarter of the light too much is found in every scene.
 TEST_P(VerifyScenes, AnErrorIsNoticed) {
   EXPECT_EQ(verify({"--inject", "1.25", "--renderers", "PathTracer,BidirectionalPathTracer", "--quiet"}), 1);
 }
 
-// Each renderer that is made for it stands in some of them, not in all: chains and photons take their time.
+// Each renderer is tested in some of the scenes it is made for, not in all, since chains and photons take long.
 const std::string light = ",LightTracer", guided = ",GuidedPathTracer",
                   guided_both_ways = guided + ",BidirectionalPathTracer{guided: true}", distribution = ",DistributionRenderer",
                   photons = ",VertexConnectionMerging,ProgressivePhotonMapper",

@@ -50,14 +50,15 @@ TEST(VerifyStudent, incomplete_beta_has_its_symmetry_and_closed_forms) {
 // ---- corrections and moments -------------------------------------------------------------------------------------------
 
 TEST(VerifyHolm, steps_down) {
-  // By hand: 4 x 0.005, 3 x 0.01, 2 x 0.03 = 0.06, and 0.04 which may not be less than the one before.
+  // By hand: 4 x 0.005, 3 x 0.01, 2 x 0.03 = 0.06, and 1 x 0.04, which may not be less than the value before it.
   EXPECT_EQ(holm({0.01, 0.04, 0.03, 0.005}, {1, 1, 1, 1}), (std::vector<double>{0.03, 0.06, 0.06, 0.02}));
   EXPECT_EQ(holm({0.6, 0.9}, {1, 1}), (std::vector<double>{1, 1}));
   EXPECT_TRUE(holm({}, {}).empty());
 }
 
 TEST(VerifyHolm, weights_share_the_significance) {
-  // Half to the first, a quarter to each other: 0.004 / (1/2); then 0.003 / (1/4) of the 1/2 that are left, then the last.
+  // The first has half of the significance, the others a quarter each: 0.004 / (1/2); then 0.003 / (1/4) of the remaining 1/2;
+  // then the last.
   const std::vector<double> corrected = holm({0.004, 0.003, 0.5}, {0.5, 0.25, 0.25});
   EXPECT_NEAR(corrected[0], 0.008, 1e-15);
   EXPECT_NEAR(corrected[1], 0.008, 1e-15);  // 0.006, raised to the one before it
@@ -91,7 +92,7 @@ TEST(VerifyLayout, covers_every_pixel_once) {
 
 using Random = std::mt19937_64;
 
-/// A renderer whose tiles' pass means come from `draw(tile, layer)`, each by itself.
+/// A renderer for which `draw(tile, layer)` draws the mean of each tile in each pass, independently.
 template <class Draw>
 Measured simulated(const Layout& layout, const char* name, int passes, Draw&& draw) {
   Measured measured;
@@ -109,7 +110,7 @@ Measured simulated(const Layout& layout, const char* name, int passes, Draw&& dr
   return measured;
 }
 
-/// Mean 1, a normal distribution as of very many samples.
+/// A normal distribution of mean 1, as means of very many samples have.
 double calm(Random& random, double deviation) { return std::normal_distribution<double>(1, deviation)(random); }
 /// The mean of n lognormal samples with sigma 1.5 (skewness 33) and expectation 1.
 double lognormal(Random& random, int n) {
@@ -153,12 +154,12 @@ TEST(VerifySimulation, false_alarms_with_lognormal_samples) {
   const auto exact = [&](size_t, size_t) { return calm(random, 0.01); };
   const Counts counts = simulate(verifies, small, exact, [&](size_t, size_t) { return lognormal(random, 64); });
   EXPECT_LE(counts.disagreements, allowed);
-  EXPECT_GT(counts.undecided, 0);  // a plain t-test errs here, so this simulation can fail
+  EXPECT_GT(counts.undecided, 0);  // a plain t-test gives false alarms here, so the simulation is sensitive
 }
 
 TEST(VerifySimulation, false_alarms_with_rare_events) {
   const auto exact = [](Random& random) { return [&random](size_t, size_t) { return calm(random, 0.01); }; };
-  // From about one event in a pass of a tile down to one in ten.
+  // From about one event per tile and pass down to one in ten.
   for (const auto& [samples, p] : {std::pair(1024, 1e-3), std::pair(256, 1e-3), std::pair(1024, 1e-4)}) {
     Random random(3);
     const Counts counts =
@@ -178,7 +179,8 @@ TEST(VerifySimulation, false_alarms_with_fireflies_over_calm_light) {
 }
 
 TEST(VerifySimulation, power_against_one_percent) {
-  // Relative standard error of the whole picture's mean 0.2 %: of a tile's pass 0.002 * sqrt(16 tiles * 16 passes).
+  // The relative standard error of the whole image's mean is 0.2 %, that of one pass of a tile 0.002 * sqrt(16 tiles * 16
+  // passes).
   Random random(5);
   const Layout layout = Layout::of({0, 0, 32, 32}, 8, 0);
   const auto measure = [&](double factor, double error) {
@@ -210,7 +212,7 @@ TEST(VerifySimulation, a_wrong_tile_is_found_where_it_is) {
   const auto wrong = [&](size_t tile, size_t layer) { return calm(random, 0.02) * (tile == 5 && layer == 4 ? 0.9 : 1.0); };
   const Agreement agreement = compare(small, {simulated(small, "a", 16, exact), simulated(small, "b", 16, wrong)}, 0.01);
   for (const MeanTest& t : agreement.pairs[0].tests) {
-    if (t.place == small.whole() && t.layer == 4) continue;  // 0.6 % less: may be found or not
+    if (t.place == small.whole() && t.layer == 4) continue;  // 0.6 % less light: may be found or not
     EXPECT_EQ(t.verdict == Verdict::disagrees, t.place == 5 && t.layer == 4) << t.place << " " << t.layer << " z " << t.z;
   }
 }

@@ -1,4 +1,4 @@
-// `etendue verify`: what it compares and reports, and the command on a small scene.
+// `etendue verify`: the choice of renderers, the collected means and the report, and the command on a small scene.
 
 #include <gtest/gtest.h>
 
@@ -97,8 +97,8 @@ TEST(VerifyCollect, means_are_those_of_the_passes_and_lengths_add_up) {
   EXPECT_NEAR(c.measured[0].passes[2][3], 2 * d.measured[0].passes[2][3], 1e-12);
 }
 
-// Chains cannot follow glass that reflects in two directions at once (its normals are tilted), which they find while they
-// render.
+// Chains cannot follow glass with several specular directions of one kind (its normals are tilted). They find this only while
+// they render.
 TEST(VerifyCollect, what_refuses_the_scene_while_it_renders_is_left_out_with_its_reason) {
   const Ref<Job> job = load_job(ETENDUE_SOURCE_DIR "/scenes/verify/tilted_normals.etd");
   job->image->width = 16, job->image->height = 12;

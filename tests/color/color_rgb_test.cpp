@@ -27,7 +27,7 @@ double difference(const Rgb& a, const Rgb& b) {
   return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
 }
 
-/// A texel as a spectral function, to be integrated by the same sum as everything else.
+/// A texel as a SpectralFunction, so that it is integrated by the same sum as everything else.
 class Texel final : public SpectralFunction {
  public:
   Texel(const RgbSpace& space, const Rgb& rgb) : space_(space), rgb_(rgb) {}
@@ -74,7 +74,7 @@ TEST(RgbSpace, WhiteOfEverySpace) {
   for (const std::string& name : rgb_space_names()) {
     const RgbSpace& s = rgb_space(name);
     EXPECT_NEAR(s.to_xyz[3] + s.to_xyz[4] + s.to_xyz[5], 1, 1e-12) << name;
-    // (1, 1, 1) emitted is the white with Y = 1; reflected it is 1 everywhere.
+    // As radiance, (1, 1, 1) is the white with Y = 1; as reflectance, it is 1 everywhere.
     const Color white = rgb_color(name, 1, 1, 1);
     EXPECT_LT(difference(emitted(s, white), {1, 1, 1}), 5e-4) << name;
     EXPECT_NEAR(to_xyz(*white, ColorUse::radiance).y, 1, 1e-5) << name;
@@ -122,7 +122,7 @@ TEST(RgbColor, RoundTripOverTheCube) {
 }
 
 TEST(RgbColor, RoundTripInOtherSpaces) {
-  // The whole cube of a wide space holds colours no reflectance has; a part well inside is met.
+  // The cube of a wide space contains colours that no reflectance can have; colours well inside the cube are reproduced.
   for (const char* name : {"display_p3", "rec2020", "acescg"}) {
     const RgbSpace& s = rgb_space(name);
     for_cube(3, 0.2, 0.8, [&](const Rgb& rgb) {
@@ -144,7 +144,7 @@ TEST(RgbColor, OutOfRange) {
   EXPECT_THROW(rgb_color("srgb", INFINITY, 0, 0), Error);
   EXPECT_THROW(srgb_color(1.1, 0, 0), Error);
   EXPECT_THROW(rgb_color("no_space", 0, 0, 0), Error);
-  // Colours no reflectance has stay bounded.
+  // Colours that no reflectance can have still give bounded values.
   for (const auto& extreme : {Rgb{1, 0, 0}, Rgb{0, 1, 0}, Rgb{0, 0, 1}, Rgb{0, 1, 1}}) {
     const Color c = rgb_color("aces2065-1", extreme[0], extreme[1], extreme[2]);
     for (float w = 360; w <= 830; w += 10) {
@@ -198,7 +198,7 @@ TEST(Texel, BlackWhiteAndBeyond) {
   EXPECT_EQ(rgb_spectrum(s, 1, 1, 1, ColorUse::reflectance, w).minimum(), 1);
   EXPECT_EQ(rgb_spectrum(s, 7, 7, 7, ColorUse::reflectance, w).minimum(), 1);
   EXPECT_FLOAT_EQ(rgb_spectrum(s, 7, 7, 7, ColorUse::coefficient, w).minimum(), 7);
-  // What is no number stays none, to be found and reported.
+  // NaN stays NaN, so that it is found and reported.
   for (const ColorUse use : {ColorUse::reflectance, ColorUse::radiance, ColorUse::coefficient}) {
     EXPECT_FALSE(rgb_spectrum(s, NAN, 0.5f, 0.5f, use, w).finite());
     EXPECT_FALSE(rgb_spectrum(s, 0.5f, 0.5f, NAN, use, w).finite());
@@ -211,7 +211,7 @@ TEST(Texel, BlackWhiteAndBeyond) {
 }
 
 TEST(Texel, FirstUseFromManyThreads) {
-  // A space of its own, so that its table is not there yet.
+  // A new space, so that its table has not been built yet.
   const RgbSpace s = make_rgb_space("own", {{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}}}, {0.3127, 0.3290});
   std::array<RgbCoefficients, 4> found;
   std::vector<std::thread> threads;

@@ -87,7 +87,7 @@ TEST(Blackbody, RadianceAndChromaticity) {
 
 TEST(Reflectance, ColorCheckerUnderThreeLights) {
   const std::string colorimetry = shared_spectra + "colorchecker24_colorimetry.csv";
-  // Six of its patches stand in published_numbers_test.
+  // Six of the patches are also tested in published_numbers_test.
   if (!std::filesystem::exists(colorimetry)) GTEST_SKIP() << "no validation data";
   std::ifstream file(colorimetry);
   int patches = 0;
@@ -97,7 +97,7 @@ TEST(Reflectance, ColorCheckerUnderThreeLights) {
     std::string patch, text;
     std::getline(fields, patch, ',');
     const Color paint = file_spectrum({shared_spectra + "colorchecker24_babelcolor_10nm.csv", {}}, patch);
-    // The table's white is that of the measured range alone.
+    // The published white (Y = 100) covers the table's measured range alone, 380 to 730 nm.
     const Color white = table_spectrum({380, 730}, {1, 1});
     for (const char* light : {"D65", "A", "D50"}) {
       const Color illuminant = illuminant_spectrum(light);
@@ -147,7 +147,7 @@ TEST(Metal, IndexIsComplex) {
   EXPECT_MESSAGE("must be real", complex_index(metal_index("Au"), flat_spectrum(1)));
 }
 
-// All rows; some of them stand in published_numbers_test.
+// All rows of the files; some of them are also tested in published_numbers_test.
 TEST(Metal, IsThatOfTheFiles) {
   if (!std::filesystem::exists(shared_spectra)) GTEST_SKIP() << "no validation data";
   for (const std::string name : {"Au", "Ag", "Al", "Cu", "Cr"}) {
@@ -183,7 +183,7 @@ TEST(Table, LinearBetweenZeroOutside) {
 TEST(Table, FineLinesKeepTheirPower) {
   // A triangle of height 10 and half width 0.2 nm between two entries of the 1 nm table: area 2 nm.
   const Color line = table_spectrum({550.2f, 550.4f, 550.6f}, {0, 10, 0});
-  EXPECT_NEAR(line->at(550.3f, ColorUse::coefficient), 5, 0.01f);  // a float's 550.3 is no better
+  EXPECT_NEAR(line->at(550.3f, ColorUse::coefficient), 5, 0.01f);  // 550.3 is rounded to float
   EXPECT_NEAR(line->at(550, ColorUse::radiance), 2 * 0.6, 1e-3f);  // as light it is seen through a slit of 2 nm
   EXPECT_NEAR(light_color(line).y, 2 * observer(550.4f).y / observer_y_integral(), 2e-6);
 }

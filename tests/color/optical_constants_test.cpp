@@ -1,4 +1,4 @@
-// Metals and glasses by name: each is known, and has the numbers that were published.
+// Metals and glasses by name: each name exists and has the published numbers.
 
 #include <gtest/gtest.h>
 
@@ -104,14 +104,14 @@ TEST(OpticalConstants, ARowOfEachMetal) {
   for (const std::string& name : known) EXPECT_TRUE(names.contains(name)) << name;
 }
 
-// Nothing visible is outside a table, where an index would be 0 and all light reflected.
+// Every index is defined at all visible wavelengths: outside a table it would be 0, and all light would be reflected.
 TEST(OpticalConstants, TablesCoverAllThatIsVisible) {
   for (const std::string& name : metal_names()) {
     const Color metal = metal_index(name);
     for (double l = 360; l <= 830; l += 2) {
       EXPECT_GT(real_part(metal, l), 0.03) << name << " at " << l;
       EXPECT_GE(imaginary_part(metal, l), 0) << name << " at " << l;
-      if (name != "SnTe") EXPECT_GT(reflectance(metal, l), 0.03) << name << " at " << l;  // whose k is missing
+      if (name != "SnTe") EXPECT_GT(reflectance(metal, l), 0.03) << name << " at " << l;  // the table of SnTe lacks k
       EXPECT_LT(reflectance(metal, l), 0.995) << name << " at " << l;
     }
   }
@@ -124,8 +124,8 @@ TEST(OpticalConstants, TablesCoverAllThatIsVisible) {
       EXPECT_NEAR(real_part(metal_index(e.name), l), real_part(metal_index(e.name), e.end), 1e-3) << e.name << " at " << l;
 }
 
-// Reflectances that others have measured or computed, straight on and rounded: brass, bronze, carbon, iron and steel, and some
-// more of section 12 of the CRC Handbook and of the papers.
+// Reflectances at normal incidence that others have measured or computed, rounded: brass, bronze, carbon, iron and steel, and
+// some more from section 12 of the CRC Handbook and from the papers.
 TEST(OpticalConstants, Reflectances) {
   const struct {
     const char* name;
@@ -156,7 +156,7 @@ TEST(OpticalConstants, OtherNames) {
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("did you mean 'brass'?"), std::string::npos) << e.what();
   }
-  // No name, in capitals or not, stands for two.
+  // No name stands for two materials, even if case is ignored.
   for (const std::string& name : metal_names()) EXPECT_EQ(metal_index(name)->expression(), "metal(\"" + name + "\")");
   for (const std::string& name : glass_names()) EXPECT_EQ(glass_index(name)->expression(), "glass(\"" + name + "\")");
 }
@@ -222,12 +222,12 @@ TEST(OpticalConstants, IndicesOfGlasses) {
     EXPECT_NEAR(n, r.n, r.tolerance) << r.name;
     if (r.abbe > 0)
       EXPECT_NEAR((n - 1) / (real_part(glass, 486.1327) - real_part(glass, 656.2725)), r.abbe, 0.05 * r.abbe) << r.name;
-    // Less and less towards the red, smoothly.
+    // The index decreases smoothly towards red.
     for (double l = 360; l < 830; l += 10) EXPECT_GT(real_part(glass, l), real_part(glass, l + 10) - 1e-7) << r.name << l;
   }
 }
 
-// docs/optical-constants.md is made with the tables.
+// docs/optical-constants.md is generated together with the tables.
 TEST(OpticalConstants, ThePageListsAllNames) {
   std::ifstream file(ETENDUE_SOURCE_DIR "/docs/optical-constants.md");
   std::stringstream text;

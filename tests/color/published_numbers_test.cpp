@@ -1,6 +1,6 @@
-// Numbers of colour that others have published, typed from where they stand: colour spaces, transfer functions, illuminants,
-// the observer, black bodies. The tables that are read elsewhere are held to some of their rows here, so that a digit that was
-// changed by mistake is noticed without any file beside the repository.
+// Numbers of colour published by others, typed from their sources: colour spaces, transfer functions, illuminants, the
+// observer, black bodies. Tables that other tests compare with whole files are checked here against some of their published
+// rows, so that an accidentally changed digit is noticed without any file outside the repository.
 
 #include <gtest/gtest.h>
 
@@ -40,13 +40,13 @@ TEST(PublishedNumbers, MatricesOfAllSpaces) {
                  1e-9}};
   for (const auto& s : spaces)
     for (size_t i = 0; i < 9; ++i) EXPECT_NEAR(rgb_space(s.name).to_xyz[i], s.matrix[i], s.tolerance) << s.name << " " << i;
-  // And back (ITU-R BT.2020's luma, S-2014-004).
+  // The inverse matrices (ITU-R BT.2020's luma, S-2014-004).
   const double from[] = {1.6410233797, -0.3248032942, -0.2364246952, -0.6636628587, 1.6153315917,
                          0.0167563477, 0.0117218943,  -0.0082844420, 0.9883948585};
   for (size_t i = 0; i < 9; ++i) EXPECT_NEAR(rgb_space("acescg").from_xyz[i], from[i], 1e-9) << i;
 }
 
-// A light of each space's (1, 1, 1) has that space's white, and one of (r, g, b) has the colour the matrix says.
+// As radiance, (1, 1, 1) of each space has that space's white, and (r, g, b) has the colour that the matrix gives.
 TEST(PublishedNumbers, LightsHaveTheirSpacesWhite) {
   for (const std::string& name : rgb_space_names()) {
     const RgbSpace& space = rgb_space(name);
@@ -100,7 +100,7 @@ TEST(PublishedNumbers, RowsOfIlluminants) {
                 r.power / reference, 2e-6 * r.power / reference)
         << r.name << " " << r.wavelength;
   }
-  // Chromaticities of CIE 15:2004, tables T.3 and T.8; all of the spectrum counts for them.
+  // Chromaticities of CIE 15:2004, tables T.3 and T.8; they depend on the whole spectrum.
   const struct {
     const char* name;
     double x, y;
@@ -114,7 +114,7 @@ TEST(PublishedNumbers, RowsOfIlluminants) {
   }
 }
 
-// CIE 15: every tenth nanometre of where the eye sees most, in the order xbar, ybar, zbar.
+// CIE 15: every tenth nanometre where the eye is most sensitive, in the order xbar, ybar, zbar.
 TEST(PublishedNumbers, RowsOfTheObserver) {
   constexpr double rows[][4] = {
       {380, 0.001368, 0.000039, 0.00645}, {400, 0.01431, 0.000396, 0.06785}, {420, 0.13438, 0.004, 0.6456},
@@ -133,7 +133,7 @@ TEST(PublishedNumbers, RowsOfTheObserver) {
     EXPECT_NEAR(o.y, r[2], 6e-6) << r[0];
     EXPECT_NEAR(o.z, r[3], 6e-6) << r[0];
   }
-  // Between them the functions are smooth: no row departs from the cubic through its neighbours.
+  // Between these rows the functions are smooth: no value departs from the cubic through its neighbours.
   for (int l = 382; l <= 690; ++l) {
     const auto at = [](int x) { return observer(float(x)); };
     const Xyz a = at(l - 2), b = at(l - 1), c = at(l), d = at(l + 1), e = at(l + 2);
@@ -144,19 +144,19 @@ TEST(PublishedNumbers, RowsOfTheObserver) {
     smooth(a.y, b.y, c.y, d.y, e.y);
     smooth(a.z, b.z, c.z, d.z, e.z);
   }
-  // Equal areas, to the digits of the tables.
+  // The three functions have equal areas, to the digits of the tables.
   double x = 0, z = 0;
   for (int l = 360; l <= 830; ++l) x += observer(float(l)).x, z += observer(float(l)).z;
   EXPECT_NEAR(x, 106.865469, 2e-6);
   EXPECT_NEAR(z, 106.892251, 2e-6);
 }
 
-// Wien's and Stefan and Boltzmann's laws are consequences of Planck's, with constants of their own (CODATA 2018).
+// Wien's law and the Stefan-Boltzmann law follow from Planck's law, with constants of their own (CODATA 2018).
 TEST(PublishedNumbers, BlackBodies) {
   for (const double kelvin : {2856.0, 5778.0, 12000.0}) {
     const Color body = blackbody_spectrum(kelvin);
     double power = 0, highest = 0, at = 0;
-    // In steps of relative size; all of it, far beyond what is seen.
+    // Integrated in steps of constant relative size over the whole spectrum, far beyond the visible range.
     for (double l = 20; l < 4e6; l *= 1.0005) {
       const double value = double(body->at(float(l * 1.00025), ColorUse::radiance));
       power += value * l * 0.0005;

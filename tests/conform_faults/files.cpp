@@ -1,5 +1,5 @@
-// Outputs and importers that are wrong in one way each: what `etendue conform` must find. All outputs write portable
-// float maps, which are read back and simple to make.
+// Outputs and importers with one fault each, which `etendue conform` must find. All outputs write portable float maps, which
+// are simple to make and can be read back.
 
 #include <atomic>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Emission, objects, maps, filters, media and cameras that are wrong in one way each: what `etendue conform` must find.
+// Emissions, objects, maps, filters, media and cameras with one fault each, which `etendue conform` must find.
 
 #include "etendue/camera.h"
 #include "etendue/core/warp.h"
@@ -14,7 +14,7 @@ namespace {
 
 // ---- emission ----------------------------------------------------------------------------------------------------------
 
-/// A right one but for what parts override: radiance 1 in all directions of a surface.
+/// A correct emission except for what subclasses override: radiance 1 in all directions of a surface.
 class Glow : public EmissionShader {
  public:
   Spectrum radiance(const SurfacePoint& p, const Vector3& direction, const Wavelengths&) const override {
@@ -66,7 +66,7 @@ const Register<WrongDirectionsEmission> directions;
 
 // ---- objects -----------------------------------------------------------------------------------------------------------
 
-/// A right one but for what parts override: the unit square of the xy plane, moved by its transform.
+/// A correct object except for what subclasses override: the unit square of the xy plane, moved by its transform.
 class Square : public SceneObject {
  public:
   Bounds3 bounds() const override {
@@ -146,7 +146,8 @@ class WrongVisibleSquare final : public Square {
 };
 const Register<WrongVisibleSquare> visible;
 
-/// A fortieth of it: no more of the steps may lead elsewhere than those that poles and rounding explain.
+/// The tangents are wrong on a fortieth of the square (0.16^2): `conform` may accept no more wrong steps than poles and
+/// rounding explain.
 class WrongTangentsSquare final : public Square {
  public:
   static void describe(Description<WrongTangentsSquare>& d) { d.summary("A unit square with a corner of wrong tangents."); }
@@ -210,7 +211,7 @@ class BackwardPhase final : public PhaseFunction {
         .member<&BackwardPhase::slope>("slope", "1", "how much", range(0.5, 1));
   }
   float value(float h) const override { return (1 + slope * (1 - h)) / (4 * pi); }
-  float sample(float u) const override {  // of 1 + slope (h - 1), whose integral to h is ((1 - slope) h + slope h^2 / 2) / 2
+  float sample(float u) const override {  // pdf (1 + slope (h - 1)) / 2, cdf ((1 - slope) h + slope h^2 / 2) / 2
     const float b = 1 - slope;
     return (std::sqrt(b * b + 4 * slope * u) - b) / slope;
   }

@@ -1,4 +1,4 @@
-// A renderer that is wrong: what `etendue conform` must find.
+// A faulty renderer, which `etendue conform` must find.
 
 #include "etendue/render/renderer.h"
 #include "etendue/shader.h"

@@ -1,4 +1,4 @@
-// Shaders that are wrong in one way each: what `etendue conform` must find.
+// Shaders with one fault each, which `etendue conform` must find.
 
 #include "etendue/core/warp.h"
 #include "etendue/object_map.h"
@@ -7,7 +7,7 @@
 namespace etendue {
 namespace {
 
-/// A right one: matt, on both sides.
+/// A correct Scatter: diffuse, on both sides.
 class Matt : public Scatter {
  public:
   Matt(const SurfacePoint& p, float reflectance, Lobes lobes = diffuse_reflection)
@@ -35,7 +35,7 @@ class Matt : public Scatter {
   float reflectance_;
 };
 
-/// The members and lobes all of them have.
+/// The members and lobes that all these shaders have.
 template <class S>
 class MattShader : public Shader {
  public:
@@ -53,7 +53,7 @@ class MattShader : public Shader {
   }
 };
 
-// ---- a density that forgets the cosine --------------------------------------------------------------------------------
+// ---- a pdf without the cosine ------------------------------------------------------------------------------------------
 class DensityScatter final : public Matt {
  public:
   using Matt::Matt;
@@ -69,8 +69,8 @@ class WrongDensityShader final : public MattShader<DensityScatter> {
 };
 const Register<WrongDensityShader> pdf;
 
-// ---- not reciprocal but at the hero wavelength ------------------------------------------------------------------------
-/// Light that gets through leaves evenly: f(front to back) / f(back to front) must be the squared index of each wavelength.
+// ---- reciprocal at the hero wavelength only ----------------------------------------------------------------------------
+/// Diffuse transmission: f(front to back) / f(back to front) must be the squared relative index of each wavelength.
 class HeroIndexScatter final : public Scatter {
  public:
   HeroIndexScatter(const SurfacePoint& p, const Spectrum& eta) : Scatter(p, diffuse_transmission), eta_(eta) {}
@@ -113,7 +113,7 @@ class HeroIndexShader final : public MattShader<Matt> {
 };
 const Register<HeroIndexShader> hero_index;
 
-// ---- an albedo that is not what is scattered --------------------------------------------------------------------------
+// ---- an albedo that is not that of the scattered light -----------------------------------------------------------------
 class AlbedoScatter final : public Matt {
  public:
   AlbedoScatter(const SurfacePoint& p, float reflectance, float factor) : Matt(p, reflectance), factor_(factor) {}
@@ -133,7 +133,7 @@ class DimAlbedoShader final : public MattShader<Matt> {
 };
 const Register<DimAlbedoShader> dim_albedo;
 
-/// A guess may be off, but by no more than it says.
+/// An albedo estimate may be off, but by no more than albedo_error().
 class WildAlbedoShader final : public MattShader<Matt> {
  public:
   static void describe(Description<WildAlbedoShader>& d) { describe_as(d, "Its albedo is 60 % off, and said to be 20 % off."); }
@@ -186,7 +186,7 @@ class OneWayShader final : public MattShader<OneWayScatter> {
 };
 const Register<OneWayShader> one_way;
 
-// ---- a weight that is not value times cosine over density --------------------------------------------------------------
+// ---- a weight that is not value times cosine over pdf ------------------------------------------------------------------
 class WeightScatter final : public Matt {
  public:
   using Matt::Matt;
@@ -204,13 +204,13 @@ class WrongWeightShader final : public MattShader<WeightScatter> {
 };
 const Register<WrongWeightShader> weight;
 
-// ---- two lobes, one of which does not look at the mask -----------------------------------------------------------------
+// ---- two lobes, one of which ignores the lobe mask ---------------------------------------------------------------------
 class MaskScatter final : public Matt {
  public:
   MaskScatter(const SurfacePoint& p, float reflectance) : Matt(p, reflectance, diffuse_reflection | diffuse_transmission) {}
 
  protected:
-  // Half of the light each way; but the reflecting half is sampled whether it was asked for or not.
+  // Half of the light is reflected and half transmitted; but reflection is sampled even if the mask excludes it.
   Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return reflectance_ / 2 * inverse_pi; }
   float local_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
     if (which == diffuse_reflection) return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
@@ -238,14 +238,14 @@ class MaskIgnoringShader final : public MattShader<MaskScatter> {
 };
 const Register<MaskIgnoringShader> mask;
 
-// ---- not a number where the cosine vanishes ----------------------------------------------------------------------------
+// ---- NaN where the cosine vanishes -------------------------------------------------------------------------------------
 class GrazingScatter final : public Matt {
  public:
   using Matt::Matt;
 
  protected:
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    // sqrt of what is negative just above the horizon.
+    // sqrt of a negative number just above the horizon.
     return Matt::local_evaluate(out, in, which) * std::sqrt(std::abs(in.z) - 0.001f) / std::sqrt(std::abs(in.z) - 0.001f);
   }
 };
@@ -255,7 +255,7 @@ class GrazingShader final : public MattShader<GrazingScatter> {
 };
 const Register<GrazingShader> grazing;
 
-// ---- a member that matters although it is said not to -------------------------------------------------------------------
+// ---- a member that has an effect although its condition says that it has none -------------------------------------------
 class AlwaysPaintedShader final : public Shader {
  public:
   static void describe(Description<AlwaysPaintedShader>& d) {
@@ -273,7 +273,7 @@ class AlwaysPaintedShader final : public Shader {
 };
 const Register<AlwaysPaintedShader> always_painted;
 
-// ---- a reflectance that is asked for as something else ------------------------------------------------------------------
+// ---- a reflectance that is evaluated as another quantity ---------------------------------------------------------------
 class MisreadShader final : public Shader {
  public:
   static void describe(Description<MisreadShader>& d) {

@@ -1,4 +1,4 @@
-// Tone maps that are wrong in one way each.
+// Tone maps with one fault each, which `etendue conform` must find.
 
 #include "etendue/exposed_tone_map.h"
 

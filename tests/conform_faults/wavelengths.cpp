@@ -1,4 +1,4 @@
-// Wavelength samplers that are wrong in one way each, and an interface of the plugin's own: what `etendue conform` must find.
+// Wavelength samplers with one fault each, and an interface of the plugin's own: what `etendue conform` must find.
 
 #include "etendue/check/conform/trial.h"
 #include "etendue/wavelength_sampler.h"
@@ -45,7 +45,7 @@ class ReddishWavelengths final : public WavelengthSampler {
 };
 const Register<ReddishWavelengths> reddish;
 
-// ---- an interface of one's own -------------------------------------------------------------------------------------------
+// ---- an interface of the plugin's own ------------------------------------------------------------------------------------
 
 class Knob : public Component {
  public:
@@ -56,7 +56,7 @@ class Knob : public Component {
 };
 const Register<Knob> knob;
 
-/// An interface that nothing is made of.
+/// An interface without any implementation.
 class Handle : public Component {
  public:
   using Interface = Handle;

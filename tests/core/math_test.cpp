@@ -1,4 +1,4 @@
-// Scalars and warps that take a shorter way than the library's functions.
+// Scalar functions and warps that are computed faster than by the standard library's functions.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,8 @@ TEST(CosineHemisphere, DirectionsHaveUnitLength) {
     EXPECT_NEAR(length(warp::cosine_hemisphere(u)), 1, 3e-7f);
 }
 
-// Placed all at once, wavelengths find what they find one by one: places in tables, also beyond their ends.
+// Wavelengths placed all at once have the same table indices and fractions as wavelengths placed one by one, also beyond the
+// tables' ends.
 TEST(Wavelengths, AsVectorsAreTheSameAsOneByOne) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<float> uniform(wavelength_low - 20, wavelength_high + 20);

@@ -1,5 +1,5 @@
-// Tables with steps are what they say at every wavelength: for all that is a table, in what is evaluated for paths and in what
-// is asked at one wavelength; and a medium's transmittance follows.
+// Tables with steps have the tabulated values at every wavelength: for every kind of table, both in evaluate(), at the
+// wavelengths of a path, and in at(), at a single wavelength; and a medium's transmittance follows.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ Wavelengths at_wavelengths(float first, float step) {
   return w;
 }
 
-/// The table's own words: linear between entries, 0 outside.
+/// The value that the table defines: linear between entries, 0 outside.
 double written(const std::vector<float>& x, const std::vector<float>& y, float w) {
   if (w < x.front() || w > x.back()) return 0;
   for (size_t i = 1; i < x.size(); ++i)
@@ -101,9 +101,10 @@ TEST(SpectrumSteps, IlluminantsEndWhereTheirTablesDo) {
   }
 }
 
-// Lines that wavelengths drawn at random would hardly meet keep their power as light, and stay what they are as absorption.
+// Spectral lines that randomly sampled wavelengths would rarely hit keep their power as light (seen through a slit of 2 nm); as
+// absorption they keep their values.
 TEST(SpectrumSteps, NarrowLinesOfLightAreSeenThroughASlit) {
-  const Color line = table_spectrum({550.20f, 550.21f, 550.22f}, {0, 100, 0});  // 1 in all
+  const Color line = table_spectrum({550.20f, 550.21f, 550.22f}, {0, 100, 0});  // its integral is 1
   double sum = 0, highest = 0;
   for (float x = 548; x < 553; x += 0.01f) {
     const double value = line->evaluate(at_wavelengths(x, 0.0f), ColorUse::radiance)[0];
@@ -117,8 +118,8 @@ TEST(SpectrumSteps, NarrowLinesOfLightAreSeenThroughASlit) {
   EXPECT_EQ(line->evaluate(at_wavelengths(550.23f, 0), ColorUse::coefficient)[0], 0);
 }
 
-// A medium clear below 555.5 nm and black above, under light of the last nanometre before that, or the first behind it: all of
-// the former gets through and nothing of the latter.
+// A medium that is clear below 555.5 nm and black above, lit in the last nanometre below the step or in the first one above:
+// all of the former light gets through and none of the latter.
 TEST(SpectrumSteps, AMediumWithAStep) {
   const auto seen = [](const std::string& light) {
     return measure(job_text("PathTracer { samples: 4096 }",
@@ -141,7 +142,7 @@ TEST(SpectrumSteps, RangesKnowWhatLiesBetweenWholeNanometres) {
   EXPECT_EQ(r.most, 7);
   EXPECT_EQ(r.least_at, 500.4f);
   EXPECT_EQ(r.most_at, 500.5f);
-  // Negative absorption is refused, wherever it is; so is a reflectance above 1.
+  // Negative absorption throws Error, wherever in the table it is; so does a reflectance above 1.
   const auto check = [](const std::string& object) {
     prepare_tree(
         *load_job_text(job_text("PathTracer {}", "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 0] }", 4, object), "t.etd"));

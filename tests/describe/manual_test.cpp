@@ -27,7 +27,7 @@ std::map<std::string, std::string> texts_in(const fs::path& folder) {
 TEST(Manual, IsWhatTheProgramGenerates) {
   const TemporaryFolder folder;
   const fs::path generated = fs::path(folder.path()) / "manual";
-  // Pictures are kept as they are; pages show those that are there.
+  // The existing pictures are copied, because pages show only pictures that exist.
   fs::create_directories(generated);
   if (fs::exists(ETENDUE_SOURCE_DIR "/docs/manual/pictures"))
     fs::copy(ETENDUE_SOURCE_DIR "/docs/manual/pictures", generated / "pictures", fs::copy_options::recursive);
@@ -42,7 +42,7 @@ TEST(Manual, IsWhatTheProgramGenerates) {
   EXPECT_EQ(kept.size(), expected.size()) << "docs/manual holds pages of classes that are gone";
 }
 
-// With one sample per pixel: that there is a scene for each class, and that it renders.
+// With one sample per pixel, to check that there is a scene for each class and that it renders.
 TEST(Manual, EveryClassThatCanBeSeenHasAPicture) {
   const TemporaryFolder folder;
   const fs::path generated = fs::path(folder.path()) / "manual";
@@ -55,12 +55,12 @@ TEST(Manual, EveryClassThatCanBeSeenHasAPicture) {
     EXPECT_NE(texts.at(std::string(name) + ".md").find("](pictures/"), std::string::npos) << name;
   }
   EXPECT_NE(texts.at("Pictures.md").find("[Torus]"), std::string::npos);
-  // Those that are kept are of the same classes.
+  // The pictures in the repository are of the same classes.
   for (const auto& [name, text] : texts)
     if (name.starts_with("pictures/"))
       EXPECT_TRUE(fs::exists(fs::path(ETENDUE_SOURCE_DIR "/docs/manual") / name))
           << name << " is missing; run: ./etendue manual -o docs/manual --missing";
-  // What is there is not rendered again.
+  // --missing does not render existing pictures again.
   fs::remove(generated / "pictures/Torus.png");
   const auto sphere = fs::last_write_time(generated / "pictures/Sphere.png");
   Process again(ETENDUE_BINARY_DIR "/etendue", {"manual", "-o", generated.string(), "--missing", "--samples", "1"}, folder);

@@ -1,5 +1,5 @@
-// What descriptions say for panels and editors: groups, sliders, meanings, lists of choices, conditions. Broken ones are
-// refused when a class is registered; those of the built-in classes can be used.
+// What descriptions say for panels and editors: groups, sliders, meanings, lists of choices, conditions. Inconsistent
+// descriptions are refused when a class is registered; those of the built-in classes are usable.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ class Panel final : public Component {
   Ref<ObjectMap> map = constant(0.5f);
 };
 
-/// What registering it says; the class stays known only if that is nothing.
+/// The error message of registering the class, or "". Only in the latter case does the class stay registered.
 template <auto describe_members>
 std::string refusal() {
   using T = Panel<describe_members>;
@@ -52,7 +52,7 @@ std::string refusal() {
                                  d.finish();
                                },
                                [] { return Ref<Component>(make<T>()); }, nullptr};
-  // Its name is that of a template's instance, which nothing else has.
+  // The class name is that of a template instantiation, so it is unique.
   enlist(node);
   try {
     Registry::instance().adopt();
@@ -86,7 +86,7 @@ TEST(PanelFacts, a_slider_ends_within_the_range) {
   REFUSED("slider from 2 to 1", d.template member<&P::x>("x", "1", "x", soft(2, 1)));
   REFUSED("slider from 2 to 2", d.template member<&P::x>("x", "1", "x", soft(2, 2)));
   REFUSED("no number", d.template member<&P::flag>("flag", "", "flag", soft(0, 1)));
-  REFUSED("no number", d.template member<&P::map>("map", "1", "map", soft(0, 1)));  // nobody says that it is read as a number
+  REFUSED("no number", d.template member<&P::map>("map", "1", "map", soft(0, 1)));  // not declared to be read as a number
 }
 
 TEST(PanelFacts, ratios_are_of_positive_numbers) {
@@ -208,7 +208,7 @@ TEST(PanelFacts, say_when_a_member_matters) {
   lamp.mode = Mode::second;
   EXPECT_TRUE(counts("opening"));
   EXPECT_FALSE(counts("edge"));
-  lamp.opening = 90;  // in its unit, degrees, though values of the language are in radians
+  lamp.opening = 90;  // in the member's unit, degrees; values of the language are in radians
   EXPECT_TRUE(counts("edge"));
   EXPECT_TRUE(counts("after"));
   lamp.edge = constant(0);
@@ -234,7 +234,7 @@ TEST(PanelFacts, lists_of_choices_are_kept_to) {
             std::string::npos);
 }
 
-/// The built-in classes, as they are in the manual: not those of tests.
+/// The built-in classes, which the manual lists, without those of tests.
 std::vector<const ClassInfo*> built_in() {
   std::vector<const ClassInfo*> all;
   for (const ClassInfo* info : Registry::instance().all())
@@ -255,7 +255,7 @@ TEST(PanelFacts, classes_with_many_members_have_groups) {
 }
 
 TEST(PanelFacts, numbers_without_ends_have_a_slider) {
-  // Counts of what a list holds, seeds, priorities and numbers of samples have no usual size.
+  // The lengths of lists, seeds, priorities and numbers of samples have no typical range.
   const std::set<std::string> without = {"seed", "priority", "points", "positions", "holes", "hole_counts", "counts", "degree"};
   for (const ClassInfo* info : built_in())
     for (const Member& m : info->members) {
@@ -274,9 +274,9 @@ TEST(PanelFacts, colours_say_what_they_are_read_as) {
         EXPECT_NE(m.meaning, Meaning::plain) << info->name << "." << m.name;
 }
 
-/// The ends of a slider are values that the class takes, all others being as they are by default.
+/// Each end of a slider is a value that the class accepts while all other members have their defaults.
 TEST(PanelFacts, sliders_end_at_values_that_are_taken) {
-  // But for those that bound each other: which end is taken depends on where the other stands.
+  // Except members that bound each other: whether an end is accepted depends on the other member's value.
   const std::set<std::string> bounded = {
       "Annulus.radius",    "Annulus.inner_radius",     "Cone.radius", "Hyperboloid.radius", "Torus.radius",
       "Torus.tube_radius", "Hyperboloid.waist_radius", "Tube.radius", "Tube.inner_radius",  "Metaballs.threshold"};
@@ -289,7 +289,7 @@ TEST(PanelFacts, sliders_end_at_values_that_are_taken) {
       for (const double end : {m.soft->low, m.soft->high}) {
         const conform::Drawn drawn = conform::default_part(*info, fixtures, random);
         ASSERT_TRUE(drawn.part) << info->name << ": " << drawn.refused;
-        // Those that belong together: a range that ends before it begins is refused, and rightly.
+        // The shutter's members depend on each other: an interval that ends before it begins is rightly refused.
         if (m.name == "shutter_open" || m.name == "shutter_close" || m.name == "shutter_opening" || m.name == "shutter_closing")
           continue;
         try {

@@ -1,4 +1,5 @@
-// Plugins that are wrong: refused with reason and remedy, or told by class and file when they throw. Never the program's end.
+// Faulty plugins: they are refused with a reason and a remedy, or, when they throw, reported by class and file. None of them
+// ends the program.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,8 @@ class PluginHandshake : public RunsProgram {
   void TearDown() override { ::unsetenv("ETENDUE_HOSTILE"); }
 
   static std::string library(const std::string& name) { return ETENDUE_HOSTILE_PLUGINS "/lib" + name + ".so"; }
-  /// What is said when the plugin misbehaves and its classes are listed, or a scene is rendered with them.
+  /// The messages of the program when the plugin misbehaves in a given way while its classes are listed or a scene is rendered
+  /// with them.
   std::string listing(const std::string& how) {
     ::setenv("ETENDUE_HOSTILE", how.c_str(), 1);
     EXPECT_EQ(run({"classes", "--plugin", library("hostile")}), 2) << how << ": " << err;
@@ -34,7 +36,7 @@ class PluginHandshake : public RunsProgram {
         << how << ": " << err;
     return err;
   }
-  /// Compiles a few lines of C++ without Étendue's headers to a library and loads that.
+  /// Compiles a few lines of C++ that do not include Étendue's headers to a library, and loads it as a plugin.
   std::string loading(const std::string& code) {
     const std::string source = folder.write("code.cpp", code), made = folder / "libcode.so";
     EXPECT_EQ(std::system(("c++ -shared -fPIC -w " + source + " -o " + made).c_str()), 0);
@@ -61,7 +63,7 @@ TEST_F(PluginHandshake, two_that_define_one_class_are_an_error_that_names_both) 
   EXPECT_EQ(run({"classes", "--plugin", library("hostile"), "--plugin", library("hostile_twin")}), 2) << err;
   for (const std::string& part : {library("hostile"), library("hostile_twin"), std::string("HostileShader")})
     EXPECT_TRUE(has(err, part)) << part << "\n" << err;
-  // The same one twice is no mistake.
+  // Loading the same plugin twice is no error.
   EXPECT_EQ(run({"classes", "HostileShader", "--plugin", library("hostile"), "--plugin", library("hostile")}), 0) << err;
 }
 
@@ -91,11 +93,11 @@ TEST_F(PluginHandshake, names_class_and_file_of_what_is_thrown) {
     EXPECT_TRUE(named(rendering(std::string("prepare ") + what), "HostileShader", text)) << err;
     EXPECT_TRUE(named(rendering(std::string("bind ") + what), "HostileShader", text)) << err;
   }
-  // Thrown by a part of a part, and where no shader is asked.
+  // Exceptions thrown by a nested part, and outside of any shader.
   EXPECT_TRUE(named(rendering("color int", "Lambertian { color: HostileMap {} }"), "HostileMap", "of type int")) << err;
   const std::string said = rendering("color int", "Lambertian {}", "HostileMap {}");
   EXPECT_TRUE(has(said, "HostileMap") && has(said, library("hostile")) && has(said, "of type int")) << said;
-  // The commands that try parts out.
+  // Commands that try parts out report exceptions too.
   ::setenv("ETENDUE_HOSTILE", "bind int", 1);
   EXPECT_EQ(run({"conform", "HostileShader", "--quick", "--plugin", library("hostile")}), 1) << err;
   EXPECT_TRUE(has(out, "HostileShader")) << out;
@@ -118,7 +120,7 @@ TEST_F(PluginHandshake, refuses_cut_and_garbled_libraries) {
   for (const double part : {0.001, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97}) {
     const std::string cut = folder.write("libcut.so", whole.substr(0, size_t(part * double(whole.size()))));
     const int status = run({"classes", "--plugin", cut});
-    if (status == 0 && part > 0.7) continue;  // only what is for linkers and debuggers is missing
+    if (status == 0 && part > 0.7) continue;  // only sections for linkers and debuggers are missing
     EXPECT_EQ(status, 2) << part << ": " << err;
     EXPECT_TRUE(has(err, cut)) << part << ": " << err;
   }

@@ -1,4 +1,4 @@
-// Installs the package, builds a plugin against it out of tree with one CMake call, and renders with it.
+// Installs the package, builds plugins out of tree against it with one CMake call, and renders with them.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ class Plugin : public ::testing::Test {
   fs::path folder = fs::temp_directory_path() / ("etendue-plugin-" + std::to_string(getpid()));
   void SetUp() override { fs::create_directories(folder); }
   void TearDown() override { fs::remove_all(folder); }
-  /// Installs the package into the folder, and builds what is outside of the tree against that.
+  /// Installs the package into the folder and builds an out-of-tree project against it.
   bool install_and_build(const std::string& target) const {
     const std::string f = folder.string();
     return run("cmake --install " ETENDUE_BINARY_DIR " --prefix " + f + "/installed") == 0 &&
@@ -55,15 +55,15 @@ Job { camera: PerspectiveCamera { from: [0, 0, -4], to: [0, 0, 0] }, image: Imag
   std::string output;
   EXPECT_EQ(run(program + " render " + f + "/gold.etd --samples 16 --quiet -o " + f + "/gold.npy", &output), 0) << output;
   EXPECT_TRUE(fs::exists(f + "/gold.npy"));
-  // Plugins appear everywhere built-in parts do.
+  // Plugins are listed and checked wherever built-in parts are.
   EXPECT_EQ(run(program + " conform GoldShader --quick --plugin " + library, &output), 0) << output;
   EXPECT_EQ(run(program + " classes GoldShader --plugin " + library, &output), 0) << output;
   EXPECT_NE(output.find("purity"), std::string::npos) << output;
   EXPECT_EQ(run(program + " render " + f + "/gold.etd --set 'scene.objects[0].shader.purity=2'", &output), 2);
   EXPECT_NE(output.find("must be from 0 to 1"), std::string::npos) << output;
 
-  // The textured shader reads its maps where it is hit: under light from everywhere a surface seen at 60 degrees sends
-  // color cos^darkness back, here in squares of darkness 0 and 1.
+  // The textured shader evaluates its maps at the hit point: in a uniform environment a surface seen at 60 degrees reflects
+  // color cos^darkness, here in squares of darkness 0 and 1.
   const std::string minnaert = f + "/build/libminnaert.so";
   EXPECT_EQ(run(program + " conform MinnaertShader --quick --plugin " + minnaert, &output), 0) << output;
   std::ofstream(f + "/squares.etd") << R"(plugin "build/libminnaert.so"
@@ -80,14 +80,14 @@ Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, i
   EXPECT_NEAR(lighter, 0.8, 0.01);
   EXPECT_NEAR(darker, 0.4, 0.01);
 
-  // The renderer of the other page renders what the built-in one does.
+  // The renderer of the manual's other page converges to the same picture as the built-in one.
   EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd -D fov=39.3077deg --plugin " + f +
                     "/build/libstudent_tracer.so --renderers PathTracer,StudentTracer --samples 512 --size 48x48 --quiet",
                 &output),
             0)
       << output;
 
-  // The photon mapper goes on, and is put together from parts, to the same bytes without a line for it.
+  // The photon mapper can be resumed and its parts merged to the same bytes, without a line of its own for that.
   const auto mapper_with = [&](int photons) {
     return program + " render " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --size 24x24 --quiet --plugin " + f +
            "/build/libsmall_photon_mapper.so --set 'renderer=SmallPhotonMapper { photons: " + std::to_string(photons) +
@@ -104,7 +104,7 @@ Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, i
   EXPECT_EQ(run(program + " image merge " + f + "/b " + f + "/a" + film("merged"), &output), 0) << output;
   EXPECT_EQ(run("cmp " + f + "/whole.npy " + f + "/merged.npy", &output), 0) << output;
   EXPECT_EQ(run(mapper + "6 --pixel 12,20 --sample 4", &output), 0) << output;
-  // Killed again and again, until it comes to its end.
+  // Killed repeatedly, until it finishes.
   const std::string longer = mapper_with(40000) + "12";
   EXPECT_EQ(run(longer + film("undisturbed"), &output), 0) << output;
   int kills = 0;
@@ -114,16 +114,17 @@ Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, i
             &output) != 0;
   EXPECT_GE(kills, 2);
   EXPECT_EQ(run("cmp " + f + "/undisturbed.npy " + f + "/killed.npy", &output), 0) << output;
-  // What holds a path tracer inside finds what that finds. The view is that of the box's photographs: at the scene's own, the
-  // short block's dark front fills tiles to which so short a run of chains comes a dozen times, all in a few visits; means of
-  // sixteen such passes are far from normal, and verify's test takes them to be (4096 samples a pixel are within 2 %).
+  // SmallMetropolis, which contains a path tracer, converges to the path tracer's picture. The view is that of the box's
+  // photographs (the `fov` given): in the scene's own view, the short block's dark front fills tiles that so short a run of
+  // chains reaches only about a dozen times, all within a few visits; the means of sixteen such passes are far from normally
+  // distributed, as verify's test assumes (with 4096 samples per pixel they agree within 2 %).
   EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd -D fov=39.3077deg --plugin " + f +
                     "/build/libsmall_metropolis.so --renderers 'PathTracer,SmallMetropolis { inner: PathTracer "
                     "{}, bootstrap: 1024 }' --samples 256 --size 32x32 --quiet",
                 &output),
             0)
       << output;
-  // A mutation takes part in those that are built in.
+  // A mutation of a plugin works together with the built-in ones.
   EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd -D fov=39.3077deg --plugin " + f +
                     "/build/libturn_mutation.so --renderers 'PathTracer,PathSpaceMetropolis { mutations: [ TurnMutation {} ], "
                     "bootstrap: 0.5 }' --samples 256 --size 32x32 --quiet",
@@ -142,7 +143,7 @@ TEST_F(Plugin, AProgramDrivesARender) {
   EXPECT_EQ(run(f + "/build/drive_a_render " + f + "/small.etd " + f, &output), 0) << output;
   for (const char* said : {"16 x 12 pixels", "refused: ", "must be more than 0", "64 samples per pixel", "picture.npy"})
     EXPECT_NE(output.find(said), std::string::npos) << output;
-  // As if it had been described that way at first.
+  // The picture is the same as if the scene had been described that way from the start.
   EXPECT_EQ(
       run(f + "/installed/bin/etendue render " + f + "/small.etd --set camera.fov='35 deg' --quiet -o " + f + "/straight.npy",
           &output),

@@ -84,7 +84,7 @@ TEST(ReflectionTest, all_classes_and_members_are_in_the_json) {
   }
 }
 
-/// As much of JSON Schema as ours uses. Returns what is wrong, or "".
+/// A validator for the part of JSON Schema that our schema uses. Returns what is wrong, or "".
 std::string problem(const Json& schema, const Json& value, const Json& root, const std::string& at = "$") {
   const auto wrong = [&](const std::string& what) { return at + " " + what + ": " + value.dump(); };
   if (schema.contains("$ref")) {
@@ -182,7 +182,7 @@ TEST(ReflectionTest, defaults_fit_the_schema_and_wrong_members_do_not) {
       object[member.name] = value_json(member.default_value, member);
       EXPECT_EQ(problem(definition["properties"][member.name], object[member.name], schema, info->name + "." + member.name),
                 "");
-      // Below the range must not fit.
+      // A value below the range must not be valid.
       if (member.range && std::isfinite(member.range->low) && !member.list &&
           (member.kind == Kind::number || member.kind == Kind::integer)) {
         ++ranges;
@@ -203,14 +203,14 @@ TEST(ReflectionTest, defaults_fit_the_schema_and_wrong_members_do_not) {
   EXPECT_GT(ranges, 3);
 }
 
-/// A member as it may be written in JSON, and whether it can be read.
+/// A member's value as it may be written in JSON, and whether it is accepted.
 struct Written {
   const char *class_name, *member, *json;
   bool right;
 };
 
-// Whoever checks a scene by the schema learns what the program would say of it, as far as a schema can: of values, not of what
-// expressions in strings come to.
+// Checking a scene against the schema gives the same verdict as the program, as far as a schema can: about values, not about
+// the results of expressions in strings.
 TEST(ReflectionTest, the_schema_refuses_what_the_program_refuses) {
   const Json schema = Json::parse(json_schema());
   const char* const twelve = "[1, 0, 0, 4, 0, 1, 0, 5, 0, 0, 1, 6]";
@@ -290,7 +290,7 @@ TEST(ReflectionTest, the_schema_refuses_what_the_program_refuses) {
       thrown = e.what();
     }
     EXPECT_EQ(thrown.empty(), row.right) << text << "\n" << thrown;
-    // Of the object alone, without what else its class requires.
+    // Validates the member alone, without the other members that its class requires.
     const Json value = Json::parse(text);
     const Json& properties = schema["$defs"][row.class_name]["properties"];
     const std::string wrong =
@@ -334,7 +334,7 @@ TEST(ReflectionTest, the_tree_lists_every_class_once) {
     std::istringstream words(line);
     std::string first;
     words >> first;
-    // Names stand in a column of their own; words of a summary that goes on in the next line do not.
+    // Class names stand in a column of their own; words in the continuation line of a summary are not counted.
     if (Registry::instance().find(first) && line.find(first + "  ") != std::string::npos) ++seen[first];
   }
   for (const ClassInfo* info : described_classes()) EXPECT_EQ(seen[info->name], 1) << info->name;

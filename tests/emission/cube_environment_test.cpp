@@ -1,4 +1,4 @@
-// OpenEXR files that say they are surroundings on the faces of a cube (the attribute `envmap`).
+// OpenEXR files whose attribute `envmap` says that they hold a cube map.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ void put_attribute(std::string& to, const char* name, const char* type, const st
   to += value;
 }
 
-/// A grey image of floats in scanlines that are not packed ("OpenEXR File Layout"); `envmap` below 0: it does not say.
+/// A grey image of floats in uncompressed scanlines ("OpenEXR File Layout"); without the attribute if `envmap` is below 0.
 std::string exr(int width, int height, int envmap, const std::function<float(int, int)>& pixel) {
   std::string file, channels, window, corner;
   put(file, std::int32_t(20000630));
@@ -62,9 +62,9 @@ double radiance(const Vector3& d) {
   return 1 + 0.4 * double(d.x) + 0.25 * double(d.y) - 0.3 * double(d.z) + 0.2 * double(d.x) * double(d.y);
 }
 
-/// The direction of a pixel: by the corners of the cube that the picture in ImfEnvmap.h writes at a face's upper left, upper
-/// right and lower left; corner n lies at x, y, z = +1 where bit 0, 1, 2 of n is set. Middles of pixels reach from one to the
-/// other.
+/// The direction of a pixel, from the cube's corners that the figure in ImfEnvmap.h shows at a face's upper left, upper right
+/// and lower left; corner n lies at x, y, z = +1 where bit 0, 1, 2 of n is set. The centres of a face's outermost pixels lie on
+/// its edges.
 Vector3 direction(int side, int x, int row) {
   constexpr int corners[6][3] = {{3, 7, 1}, {6, 2, 4}, {6, 7, 2}, {0, 1, 4}, {7, 6, 5}, {2, 3, 0}};
   const auto at = [](int n) { return Vector3{n & 1 ? 1.0f : -1.0f, n & 2 ? 1.0f : -1.0f, n & 4 ? 1.0f : -1.0f}; };
@@ -106,7 +106,7 @@ TEST(CubeEnvironment, LongitudeAndLatitudeStayAsTheyAre) {
               seen("EnvironmentEmission { file: \"" + silent + "\" }", d));
 }
 
-// Mitsuba knows no cubes: it gets the picture in longitude and latitude.
+// Mitsuba has no cube maps: the image is exported in longitude and latitude.
 TEST(CubeEnvironment, IsExportedAsWhatOthersRead) {
   const TemporaryFolder folder;
   const std::string cube =

@@ -1,5 +1,5 @@
-// Emissions with all members away from their defaults: what leaves a lamp in all directions and from all of its area adds up to
-// what was asked for; profiles about slanted axes, backs, textures on spheres, environments.
+// Emissions with all members away from their defaults: the light that leaves a lamp, over all directions and all of its area,
+// adds up to the requested amount; profiles about slanted axes, back sides, textures on spheres, environments.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,8 @@ namespace {
 
 constexpr double degree = M_PI / 180;
 
-/// The integral over directions (the upper half about +-z too) of g, by midpoints even in z and azimuth.
+/// The integral of g over all directions by the midpoint rule, even in z and azimuth; with an even number of steps the
+/// hemispheres about +z and -z consist of whole cells.
 double over_sphere(const std::function<double(const Vector3&)>& g, int steps = 600, int sectors = 240) {
   double sum = 0;
   for (int i = 0; i < steps; ++i)
@@ -26,7 +27,7 @@ double over_sphere(const std::function<double(const Vector3&)>& g, int steps = 6
   return sum * 4 * M_PI / (steps * sectors);
 }
 
-// Within its cells as well: a table of few and wide ones, in cells that are much finer.
+// A table of few, wide cells: samples are uniform within each of them, as bins that are much finer show.
 TEST(EmissionFormulas, DirectionsAreEvenWithinTheCellsOfATable) {
   DirectionTable table;
   table.build({20, 60, 130}, {-30, 90, 250}, [](size_t row, size_t column) { return double(1 + row + 2 * column); });
@@ -50,7 +51,8 @@ TEST(EmissionFormulas, DirectionsAreEvenWithinTheCellsOfATable) {
   EXPECT_GT(chi_square(counts, expected), each_of(1));
 }
 
-/// Watts per nanometre that leave a lamp, at the hero wavelength: over points by their densities and all directions.
+/// Spectral power that leaves a lamp [W/nm] at the hero wavelength: integrated over points, by their pdf, and over all
+/// directions.
 double emitted(const SceneObject& lamp, int points = 4, int steps = 600, int sectors = 240) {
   const Wavelengths w = wavelengths(550);
   double sum = 0;
@@ -71,7 +73,7 @@ double emitted(const SceneObject& lamp, int points = 4, int steps = 600, int sec
 struct Profile {
   const char* name;
   const char* emission;
-  std::function<double(double)> fall_off;  // by the cosine to the axis
+  std::function<double(double)> fall_off;  // of the cosine to the axis
   double borders[2];                       // angles where it is not smooth [deg]
 };
 const std::vector<Profile> profiles = {{"lobe",
@@ -91,8 +93,8 @@ const std::vector<Profile> profiles = {{"lobe",
                                         [](double c) { return c >= std::cos(9 * M_PI / 180) ? 1.0 : 0.0; },
                                         {9, 9.01}}};
 
-// A profile about a slanted axis on a flat lamp: radiance f(angle to the axis) on the sides that emit, and the power of all of
-// it.
+// A profile about a slanted axis on a flat lamp: the radiance is f(angle to the axis) on the sides that emit, and power() is
+// its integral.
 TEST(EmissionFormulas, ProfilesAboutSlantedAxes) {
   const Vector3 axis = normalize(Vector3{1, 2, 2});
   const Wavelengths w = wavelengths(550);
@@ -114,14 +116,14 @@ TEST(EmissionFormulas, ProfilesAboutSlantedAxes) {
           if (std::abs(dot(d, axis) - std::cos(radians(9))) < 1e-4f) continue;
           EXPECT_NEAR(double(lamp->emission->radiance(point, d, w)[0]), radiance(d), 2e-4) << p.name << " " << sides;
         }
-        // Around the axis, finer between the profile's borders.
+        // In spherical coordinates about the axis, with separate steps between the profile's borders.
         const auto flux = [&](const Vector3& d) { return radiance(d) * std::abs(double(dot(point.normal, d))); };
         const double power =
             double(lamp->area(0)) *
             integrate_around(axis, {0, one_minus_cosine(p.borders[0]), one_minus_cosine(p.borders[1]), 1}, flux, 500, 720);
         EXPECT_NEAR(double(lamp->emission->power(*lamp, w)[0]), power, 2e-3 * power + 1e-6)
             << p.name << " " << sides << " " << normal;
-        // Densities over directions add up to the part that lies on emitting sides; samples have them.
+        // The pdf over directions integrates to the probability of samples on emitting sides; samples report that pdf.
         double covered = 0;
         for (int i = 0; i < 2000; ++i) {
           const DirectionSample s = lamp->emission->sample(point, random.pair());
@@ -137,7 +139,7 @@ TEST(EmissionFormulas, ProfilesAboutSlantedAxes) {
       }
 }
 
-// The estimate by an emission's own directions is that of even ones: mean of radiance cos / density.
+// The mean of radiance cos / pdf over the emission's own samples equals the estimate from uniform directions.
 TEST(EmissionFormulas, DirectionsGiveThePower) {
   const Wavelengths w = wavelengths(550);
   for (const char* emission : {"DiffuseEmission { radiance: 2", "CosineLobeEmission { radiance: 2, exponent: 3",
@@ -163,7 +165,7 @@ TEST(EmissionFormulas, DirectionsGiveThePower) {
     }
 }
 
-// Amounts: what is asked for is what leaves, or arrives.
+// Amounts: the requested quantity is the one that leaves the lamp, or that arrives.
 TEST(EmissionFormulas, AmountsAreWhatLeavesOrArrives) {
   // 1 W between 360 and 830 nm of a flat spectrum: 1 / 470 W/nm.
   for (const char* shape :
@@ -175,7 +177,7 @@ TEST(EmissionFormulas, AmountsAreWhatLeavesOrArrives) {
       EXPECT_NEAR(emitted(*lamp, std::string(emission).starts_with("Spot") ? 12 : 6, 300, 120), 1 / 470.0, 0.012 / 470)
           << shape << emission;
     }
-  const auto candelas = [](const SceneObject& lamp, const Vector3& direction) {  // all of the lamp, towards a direction
+  const auto candelas = [](const SceneObject& lamp, const Vector3& direction) {  // intensity of the whole lamp in a direction
     const Wavelengths w = wavelengths(550);
     double sum = 0;
     constexpr int side = 40;
@@ -214,7 +216,8 @@ TEST(EmissionFormulas, AmountsAreWhatLeavesOrArrives) {
               450, 0.5);
 }
 
-// An image around the scene: bilinear between texels, power and illuminance by integrals over its directions done here.
+// An image around the scene: bilinear interpolation between texels; power and illuminance against integrals over its directions
+// computed here.
 TEST(EmissionFormulas, ImagesAroundTheScene) {
   const std::string path = testing::TempDir() + "emission_formulas.pfm";
   constexpr int width = 8, height = 4;
@@ -233,7 +236,7 @@ TEST(EmissionFormulas, ImagesAroundTheScene) {
   }
   const Ref<SceneObject> sky =
       prepared_as<SceneObject>("Environment { emission: EnvironmentEmission { file: \"" + path + "\" } }");
-  const auto seen = [&](const EmissionShader& e, const Vector3& d) {  // in Y, of grey: the white has Y = 1 over all wavelengths
+  const auto seen = [&](const EmissionShader& e, const Vector3& d) {  // Y of a grey radiance; Y = 1 for 1 at all wavelengths
     SurfacePoint p;
     p.object_position = Point3{} + d;
     p.object = sky.get();
@@ -261,7 +264,7 @@ TEST(EmissionFormulas, ImagesAroundTheScene) {
     const Vector3 d = random.direction();
     EXPECT_NEAR(seen(*sky->emission, d) / unit, expected(d), 4e-3 * expected(d)) << d.x << " " << d.y << " " << d.z;
   }
-  // Directions are drawn by their densities, which add up to 1.
+  // Directions are sampled with their pdf, which integrates to 1.
   EXPECT_NEAR(over_sphere([&](const Vector3& d) { return double(sky->emission->incident_pdf({d.y, d.z, d.x})); }), 1, 2e-3);
   double estimate = 0, exact = over_sphere([&](const Vector3& d) { return expected({d.y, d.z, d.x}); });
   constexpr int side = 60;
@@ -271,7 +274,7 @@ TEST(EmissionFormulas, ImagesAroundTheScene) {
     estimate += expected(s.direction) / double(s.pdf) / (side * side);
   }
   EXPECT_NEAR(estimate, exact, 5e-3 * exact);
-  // Asked for as an illuminance on level ground: of texels, each of one value.
+  // The requested illuminance on level ground is that of an image of constant texels, without interpolation.
   const Ref<SceneObject> asked =
       prepared_as<SceneObject>("Environment { emission: EnvironmentEmission { file: \"" + path + "\", illuminance: 1000 } }");
   double level = 0;

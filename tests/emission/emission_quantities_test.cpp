@@ -1,4 +1,4 @@
-// Emission asked for in watts, lumens, candelas and lux; lobes and beams.
+// Emission given in watts, lumens, candelas and lux; lobes and beams.
 
 #include "etendue/describe/color.h"
 #include "etendue/emission_shader.h"
@@ -11,7 +11,7 @@ namespace {
 using test::create;
 using List = std::vector<double>;
 
-/// K_m times the integral of V: values at 1 nm, trapezoids; or without V.
+/// The integral of f over wavelengths by the trapezoidal rule in steps of 1 nm, with the weight K_m V if `to_the_eye`.
 double integrate(const std::function<Spectrum(const Wavelengths&)>& f, bool to_the_eye) {
   double sum = 0;
   for (int lambda = 360; lambda <= 830; lambda += spectrum_size) {
@@ -31,7 +31,7 @@ double lumens(const EmissionShader& e, const SceneObject& o) {
 double watts(const EmissionShader& e, const SceneObject& o) {
   return integrate([&](const Wavelengths& w) { return e.power(o, w); }, false);
 }
-/// Luminance [cd/m^2], or of a point intensity [cd].
+/// Luminance [cd/m^2]; for a point light, intensity [cd].
 double luminance(const EmissionShader& e, const SurfacePoint& p, const Vector3& direction) {
   return integrate([&](const Wavelengths& w) { return e.radiance(p, normalize(direction), w); }, true);
 }
@@ -85,7 +85,7 @@ TEST(EmissionQuantities, Candelas) {
   EXPECT_NEAR(luminance(*diffuse, point_of(*o.sphere), Vector3(point_of(*o.sphere).normal)), 120 / (M_PI * 0.25), 0.1);
   const auto spot = create<EmissionShader>("SpotEmission", {{"luminous_intensity", 120.0}, {"axis", List{1, 2, 2}}});
   EXPECT_NEAR(luminance(*spot, point_of(*o.point), {1, 2, 2}), 120, 0.05);
-  // On a surface under 60 degrees to its normal: 120 = L A cos.
+  // On a surface, at 60 degrees to its normal: 120 = L A cos.
   const auto lobe = create<EmissionShader>(
       "CosineLobeEmission",
       {{"luminous_intensity", 120.0}, {"exponent", 5.0}, {"about", "axis"}, {"axis", List{0, std::sqrt(0.75), 0.5}}});
@@ -98,7 +98,7 @@ TEST(EmissionQuantities, LuxAtADistance) {
   for (const double d : {0.2, 1.0, 5.0}) {
     const auto e = create<EmissionShader>("DiffuseEmission", {{"illuminance", 500.0}, {"distance", d}, {"radiance", lamp}});
     EXPECT_NEAR(luminance(*e, point_of(*o.point), {1, 0, 0}), 500 * d * d, 0.5 * d * d);
-    // E = pi L R^2 / (R^2 + d^2) before the middle of a disc, pi L R^2 / d^2 of a sphere.
+    // E = pi L R^2 / (R^2 + d^2) on the axis of a disc, pi L R^2 / d^2 for a sphere.
     const double of_disc = 500 / M_PI * (0.09 + d * d) / 0.09, of_sphere = 500 / M_PI * d * d / 0.25;
     EXPECT_NEAR(luminance(*e, point_of(*o.disc), {0, 0, 1}), of_disc, 2e-3 * of_disc) << d;
     EXPECT_NEAR(luminance(*e, point_of(*o.sphere), Vector3(point_of(*o.sphere).normal)), of_sphere, 1e-3 * of_sphere) << d;
@@ -134,7 +134,7 @@ TEST(EmissionQuantities, OfATexture) {
       "CheckerMap", {{"first", rgb_color("srgb", 1, 0, 0)}, {"second", rgb_color("srgb", 0, 0, 3)}, {"repeat", List{4, 4, 4}}});
   for (const char* kind : {"DiffuseEmission", "CosineLobeEmission", "SpotEmission"}) {
     const auto flux = create<EmissionShader>(kind, {{"radiance", checker}, {"luminous_flux", 250.0}});
-    EXPECT_NEAR(lumens(*flux, *o.rectangle), 250, 1) << kind;  // 48 wavelengths are to stand for a smooth spectrum
+    EXPECT_NEAR(lumens(*flux, *o.rectangle), 250, 1) << kind;  // 48 wavelengths represent a smooth spectrum
     const auto power = create<EmissionShader>(kind, {{"radiance", checker}, {"power", 5.0}});
     EXPECT_NEAR(watts(*power, *o.rectangle), 5, 0.02) << kind;
   }
@@ -185,7 +185,7 @@ TEST(Lobes, PowerIsTheIntegralOverAreaAndDirections) {
             squares += value * value;
           }
           const double error = std::sqrt(std::max(squares / count - std::pow(sum / count, 2), 0.0) / count);
-          // An object whose lobe lies on a dark side cannot have an amount.
+          // An emission whose lobe lies entirely on a dark side has no power to scale, so an amount throws Error.
           if (flux > 0 && sum == 0) {
             EXPECT_THROW(e->power(*object, w), Error);
           } else {
@@ -204,7 +204,7 @@ TEST(Lobes, SamplesFollowDensity) {
   const Objects o;
   std::uint32_t seed = 40;
   for (const Case& c : cases()) {
-    if (c.kind == std::string("CollimatedEmission")) continue;  // see below
+    if (c.kind == std::string("CollimatedEmission")) continue;  // see ABeamIsUniform
     for (const char* sides : {"front", "back", "both"})
       for (const bool on_point : {false, true}) {
         std::vector<test::Setting> settings = c.settings;
@@ -223,7 +223,7 @@ TEST(Lobes, SamplesFollowDensity) {
           ++drawn;
           ++counts[test::cell_of(frame, rows, columns, s.direction)];
         }
-        // By uniform directions where the density is smooth enough.
+        // The expected counts, from the pdf on a uniform grid of directions, which is fine enough for these smooth pdfs.
         std::vector<double> expected(counts.size());
         constexpr int grid = 360;
         for (int i = 0; i < grid * grid; ++i) {
@@ -240,7 +240,7 @@ TEST(Lobes, SamplesFollowDensity) {
 }
 
 TEST(Lobes, ABeamIsUniform) {
-  // In h = 1 - cos and around the axis.
+  // Uniform in h = 1 - cos and in the angle around the axis.
   const auto e = create<EmissionShader>("CollimatedEmission", {{"divergence", 0.1}});
   const SurfacePoint p = test::surface_point();
   const Frame frame(p.normal);

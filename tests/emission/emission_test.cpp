@@ -1,4 +1,4 @@
-// Emission: power against the integral of radiance, sampling against density, environments.
+// Emission: power against the integral of radiance, samples against their pdf, environments.
 
 #include "etendue/emission_shader.h"
 
@@ -57,7 +57,7 @@ TEST(DiffuseEmission, PowerIsTheIntegralOfRadiance) {
         std::vector<test::Setting> settings{{"sides", sides}, {"power", watts}};
         if (varied) settings.emplace_back("radiance", checker);
         const Ref<EmissionShader> emission = create<EmissionShader>("DiffuseEmission", settings);
-        const float exact = varied ? 5e-3f : 1e-4f;  // a mean over points
+        const float exact = varied ? 5e-3f : 1e-4f;  // a textured power is a mean over points
         const Wavelengths w = test::wavelengths();
         const Spectrum wanted = measured_power(*emission, square, w), power = emission->power(square, w);
         for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(power[k], wanted[k], exact * wanted[k]) << sides << watts << varied;
@@ -156,7 +156,8 @@ TEST(EnvironmentEmission, DensityIsThatOfTheSamples) {
   const ImageFile file("sky.exr", width, height, sky());
   const Ref<EmissionShader> e = create<EmissionShader>("EnvironmentEmission", {{"file", file.path}});
   ASSERT_TRUE(e->knows_incident());
-  // Cells that are the texels: density is constant over each. Longitude from -z over +x is that of a frame with s = -z, t = x.
+  // The bins are the texels, over each of which the pdf is constant. Longitude from -z over +x is that of a frame with s = -z,
+  // t = x.
   const double solid_angle_steps = 2 * M_PI / width;
   std::vector<double> expected, counts(size_t(width * height));
   double total = 0;
@@ -186,8 +187,8 @@ TEST(EnvironmentEmission, DensityIsThatOfTheSamples) {
   EXPECT_GT(test::chi_square(counts, expected), 1e-3);
 }
 
-// Evenly spaced numbers fall into each texel in proportion to its weight, one more or less: wide rows, whose search goes
-// through several nodes, with texels and whole rows that weigh nothing.
+// Evenly spaced primary samples choose each texel in proportion to its weight, to within one sample: wide rows, whose search
+// passes several nodes, with texels and whole rows of weight 0.
 TEST(TexelDistribution, EvenNumbersFallByWeight) {
   constexpr size_t columns = 1500, rows = 3;
   std::vector<float> weights;
@@ -244,7 +245,7 @@ TEST(EnvironmentEmission, NothingThatShinesIsMissed) {
     squares += value * value / count;
   }
   EXPECT_GT(black, count / 20);
-  // The integral itself, at the middles of small parts of the pixels.
+  // The exact integral, by the midpoint rule on small parts of the pixels.
   double exact = 0;
   constexpr int parts = 24;
   for (int y = 0; y < height * parts; ++y)
@@ -256,7 +257,7 @@ TEST(EnvironmentEmission, NothingThatShinesIsMissed) {
   const double error = std::sqrt((squares - estimate * estimate) / count);
   EXPECT_LT(error, 3e-3 * exact);
   EXPECT_NEAR(estimate, exact, 4.5 * error + 1e-3 * exact);
-  // Sampled by its own radiance, the integral has little of its variance left.
+  // Importance sampling by the emission's own radiance leaves little of the variance.
   EXPECT_LT(squares - estimate * estimate, 0.1 * (uniform_squares - integral * integral));
 }
 
@@ -301,7 +302,7 @@ TEST(EnvironmentEmission, OfAMap) {
   test::TestSquare object;
   object.reference();
   EXPECT_NEAR(plain->power(object, test::wavelengths())[0], 6 * M_PI * double(object.area(0)), 1e-3);
-  // Maps see (u, v) of the direction, v upwards: upper half dark, lower half bright.
+  // Maps are evaluated with (u, v) of the direction, v upwards: upper half dark, lower half bright.
   const Ref<ObjectMap> halves =
       create<ObjectMap>("CheckerMap", {{"first", 4.0}, {"second", 1.0}, {"repeat", std::vector<double>{1, 2, 1}}});
   const Ref<EmissionShader> varied = create<EmissionShader>("EnvironmentEmission", {{"radiance", halves}});
@@ -311,7 +312,7 @@ TEST(EnvironmentEmission, OfAMap) {
 }
 
 TEST(EnvironmentEmission, PowerIsThatOfItsMapWhateverTheMapAsksFor) {
-  // A map of normals, on a sky that is turned: its own coordinates are not the scene's.
+  // A map of normals on a rotated sky, whose object space differs from world space.
   const Ref<ObjectMap> normals = create<ObjectMap>("NormalDirectionMap"),
                        bright = create<ObjectMap>("PowerMap", {{"base", normals}, {"exponent", 4.0}});
   const Ref<EmissionShader> e = create<EmissionShader>("EnvironmentEmission", {{"radiance", bright}});

@@ -27,7 +27,8 @@ std::vector<float> pattern(int width, int height) {
   return rgb;
 }
 
-// Uniform directions as the truth: the mean of the intensity, and of the density, and how often directions are drawn where.
+// References from uniform directions: the integral of the intensity, the integral of the pdf, and the expected number of
+// samples in each octant.
 TEST(GoniometricEmission, SamplesPowerAndDensityAreThoseOfTheIntensity) {
   for (const Case& c : cases) {
     const ImageFile file("gonio.exr", c.width, c.height, pattern(c.width, c.height));
@@ -53,7 +54,7 @@ TEST(GoniometricEmission, SamplesPowerAndDensityAreThoseOfTheIntensity) {
       expected[octant(d)] += double(pdf) * 4 * M_PI / count * count;
       const DirectionSample s = e->sample(p, random.pair());
       EXPECT_EQ(e->pdf(p, s.direction), s.pdf);
-      if (!(s.pdf > 0)) continue;  // rounded into a texel next to it
+      if (!(s.pdf > 0)) continue;  // rounded into a neighbouring texel
       ++counts[octant(s.direction)];
       const double value = double(e->radiance(p, s.direction, w)[0] / s.pdf);
       drawn += value / count;
@@ -64,12 +65,13 @@ TEST(GoniometricEmission, SamplesPowerAndDensityAreThoseOfTheIntensity) {
     EXPECT_NEAR(drawn, power, 0.02 * power) << what;
     EXPECT_NEAR(double(e->power(*point, w)[0]), power, 0.02 * power) << what;
     for (size_t i = 0; i < 8; ++i) EXPECT_NEAR(counts[i], expected[i], 0.05 * expected[i] + 100) << what;
-    // Of squares the density is the intensity's, times a number.
+    // With "nearest" interpolation the pdf is proportional to the intensity.
     if (c.interpolation == "nearest") EXPECT_LT(squares - drawn * drawn, 1e-3 * drawn * drawn) << what;
   }
 }
 
-// Light at a pole alone, where rows differ most in size: the power is the integral of the intensity, by the midpoint rule.
+// Light at a pole alone, where rows differ most in solid angle: the power is the integral of the intensity by the midpoint
+// rule.
 TEST(GoniometricEmission, RowsAtThePolesCountForWhatTheyLight) {
   for (const int rows : {1, 2, 4, 16}) {
     std::vector<float> rgb(size_t(8 * rows * 3));

@@ -16,7 +16,7 @@ namespace {
 using test::create;
 using List = std::vector<double>;
 
-/// A file that lives as long as this.
+/// A temporary file, removed by the destructor.
 struct TemporaryFile {
   std::string path;
   explicit TemporaryFile(const std::string& name)
@@ -27,7 +27,7 @@ struct TemporaryFile {
   ~TemporaryFile() { std::filesystem::remove(path); }
 };
 
-/// An IES file of a type, with angles and a function of (vertical, horizontal) for the intensities.
+/// An IES file of a photometric type; its intensities are a function of the (vertical, horizontal) angles.
 std::string ies_text(int type, const List& vertical, const List& horizontal,
                      const std::function<double(double, double)>& candela, const std::string& tilt = "TILT=NONE",
                      const std::string& multiplier = "1") {
@@ -55,12 +55,12 @@ constexpr double degree = M_PI / 180;
 TEST(IesFile, LumensAreTheIntegralOverAllDirections) {
   const auto uniform = parse(ies_text(1, steps(0, 180, 10), {0}, [](double, double) { return 100; }));
   EXPECT_NEAR(uniform.lumens(), 400 * M_PI, 1e-6 * 400 * M_PI);
-  // A Lambertian lamp of 1000 cd has 1000 pi lm, but for the straight lines between 2.5 degrees.
+  // A Lambertian lamp of 1000 cd has 1000 pi lm, apart from the linear interpolation between angles 2.5 degrees apart.
   const auto lambertian =
       parse(ies_text(1, steps(0, 90, 2.5), {0}, [](double v, double) { return 1000 * std::cos(v * degree); }));
   EXPECT_NEAR(lambertian.lumens(), 1000 * M_PI, 1e-3 * 1000 * M_PI);
   EXPECT_EQ(lambertian.at(90.5, 0), 0);
-  // By midpoints over the sphere, of one that varies in both angles.
+  // By the midpoint rule over the sphere, for intensities that vary in both angles.
   const auto varied = parse(ies_text(1, steps(0, 180, 15), steps(0, 360, 30), [](double v, double h) {
     return 50 + 40 * std::cos(3 * v * degree) * std::cos(h * degree);
   }));
@@ -86,7 +86,8 @@ TEST(IesFile, SymmetriesAreUnfolded) {
   for (size_t i = 0; i < others.size(); ++i)
     for (const double h : {0.0, 33.0, 90.0, 147.0, 201.0, 275.0, 355.0, -20.0})
       EXPECT_NEAR(others[i].at(35, h), all.at(35, h), 1e-3) << i << " " << h;
-  // One that is not: halves and what is symmetric about 90 and 270 degrees.
+  // Distributions that are not symmetric in all quadrants: given for half a turn, and symmetric about the plane of 90 and 270
+  // degrees.
   const auto half = parse(ies_text(1, {0, 90}, {0, 90, 180}, [](double, double h) { return 1 + h; }));
   EXPECT_NEAR(half.at(45, 270), 91, 1e-3);
   EXPECT_NEAR(half.at(45, 181), 180, 1e-3);
@@ -170,12 +171,12 @@ TEST(IesFile, NoTextBreaksTheReader) {
       text[random() % text.size()] = i % 2 ? char(random()) : "0123456789-+.eE ,\r\n"[random() % 19];
     attempt(text);
   }
-  EXPECT_GT(read, 500);  // changes of digits and labels do no harm
+  EXPECT_GT(read, 500);  // files with changed digits or labels are still valid
 }
 
 // ---- lamps ----------------------------------------------------------------------------------------------------------
 
-/// Luminance [cd/m^2], or of a point intensity [cd].
+/// Luminance [cd/m^2]; for a point light, intensity [cd].
 double luminance(const EmissionShader& e, const SurfacePoint& p, const Vector3& direction) {
   double sum = 0;
   for (int lambda = 362; lambda < 830; lambda += 4) {  // the spectrum is flat
@@ -198,8 +199,9 @@ TEST(IesEmission, GivesTheFilesCandelasInItsDirections) {
     const TemporaryFile file(
         "c.ies", ies_text(1, steps(0, 180, 10), steps(0, 360, 10), [](double v, double h) { return 1000 + v + h; }));
     const auto e = lamp_of(file.path);
-    // Down; 90 degrees across at horizontal angle 0; at 90, which is counter-clockwise from above: from +x towards -z.
-    EXPECT_NEAR(luminance(*e, p, {0, -1, 0}), 1000 + 0 + 180, 185);  // all angles meet
+    // Downwards; at 90 degrees from the axis with horizontal angle 0; the same with horizontal angle 90, which is
+    // counter-clockwise seen from above: from +x towards -z.
+    EXPECT_NEAR(luminance(*e, p, {0, -1, 0}), 1000 + 0 + 180, 185);  // all horizontal angles meet here
     EXPECT_NEAR(luminance(*e, p, {1, 0, -1e-3f}), 1090, 1);
     EXPECT_NEAR(luminance(*e, p, {0, 0, -1}), 1180, 1);
     EXPECT_NEAR(luminance(*e, p, {-1, -1, 0}), 1000 + 45 + 180, 1);
@@ -209,7 +211,7 @@ TEST(IesEmission, GivesTheFilesCandelasInItsDirections) {
     const double flux = read_ies_file(file.path).lumens();
     EXPECT_NEAR(luminance(*asked, p, {0, 0, -1}), 1180 * 500 / flux, 0.01);
   }
-  for (const int type : {3, 2}) {  // A and B: a beam along -z, up is +y, so right is +x; I tells V and H apart
+  for (const int type : {3, 2}) {  // types A and B: a beam along -z, up is +y, so right is +x; I = 1000 + v + 2 h
     const TemporaryFile file(
         "ab.ies", ies_text(type, steps(-90, 90, 10), steps(-90, 90, 10), [](double v, double h) { return 1000 + v + 2 * h; }));
     const auto e = lamp_of(file.path, {{"axis", List{0, 0, -1}}, {"across", List{0, 1, 0}}});
@@ -218,7 +220,7 @@ TEST(IesEmission, GivesTheFilesCandelasInItsDirections) {
     EXPECT_NEAR(luminance(*e, p, {0, s, -c}), 1030, 1) << type;
     EXPECT_NEAR(luminance(*e, p, {s, 0, -c}), 1060, 1) << type;
     EXPECT_EQ(luminance(*e, p, {0.1f, 0.1f, 1}), 0);
-    // Off both axes the two differ: A turns about the vertical, B about the horizontal.
+    // Away from both axes the two types differ: A rotates about the vertical, B about the horizontal axis.
     const Vector3 a{s * c, s, -c * c}, b{s, s * c, -c * c};
     EXPECT_NEAR(luminance(*e, p, type == 3 ? a : b), 1090, 1) << type;
   }
@@ -241,13 +243,33 @@ TEST(IesEmission, OnASurfaceTheWholeHasTheFilesIntensities) {
     const double flux = std::string(sides) == "front"  ? d.lumens(0, 90)
                         : std::string(sides) == "back" ? d.lumens(90, 180)
                                                        : d.lumens();
-    // Of a flat spectrum 1 the luminous flux is 683.002 * 106.857 lm per W/nm.
+    // A flat spectrum of 1 W/nm has a luminous flux of 683.002 * 106.857 lm.
     EXPECT_NEAR(double(e->power(*square, test::wavelengths())[0]) * 683.002 * observer_y_integral(), flux, 2e-3 * flux)
         << sides;
   }
 }
 
-/// The chi-square of samples against density, over an even grid of cells; the density is integrated by midpoints.
+// A distribution without symmetry about the normals of surfaces that face different ways: it is mirrored where the object is,
+// and nowhere else.
+TEST(IesEmission, AboutNormalsItIsMirroredOnlyWithTheObject) {
+  const TemporaryFile file("n.ies", ies_text(1, steps(0, 180, 5), steps(0, 360, 5), [](double v, double h) {
+                             return 1000 + 300 * std::sin(v * degree) * std::sin(h * degree);
+                           }));
+  const auto e = lamp_of(file.path, {{"sides", "front"}});
+  for (const float side : {1.0f, -1.0f}) {  // faces +y, -y
+    const auto square =
+        create<SceneObject>("Rectangle", {{"edge_u", List{0, 0, 2}}, {"edge_v", List{double(side) * 1.5, 0, 0}}});
+    const SurfacePoint p = point_of(*square);
+    const Vector3 normal(p.normal), right{1, 0, 0}, t = cross(right, normal);  // counter-clockwise from above
+    ASSERT_FLOAT_EQ(normal.y, side);
+    const Vector3 w = normalize(0.3f * right + 0.5f * t + 0.6f * normal);
+    const double expected = 1000 + 300 * std::hypot(0.3, 0.5) / std::hypot(0.3, 0.5, 0.6) * (0.5 / std::hypot(0.3, 0.5));
+    EXPECT_NEAR(luminance(*e, p, w) * 3 * double(dot(w, normal)), expected, 2e-3 * expected) << side;
+  }
+}
+
+/// The p-value of a chi-square test of samples against their pdf, which is integrated by the midpoint rule, on a uniform grid
+/// of cells. `missing`: the integral of the pdf minus the fraction of valid samples.
 double samples_follow(const EmissionShader& e, const SurfacePoint& p, std::uint32_t seed, double& missing) {
   constexpr int rows = 18, columns = 18, count = 60000, fine = 900;
   const Frame frame(Normal3{0, 0, 1});
@@ -286,7 +308,7 @@ TEST(IesEmission, SamplesFollowDensityAndPower) {
       double missing = 0;
       EXPECT_GT(samples_follow(*e, p, seed++, missing), test::each_of(4)) << sides;
       EXPECT_NEAR(missing, 0, 0.005);
-      // The estimate of power, whose weights hardly vary: most are within a factor of 2 of their mean.
+      // The estimate of the power from samples; its weights vary little: most are within a factor of 2 of their mean.
       test::Random random(seed++);
       double sum = 0, squares = 0;
       constexpr int count = 20000;

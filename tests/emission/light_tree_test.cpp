@@ -1,4 +1,4 @@
-// The tree of luminaires: its probabilities, pictures by it, and meshes that emit.
+// The tree of luminaires (TreeLightSampler): its probabilities, pictures rendered with it, and emissive meshes.
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 namespace etendue::test {
 namespace {
 
-/// Lamps that look in many directions, a point, a sphere, a mesh and a sky.
+/// Lamps that face many directions, a sphere, a point, a disc and an environment.
 std::string lamps(int count) {
   Random random(5);
   std::string text;
@@ -43,7 +43,7 @@ std::string scene_job(const std::string& sampler, const std::string& objects, in
 
 TEST(LightTree, ProbabilitiesAreThoseOfTheChoices) {
   const Ref<Job> job = load_job_text(scene_job("TreeLightSampler", lamps(40) + floor_plane, 1), "test.etd");
-  prepare_tree(*job->scene);  // alone: it counts from the origin
+  prepare_tree(*job->scene);  // the scene alone, so that coordinates stay relative to the origin
   const Scene& scene = *job->scene;
   const Ref<LightSampler> tree = create<LightSampler>("TreeLightSampler");
   tree->build(scene);
@@ -60,7 +60,7 @@ TEST(LightTree, ProbabilitiesAreThoseOfTheChoices) {
       expected.push_back(q * choices);
     }
     EXPECT_LE(sum, 1 + 1e-4);
-    EXPECT_GE(sum, 0.97);  // what faces away is found out at the leaves only
+    EXPECT_GE(sum, 0.97);  // luminaires that face away are excluded at the leaves only
     for (int i = 0; i < choices; ++i) {
       const LightChoice c = tree->choose(p, n, (float(i) + random()) / choices);
       if (!c.luminaire) continue;
@@ -99,7 +99,8 @@ std::string ball(int rows, const std::string& members) {
   return "TriangleMesh { positions: [" + points + "], triangles: [" + triangles + "], " + members + " }\n";
 }
 
-// Where the emission's front is seen, 1 / density is an estimate of the solid angle; 2 pi (1 - sqrt(1 - 1 / d^2)) of a sphere.
+// The mean of 1 / pdf over sampled points whose front faces `from` estimates the solid angle, which is 2 pi (1 - sqrt(1 - 1 /
+// d^2)) for a sphere.
 TEST(LightTree, MeshSeenFromOutside) {
   const Ref<SceneObject> mesh = ref_cast<SceneObject>(parse_component(ball(60, "emission: DiffuseEmission { radiance: 1 }")));
   prepare_tree(*mesh);
@@ -123,7 +124,7 @@ TEST(LightTree, MeshSeenFromOutside) {
     EXPECT_LT(none, count / 4);
     const double expected = 2 * M_PI * (1 - std::sqrt(1 - 1 / (distance * distance)));
     EXPECT_NEAR(sum, expected, 4.5 * std::sqrt((squares - sum * sum) / count) + 3e-3 * expected) << distance;
-    EXPECT_LT(std::sqrt(squares - sum * sum), 0.95 * expected) << distance;  // by area over all of it: 1.3 and more
+    EXPECT_LT(std::sqrt(squares - sum * sum), 0.95 * expected) << distance;  // by area over the whole mesh: 1.3 and more
   }
 }
 

@@ -1,5 +1,5 @@
-// Shapes as luminaires: the light that arrives on a sphere around one is the power its emission says it has. Counted in two
-// ways: by light that starts on the luminaire, and by rays from the sphere that look for it.
+// Shapes as luminaires: the light that arrives on a sphere around one equals the power that its emission reports. It is
+// estimated in two ways: by light that starts on the luminaire, and by rays from the sphere towards it.
 
 #include "etendue/core/spectrum.h"
 #include "etendue/language/language.h"
@@ -13,7 +13,7 @@ using namespace geometry_test;
 struct Luminaire {
   const char* name;
   const char* text;
-  bool convex_or_flat;  ///< no light it sends out comes back to it
+  bool convex_or_flat;  ///< none of its light hits it again
 };
 void PrintTo(const Luminaire& l, std::ostream* out) { *out << l.name; }
 
@@ -53,7 +53,7 @@ TEST_P(LuminairePower, ArrivesOnASphereAroundIt) {
   const double power = double(emission.power(*object, wavelengths)[0]);
   ASSERT_GT(power, 0);
 
-  // Light that starts on it, with the part of it that meets the luminaire again.
+  // The light that leaves it, and the part of that light that hits the luminaire again.
   Random random(7);
   Mean sent, returned;
   for (int i = 0; i < 150000; ++i) {
@@ -75,13 +75,13 @@ TEST_P(LuminairePower, ArrivesOnASphereAroundIt) {
     EXPECT_LT(returned.value(), 1e-4 * power);
   }
 
-  // What arrives, by lines through the sphere, uniformly distributed: their measure is that of all directions, 4 pi, times the
-  // sphere's cross section.
+  // The light that arrives, by lines through the sphere, uniformly distributed: their measure is that of all directions, 4 pi,
+  // times the sphere's cross section.
   const Point3 centre = object->bounds().centre();
   const float radius = 0.51f * length(object->bounds().diagonal());
   Mean received;
   for (int i = 0; i < 400000; ++i) {
-    // A line through the sphere, uniform by measure of lines: a direction, and a point on the disc across it.
+    // A line through the sphere, uniform in the measure of lines: a direction, and a point on the disc perpendicular to it.
     const Vector3 direction = random.direction();
     const Frame frame{Normal3(direction)};
     const float r = radius * std::sqrt(random.number()), phi = 2 * pi * random.number();

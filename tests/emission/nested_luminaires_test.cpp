@@ -1,5 +1,5 @@
-// Luminaires in nested scenes and instances: what stands for them in the outermost scene, and that they are sampled with the
-// densities said of them.
+// Luminaires in nested scenes and instances: the objects that represent them in the outermost scene, and whether their samples
+// follow the reported pdfs.
 
 #include <set>
 
@@ -49,8 +49,8 @@ const Chain chains[] = {
      "keyframes(0 s, scale(0.7, 1, 1), 1 s, translate(0.3, 0, 0) * rotate(90, \"z\") * scale(1, 1.5, 0.5))"},
 };
 
-// Both densities are those of the points that are chosen, and the light of each is that of the whole: areas and solid angles
-// found by samples are those found by other means.
+// The pdfs per area and per solid angle are those of the sampled points: areas and solid angles estimated from samples equal
+// those found by other means.
 TEST(NestedLuminaires, DensitiesAreThoseOfTheSamples) {
   Random random(5);
   for (const char* shape : {ball, plate, prism, drum})
@@ -76,7 +76,7 @@ TEST(NestedLuminaires, DensitiesAreThoseOfTheSamples) {
         }
         const float said = light.visible_pdf(from, s.direction, s.point);
         wrong += std::abs(said / s.pdf - 1) > 2e-2f && std::abs(dot(s.point.normal, s.direction)) > 0.02f;
-        // The nearest point in that direction counts; the far side of a body does not.
+        // Only the nearest point in that direction counts, not the far side of a body.
         const Ray line = ray(from, s.direction, time);
         Hit hit;
         SurfacePoint p;
@@ -90,7 +90,7 @@ TEST(NestedLuminaires, DensitiesAreThoseOfTheSamples) {
         seen.add(first ? 1 / double(s.pdf) : 0);
       }
       for (int i = 0; i < 40000; ++i) {
-        // Directions to the sphere around the scene.
+        // Uniform directions within the cone around the scene's bounding sphere.
         const float size = scene->radius(), far = distance(from, scene->centre());
         const float low = std::sqrt(1 - square(size / far)), z = low + (1 - low) * random.number(),
                     phi = 2 * pi * random.number();
@@ -122,7 +122,7 @@ TEST(NestedLuminaires, BoundsOfNormalsHoldThemAll) {
     }
 }
 
-// One lamp in 3 x 3 places, once more by hand, and with shaders replaced.
+// One lamp in 3 x 3 places by nested scenes, the same lamps placed by hand, and with replaced shaders.
 TEST(NestedLuminaires, EachPlaceHasItsOwn) {
   const std::string three = "lamps = BvhScene { objects: [ " + std::string(ball) + ", " + plate + R"( ] }
     row = EmbreeScene { objects: [ Instance { scene: lamps }, Instance { scene: lamps, transform: translate(3, 0, 0) },
@@ -154,7 +154,7 @@ TEST(NestedLuminaires, EachPlaceHasItsOwn) {
   EXPECT_EQ(luminaire_powers(scene.luminaires()).size(), 19u);
 }
 
-// 60 W are 60 W at half the size, and a radiance is kept.
+// A power of 60 W stays 60 W at half the size, and a radiance stays the same.
 TEST(NestedLuminaires, AnAmountIsOfEachPlace) {
   for (const char* shape : {"Sphere { radius: 0.5 m", "Box { size: [1, 2, 0.5] m",
                             "TriangleMesh { positions: [0,0,0, 1,0,0, 0,1,0, 0,0,1], triangles: [0,2,1, 0,1,3, 1,2,3, 2,0,3]"})
@@ -170,7 +170,8 @@ TEST(NestedLuminaires, AnAmountIsOfEachPlace) {
     }
 }
 
-// What arrives on a sphere around a stretched lamp of 60 W is 60 W: by lines through the sphere, uniform by their measure.
+// The power that arrives on a sphere around a stretched lamp of 60 W is 60 W: by lines through the sphere, uniform in the
+// measure of lines.
 TEST(NestedLuminaires, TheirPowerArrives) {
   const Ref<Scene> scene = scene_of(
       in_scenes("Sphere { radius: 0.5 m, emission: DiffuseEmission { power: 60 W } }", chains[1].inner, chains[1].outer));
@@ -206,7 +207,7 @@ TEST(NestedLuminaires, PointsAndDistantLightsGoWithTheirScenes) {
   const SceneObject& light = *scene->luminaires()[0];
   EXPECT_TRUE(light.delta());
   EXPECT_EQ(light.area(0), 4);
-  const Point3 from{-5, 0, 3}, there{-2, 0, 3};  // turned twice by 90 degrees
+  const Point3 from{-5, 0, 3}, there{-2, 0, 3};  // rotated twice by 90 degrees
   const SurfaceSample s = light.sample_visible(from, {0.5f, 0.5f}, 0);
   test::expect_near(s.point.position - there, {});
   EXPECT_NEAR(s.pdf, 9, 1e-4);
@@ -240,7 +241,7 @@ TEST(NestedLuminaires, WhatCannotBeIsRefused) {
   };
   EXPECT_NE(refused("BvhScene { objects: [ Environment { emission: DiffuseEmission {} } ] }").find("outermost"),
             std::string::npos);
-  // 200^3 lamps: counted, not made.
+  // 200^3 lamps: they are counted, but not created.
   std::string many = std::string("s0 = BvhScene { objects: [ ") + ball + " ] }\n";
   for (int i = 1; i <= 3; ++i) {
     many += fmt::format("s{} = BvhScene {{ objects: [", i);
@@ -258,7 +259,7 @@ TEST(NestedLuminaires, WhatCannotBeIsRefused) {
   }
 }
 
-// Moving transforms one after the other.
+// Products of animated transforms.
 TEST(NestedLuminaires, ProductsOfMotionsAreExact) {
   const auto turn = [](float angle, const Vector3& by) {
     return Transform::translate(by) * Transform::rotate(angle, {0, 1, 0}) * Transform::scale({1, 2, 0.5f});
@@ -280,7 +281,7 @@ TEST(NestedLuminaires, ProductsOfMotionsAreExact) {
   EXPECT_FALSE((AnimatedTransform(turn(1, {})) * AnimatedTransform(turn(2, {}))).animated());
 }
 
-// A number is found once for each object, however many there are.
+// A value is computed once for each object, however many objects there are.
 TEST(NestedLuminaires, NumbersOfManyObjectsAreRemembered) {
   std::vector<Ref<SceneObject>> objects;
   for (int i = 0; i < 5000; ++i) objects.push_back(ref_cast<SceneObject>(Registry::instance().create("Sphere")));

@@ -1,4 +1,4 @@
-// The sky and its sun in numbers: the sun's irradiance and its part in the choice of directions, against integrals done here.
+// The sky and its sun in numbers: the sun's irradiance and its sampling probability, against integrals computed here.
 
 #include <gtest/gtest.h>
 
@@ -50,8 +50,9 @@ double over_disc(double elevation, double radius, F&& f) {
   return sum;
 }
 
-// The mean radiance of the disc [W m^-2 sr^-1 nm^-1], as the published model has it (see sky_projector_test), times the solid
-// angle of 959.63 arc seconds of radius: across the light, at each wavelength, whatever size the disc is drawn.
+// The irradiance perpendicular to the sunlight at each wavelength: the disc's mean radiance [W m^-2 sr^-1 nm^-1] of the
+// published model (see sky_projector_test) times the solid angle of a disc of radius 959.63 arc seconds, whatever diameter the
+// disc is drawn with.
 TEST(SkyNumbers, IrradianceOfTheSun) {
   const struct {
     double elevation, turbidity, wavelength, radiance;
@@ -65,10 +66,10 @@ TEST(SkyNumbers, IrradianceOfTheSun) {
       const Wavelengths w = one(float(r.wavelength));
       const auto of_sun = [&](const Vector3& d) { return double(seen(*with, d, w)[0] - seen(*without, d, w)[0]); };
       const double irradiance = over_disc(r.elevation, diameter / 2, of_sun), expected = r.radiance * solid_angle;
-      // A large disc close to the horizon is not as bright above as below.
+      // A large disc close to the horizon differs in brightness between top and bottom.
       EXPECT_NEAR(irradiance, expected, (diameter > 2 && r.elevation < 20 ? 0.008 : 0.001) * expected)
           << r.elevation << " " << r.wavelength << " " << diameter;
-      // And that is all of it: there is nothing beyond the disc.
+      // The sun's light ends at the disc's edge.
       const Frame around{Normal3(towards_sun(r.elevation))};
       for (const auto& [part, there] : {std::pair(0.997, true), {1.003, false}}) {
         const double angle = part * diameter / 2 * degree;
@@ -78,7 +79,7 @@ TEST(SkyNumbers, IrradianceOfTheSun) {
   EXPECT_NEAR(get(*sky(50, true), "sun_diameter").as<Number>()->value / degree, 2 * 959.63 / 3600, 2e-5);
 }
 
-// Beyond the model's last channel light falls off as that of a black body of the sun's 5778 K.
+// Beyond the model's last channel the radiance falls off like that of a black body of the sun's 5778 K.
 TEST(SkyNumbers, BeyondRed) {
   const Ref<EmissionShader> e = sky(40, false);
   const auto at = [&](float lambda) { return double(seen(*e, Vector3{0, 1, 0}, one(lambda))[0]); };
@@ -87,12 +88,12 @@ TEST(SkyNumbers, BeyondRed) {
     EXPECT_NEAR(at(lambda) / at(720), planck(double(lambda)) / planck(720), 1e-4) << lambda;
 }
 
-/// Over the upper half, but for a disc around the sun of a radius [deg]: sums of f(direction), fine around the sun.
+/// The integral of f(direction) over the upper hemisphere except a disc around the sun of a radius [deg].
 template <class F>
 double over_sky(double elevation, F&& f, double radius = 0) {
   double sum = 0;
   const Frame frame{Normal3(towards_sun(elevation))};
-  // In rings about the sun, finer near it.
+  // In rings about the sun, which are narrower near it.
   constexpr int rings = 700, sectors = 180;
   for (int i = 0; i < rings; ++i) {
     const auto ring = [&](int k) { return std::lerp(radius * degree, M_PI, std::pow(double(k) / rings, 2)); };
@@ -113,12 +114,12 @@ double lux(const std::function<double(float)>& spectral) {
   return sum;
 }
 
-// What is asked for on level ground arrives there, from sky and sun by their own cosines.
+// The requested illuminance arrives on level ground, from sky and sun weighted by their own cosines.
 TEST(SkyNumbers, IlluminanceOnLevelGround) {
   for (const bool sun : {true, false})
     for (const double elevation : {20.0, 65.0}) {
       const Ref<EmissionShader> e = sky(elevation, sun, {{"illuminance", 1000.0}, {"sun_diameter", 2.0}, {"turbidity", 4.5}});
-      // Channels of the model are 40 nm wide: sixteen wavelengths between them tell all.
+      // The model's channels are 40 nm apart, so a wavelength for every 20 nm is enough.
       const double level = lux([&](float l) {
         static thread_local std::map<std::tuple<bool, double, int>, double> known;
         const auto key = std::tuple(sun, elevation, int(l) / 20);
@@ -132,7 +133,7 @@ TEST(SkyNumbers, IlluminanceOnLevelGround) {
     }
 }
 
-// The probability of the sun's directions is its part of all light, weighted by xbar + ybar + zbar.
+// The probability of sampling the sun is its fraction of all light, weighted by xbar + ybar + zbar.
 TEST(SkyNumbers, ShareOfTheSun) {
   for (const auto& [elevation, turbidity] : {std::pair{12.0, 6.0}, {6.0, 4.0}}) {
     const Ref<EmissionShader> e = sky(elevation, true, {{"turbidity", turbidity}, {"sun_diameter", 1.0}}),
@@ -151,7 +152,7 @@ TEST(SkyNumbers, ShareOfTheSun) {
     const double inside = over_disc(elevation, 0.5, [&](const Vector3& d) { return double(e->incident_pdf(d)); });
     const double around = over_disc(elevation, 0.5, [&](const Vector3& d) { return double(dark->incident_pdf(d)); });
     EXPECT_NEAR((inside - around) / (1 - around), expected, 0.003 * expected) << elevation;
-    // As often as that, directions lie within the disc.
+    // Samples fall within the disc with that probability.
     int count = 0;
     test::Random random(5);
     for (int i = 0; i < 20000; ++i)
@@ -160,8 +161,8 @@ TEST(SkyNumbers, ShareOfTheSun) {
   }
 }
 
-// A wide sun that stands half below the horizon gives half of its light: its power, which is what it is chosen by, and the
-// illuminance that is asked for are those of what is seen.
+// A wide sun of which half is below the horizon gives half of its light: its power, by which luminaires are chosen, and the
+// requested illuminance are those of the visible part.
 TEST(SkyNumbers, AWideSunOnTheHorizon) {
   for (const double elevation : {0.0, 2.0}) {
     const std::vector<Setting> settings = {{"sun_diameter", 12.0}, {"turbidity", 2.5}};
@@ -198,7 +199,7 @@ TEST(SkyNumbers, TheSunStandsWhereAlmanacsSay) {
   for (const auto& r : rows) {
     const Ref<EmissionShader> e = create<EmissionShader>(
         "SkyEmission", {{"time", r.time}, {"latitude", r.latitude}, {"longitude", r.longitude}, {"sun_diameter", 0.6}});
-    // Where its density is greatest.
+    // The sun is where the pdf is greatest.
     double best = 0;
     Vector3 sun{};
     test::Random random(7);

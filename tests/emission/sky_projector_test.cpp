@@ -31,7 +31,7 @@ Wavelengths at(const std::array<float, 4>& lambda) {
   for (int i = 0; i < spectrum_size; ++i) w.place(i, lambda[size_t(i % 4)], 1 / 470.0f);
   return w;
 }
-/// At angles [deg] to the zenith and around it from the sun.
+/// The direction at angles [deg] from the zenith and, around it, from the sun's azimuth.
 Vector3 towards(double theta, double phi) {
   return {float(std::sin(theta * degree) * std::cos(phi * degree)), float(std::cos(theta * degree)),
           float(-std::sin(theta * degree) * std::sin(phi * degree))};
@@ -67,8 +67,8 @@ TEST(SkyEmission, RadianceIsThatOfMitsuba) {
 }
 
 TEST(SkyEmission, TheSunIsThatOfMitsubaWithItsLimbKeptBright) {
-  // sky_scale 0, complex_sun: in the middle of the disc and at 0.7 of its radius, at 400, 520 and 680 nm. Mitsuba lets the
-  // limb's darkening take light from the irradiance; here its mean over the disc is 1.
+  // sky_scale 0, complex_sun: at the centre of the disc and at 0.7 of its radius, at 400, 520 and 680 nm. In Mitsuba the limb
+  // darkening reduces the irradiance; here the mean of the darkening over the disc is 1.
   struct Row {
     double elevation, turbidity;
     std::array<float, 3> middle, aside;
@@ -95,7 +95,7 @@ TEST(SkyEmission, TheSunIsThatOfMitsubaWithItsLimbKeptBright) {
   }
 }
 
-/// The irradiance on level ground, by the emission's own samples: [W/m^2] and [lx].
+/// The irradiance on level ground [W/m^2] and the illuminance [lx], from the emission's own samples.
 std::pair<double, double> level(const EmissionShader& e) {
   test::Random random(9);
   double watts = 0, lux = 0;
@@ -117,8 +117,8 @@ std::pair<double, double> level(const EmissionShader& e) {
 }
 
 TEST(SkyEmission, DaylightIsAsStrongAsDaylight) {
-  // At 60 degrees: of some 900 W/m^2 (ASTM G-173 has 1000 for all wavelengths and a surface facing the sun) two thirds are
-  // visible; 110 klx is what such days have (sky alone 15 to 20 klx).
+  // At 60 degrees: of some 900 W/m^2 (ASTM G-173 has 1000 for all wavelengths on a surface facing the sun) two thirds are
+  // visible; 110 klx is typical of such days (15 to 20 klx from the sky alone).
   const auto [watts, lux] = level(*sky(60, true));
   EXPECT_NEAR(watts, 620, 60);
   EXPECT_NEAR(lux, 110e3, 10e3);
@@ -192,7 +192,7 @@ TEST(SkyEmission, TheSunStandsWhereItDoes) {
 
 // ---- projector ------------------------------------------------------------------------------------------------------
 
-/// A projector at (0, 0, 5) that looks along -z, with +y up: its right is +x.
+/// A projector at (0, 0, 5) that points along -z, with +y up: its right is +x.
 Ref<SceneObject> projecting_point() {
   const Ref<SceneObject> point = create<SceneObject>("Point");
   point->transform = Transform::look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
@@ -206,7 +206,7 @@ std::vector<float> grey(const std::vector<float>& values) {
 }
 
 TEST(ProjectorEmission, GeometryOfThePicture) {
-  // Each pixel its own grey, in blocks of 8 x 8 so that their middles are not blurred.
+  // Each of 4 x 2 pixels has its own grey, in blocks of 8 x 8 texels so that the blocks' centres are not blurred.
   std::vector<float> values(32 * 16);
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 32; ++x) values[size_t(y * 32 + x)] = float(1 + x / 8 + 4 * (y / 8));
@@ -215,7 +215,7 @@ TEST(ProjectorEmission, GeometryOfThePicture) {
   const Ref<SceneObject> point = projecting_point();
   const SurfacePoint p = point->sample_area({0.5f, 0.5f}, 0).point;
   const Wavelengths w = test::wavelengths();
-  // 90 degrees across 5 m: the picture on the plane z = 0 is 10 m by 5 m. Irradiance there is I cos^3 / 25.
+  // 90 degrees at 5 m: the picture on the plane z = 0 is 10 m by 5 m. The irradiance there is I cos^3 / 25.
   const auto irradiance = [&](float x, float y) {
     const Vector3 d = normalize(Point3{x, y, 0} - p.position);
     return double(e->radiance(p, d, w)[0]) * std::pow(-double(d.z), 3) / 25;
@@ -248,7 +248,7 @@ TEST(ProjectorEmission, AmountsAreThoseOfAWhiteImage) {
   };
   EXPECT_NEAR(flux(*create<EmissionShader>("ProjectorEmission", {{"file", white.path}, {"luminous_flux", 2000.0}})), 2000, 4);
   EXPECT_NEAR(flux(*create<EmissionShader>("ProjectorEmission", {{"file", dim.path}, {"luminous_flux", 2000.0}})), 500, 2);
-  // 300 lx at 2 m over a picture of 2 m tan(20 deg) * 2 by two thirds of it: 300 A lm.
+  // 300 lx at 2 m over an area A, 2 * 2 m tan(20 deg) wide and two thirds of that high: 300 A lm.
   const double width = 4 * std::tan(20 * degree), area = width * width * 2 / 3;
   const auto lit =
       create<EmissionShader>("ProjectorEmission", {{"file", white.path}, {"illuminance", 300.0}, {"distance", 2.0}});
@@ -265,7 +265,7 @@ TEST(ProjectorEmission, SamplesFollowDensityAndTheImage) {
   const SurfacePoint p = point->sample_area({0.5f, 0.5f}, 0).point;
   const double half = std::tan(50 * degree), pixel = 4 * half * half / 2 / (24 * 12);
   std::vector<double> counts(24 * 12), expected(24 * 12);
-  const auto direction = [&](double x, double y) {  // of a place in pixels; image to the right is +x
+  const auto direction = [&](double x, double y) {  // of a point in pixels; the image's right is +x
     return normalize(Vector3{float((x / 12 - 1) * half), float((1 - y / 6) * half / 2), -1});
   };
   constexpr int count = 100000;
@@ -292,7 +292,7 @@ TEST(ProjectorEmission, SamplesFollowDensityAndTheImage) {
 }
 
 TEST(ProjectorEmission, AMapIsAsGoodAsAnImage) {
-  // The same checks as an image of 2 x 2 pixels that are not blurred, and as a map, whose v grows upwards.
+  // The same checks as an image of 2 x 2 unblurred blocks, and as a map, whose v grows upwards.
   std::vector<float> values(64 * 32);
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 64; ++x) values[size_t(y * 64 + x)] = (x < 32) == (y < 16) ? 3.0f : 1.0f;
@@ -335,7 +335,7 @@ TEST(ReadAsMap, EqualPartsOfLightAreTheSameAtEveryWavelength) {
         EXPECT_NEAR(flat->color({}, w, use)[i], 3, 3e-3f);
         EXPECT_NEAR(light->color({}, w, use)[i], 3 * d65->at(w[i], ColorUse::radiance), 1e-2f);
       }
-    EXPECT_EQ(flat->color({}, w, ColorUse::reflectance).maximum(), 1);  // as a reflectance it is one
+    EXPECT_EQ(flat->color({}, w, ColorUse::reflectance).maximum(), 1);  // reflectances are clamped to 1
   }
 }
 
@@ -351,7 +351,7 @@ TEST(EnvironmentEmission, WithoutItsWhiteAnImageOfGreyIsFlat) {
 }
 
 TEST(EnvironmentEmission, RowsMayReachThePoles) {
-  // Rows of 1, 4, 10 at v = 0, 1/2, 1, linear between: light of a + b v, whose mean over the sphere is known.
+  // Rows of 1, 4, 10 at v = 0, 1/2, 1, linear between them: radiance a + b v, whose mean over the sphere is known.
   const ImageFile file("rows.exr", 2, 3, grey({1, 1, 4, 4, 10, 10}));
   const auto e = create<EmissionShader>("EnvironmentEmission", {{"file", file.path}, {"rows", "poles"}}),
              one = create<EmissionShader>(

@@ -41,9 +41,9 @@ constexpr Cone cones[] = {{20, 30},
                           {60, 130, "smooth_angle"},
                           {0, 180, "smooth_angle"}};
 
-/// The integral of the profile over all directions: for a linear edge 2 pi (1 - (sin b - sin a) / (b - a)), by parts; for one
-/// that is smooth in the angle by the midpoint rule; else the mean over the edge of t^2 (3 - 2 t), 1/2, of t^2, 1/3, or of t^4,
-/// 1/5.
+/// The integral of the profile over all directions: for a linear edge 2 pi (1 - (sin b - sin a) / (b - a)), integrated by
+/// parts; for an edge that is smooth in the angle by the midpoint rule; for the others from the mean over the edge: of t^2 (3 -
+/// 2 t) it is 1/2, of t^2 it is 1/3, of t^4 it is 1/5.
 double solid_angle(const Cone& c) {
   const double a = c.inner * M_PI / 180, b = c.outer * M_PI / 180;
   const double h = one_minus_cosine(c.inner), beyond = one_minus_cosine(c.outer) - h;
@@ -71,7 +71,7 @@ TEST(SpotEmission, FallsOffBetweenItsAngles) {
       "Point { transform: rotate(90 deg, [1, 0, 0]), emission: SpotEmission { radiance: 3, inner_angle: 20, outer_angle: 60 } "
       "}");
   const SurfacePoint p = lamp->sample_area({}, 0).point;
-  const Frame frame{Normal3(0, -1, 0)};  // where the transform turns +z
+  const Frame frame{Normal3(0, -1, 0)};  // the transform rotates +z to -y
   const auto at_cosine = [&](double c) {
     return double(lamp->emission->radiance(p, frame.to_world({0, float(std::sqrt(1 - c * c)), float(c)}), wavelengths())[0]);
   };
@@ -124,8 +124,8 @@ TEST(SpotEmission, EdgesFallWithPowers) {
 }
 
 TEST(SpotEmission, APictureSpansTheOuterAngle) {
-  // u = 0 and 1 where the angle to the axis is 30 degrees towards -x and +x; the picture's halves along u let 0.2 and 0.7
-  // through, and, along v, all of it: half the light of each.
+  // u = 0 and 1 lie where the angle to the axis is 30 degrees towards -x and +x. The picture transmits 0.2 in one half of u and
+  // 0.7 in the other, for all v: each to half of the light.
   const std::string halves = "CheckerMap { repeat: [2, 0.5, 1], first: 0.2, second: 0.7 }";
   const Ref<SceneObject>
       plain = prepared_as<SceneObject>("Point { emission: SpotEmission { radiance: 2 } }"),
@@ -153,7 +153,7 @@ TEST(SpotEmission, APictureSpansTheOuterAngle) {
 
 TEST(SpotEmission, PowerOfAPointIsItsIntensityOverAllDirections) {
   const Wavelengths w = wavelengths();
-  // A stretched object's cone stays round around the stretched axis.
+  // The cone of a stretched object stays round, about the stretched axis.
   const Transform placement =
       Transform::translate({1, 2, 3}) * Transform::rotate(1, {1, 2, 3}) * Transform::scale({1, 3, 0.5f});
   for (const Cone& c : cones)
@@ -183,7 +183,7 @@ TEST(SpotEmission, SamplesFollowDensity) {
     const double reach = one_minus_cosine(c.outer);
     const auto pdf = [&](const Vector3& d) { return double(lamp->emission->pdf(p, d)); };
     EXPECT_NEAR(integrate_around(axis, {0, one_minus_cosine(c.inner), reach, 2}, pdf), 1, 2e-3) << c.inner;
-    // Rows of equal steps in 1 - cos to the edge of the cone; for the probability of each the density is integrated again.
+    // Rows of equal steps in 1 - cos up to the cone's edge; the pdf is integrated numerically for the probability of each cell.
     std::vector<double> expected, counts(size_t(rows * columns));
     for (int row = 0; row < rows; ++row) {
       const double inner = one_minus_cosine(c.inner), low = reach * row / rows, high = reach * (row + 1) / rows;
@@ -254,7 +254,7 @@ TEST(SpotEmission, EachObjectHasThePower) {
   const Ref<ObjectMap> checker = create<ObjectMap>("CheckerMap", {{"first", 1.0}, {"second", 3.0}});
   const Ref<EmissionShader> plain = create<EmissionShader>("SpotEmission", {{"power", 5.0}}),
                             varied = create<EmissionShader>("SpotEmission", {{"power", 5.0}, {"radiance", checker}});
-  std::vector<std::unique_ptr<TestSquare>> squares;  // more than are remembered
+  std::vector<std::unique_ptr<TestSquare>> squares;  // more than are cached
   for (int i = 0; i < 1100; ++i) {
     squares.push_back(std::make_unique<TestSquare>(0.5f + 0.01f * float(i)));
     squares.back()->reference();
@@ -282,9 +282,9 @@ TEST(SpotEmission, OnAnEnvironmentIsASun) {
   for (int i = 0; i < 1000; ++i) {
     const SurfaceSample s = sky->sample_visible({0.1f, 0.2f, 0.3f}, random.pair(), 0);
     ASSERT_GT(s.pdf, 0);
-    EXPECT_GT(s.direction.y, 0.9999f);  // light travels along what was +z and is now -y
+    EXPECT_GT(s.direction.y, 0.9999f);  // light travels along -y, to which +z is rotated
     const double light = double(sky->emission->radiance(s.point, -s.direction, w)[0]);
-    if (light > 0.7) {  // nearer to the edge rounding of the direction shows
+    if (light > 0.7) {  // nearer to the edge, rounding of the direction matters
       EXPECT_NEAR(light / double(s.pdf), 7 * omega, 1e-2 * 7 * omega);
       EXPECT_NEAR(double(sky->visible_pdf({}, s.direction, s.point)), double(s.pdf), 1e-2 * double(s.pdf));
     }

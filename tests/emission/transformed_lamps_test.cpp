@@ -1,6 +1,6 @@
-// Lamps of every round and flat shape under transforms that stretch, shear, mirror and move them: light that arrives by points
-// chosen to be seen and by points chosen by area, against rays in all directions that meet the lamp or do not; areas against
-// closed forms; directions against what a transform does to them.
+// Lamps of every round and flat shape under transforms that stretch, shear, mirror and move them: light that arrives, estimated
+// by sample_visible() and by sample_area(), against rays in all directions that hit the lamp or miss it; areas against closed
+// forms; directions against what a transform does to them.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ Ref<SceneObject> lamp(const std::string& shape, const std::string& transform) {
                                   ", emission: DiffuseEmission { radiance: 1, sides: both } }");
 }
 
-/// Whether nothing of the lamp itself lies before its point.
+/// Whether no other part of the lamp occludes its point.
 bool seen(const SceneObject& object, const Point3& from, const Vector3& direction, float distance) {
   Ray ray;
   ray.origin = from;
@@ -64,7 +64,7 @@ TEST(TransformedLamps, ArriveByPointsAsByRays) {
         const Vector3 normal = normalize(middle - from + Vector3{0.3f, 0.2f, -0.1f});
         const double d = double(length(middle - from));
         if (d < double(radius) * 1.02) continue;
-        // Rays within the cone around its bounds, on a spiral (Swinbank & Purser 2006).
+        // Rays within the cone around the bounding sphere, on a spiral (Swinbank & Purser 2006).
         const Frame frame{Normal3(normalize(middle - from))};
         const double h_end = 1 - std::sqrt(1 - std::pow(double(radius) / d, 2));
         constexpr int rays = 60000;
@@ -100,7 +100,8 @@ TEST(TransformedLamps, ArriveByPointsAsByRays) {
         }
         EXPECT_NEAR(visible, expected, 0.012 * expected + 1e-4) << where;
         EXPECT_NEAR(by_area, expected, 0.02 * expected + 2e-4) << where;
-        // In finer strata: which part a point lies on is decided within one of them, and parts differ in density.
+        // In finer strata: the part of the surface on which a point lies is chosen within one stratum, and the pdfs of the
+        // parts differ.
         constexpr int fine = 400;
         double area = 0;
         for (int i = 0; i < fine * fine; ++i) {
@@ -119,13 +120,13 @@ void expect_area(const std::string& shape, const std::string& transform, double 
   EXPECT_LT(object->area_error(0), 1e-6f) << shape << transform;
 }
 
-// What no formula gives is found by quadrature, to the rounding of floats.
+// Areas without a closed form are found by quadrature, to the rounding of floats.
 TEST(TransformedLamps, AreasOfClosedForms) {
   // A spheroid, prolate and oblate.
   const double e = std::sqrt(1 - 1 / 9.0);
   expect_area("Sphere { radius: 1", "rotate(33, [1, 1, 0]) * scale(1, 1, 3)", 2 * M_PI * (1 + 3 / e * std::asin(e)));
   expect_area("Sphere { radius: 1", "scale(3, -3, 1)", 2 * M_PI * (9 + std::atanh(e) / e));
-  // A disc of axes (1, 0.5, 0) and (0.3, 1, 0.7): pi times their cross product.
+  // A disc with the axes (1, 0.5, 0) and (0.3, 1, 0.7): pi times the length of their cross product.
   const double cross = std::sqrt(std::pow(0.5 * 0.7, 2) + std::pow(-0.7, 2) + std::pow(1 - 0.15, 2));
   expect_area("Disc { radius: 1", "matrix(1, 0.3, 0, 0, 0.5, 1, 0, 0, 0, 0.7, 1, 0)", M_PI * cross);
   // A cone stretched along its axis is another cone; so are a cylinder and a box.
@@ -139,9 +140,9 @@ TEST(TransformedLamps, AreasOfClosedForms) {
   expect_area("Rectangle { edge_u: [1, 0, 0], edge_v: [0.5, 1, 0]", "scale(2, 3, 5)", 6);
 }
 
-// The stretch leaps at edges. Under the matrix M a face between the edges a and b is |Ma x Mb|, a disc pi |Ma x Mb| of its
-// axes; the side of a cone is half the integral over the turn of |(p - apex) x dp|, of which a cut-off top has its square's
-// part.
+// The area stretch is discontinuous at edges. Under the matrix M a face with the edges a and b has the area |Ma x Mb|, a disc
+// with the axes a and b pi |Ma x Mb|; the side of a cone has half the integral over one turn of |(p - apex) x dp|, of which a
+// cut-off top takes the square of its fraction of the length.
 TEST(TransformedLamps, AreasOfShearedSolids) {
   const double M[3][3] = {{1.3, 0.6, -0.2}, {0.1, 0.7, 0.4}, {-0.3, 0.2, 2.1}};
   const std::string matrix = "matrix(1.3, 0.6, -0.2, 0, 0.1, 0.7, 0.4, 0, -0.3, 0.2, 2.1, 0)";
@@ -159,7 +160,7 @@ TEST(TransformedLamps, AreasOfShearedSolids) {
   expect_area("Box { size: [1, 2, 3]", matrix, 2 * (2 * xy + 6 * yz + 3 * zx));
   expect_area("Box { size: [0.001, 5, 3]", matrix, 2 * (0.005 * xy + 15 * yz + 0.003 * zx));
 
-  // Of periodic functions the mean over even steps converges faster than any power.
+  // For periodic functions the mean over even steps converges faster than any power.
   const auto around = [](double turn, const auto& f) {
     double sum = 0;
     constexpr int steps = 20000;
@@ -184,7 +185,7 @@ TEST(TransformedLamps, AreasOfShearedSolids) {
   expect_area("Cone { radius: 1, top_radius: 0.4, height: 0.5, caps: false", matrix, cone);
 }
 
-// A mirror keeps the front where it was: the side a normal is carried to.
+// A reflection keeps the front on the side to which it carries the normal.
 TEST(TransformedLamps, FrontsOfMirroredLamps) {
   for (const char* shape : {"Disc { radius: 1", "Annulus { radius: 1", "Rectangle { corner: [-0.5, -0.5, 0]",
                             "TriangleMesh { positions: [[0, 0, 0], [1, 0, 0], [0, 1, 0]], triangles: [[0, 1, 2]]"})
@@ -203,7 +204,7 @@ TEST(TransformedLamps, DirectionsFromInfinityTurn) {
   const Ref<SceneObject> distant = prepared_as<SceneObject>(
       "Distant { direction: [1, 0, 0], transform: rotate(90, \"z\") * rotate(30, \"y\"), emission: DiffuseEmission {} }");
   const SurfaceSample s = distant->sample_visible({}, {0.5f, 0.5f}, 0);
-  // (1, 0, 0) by 30 degrees about y: (cos, 0, -sin); then by 90 about z: (0, cos, -sin).
+  // (1, 0, 0) rotated by 30 degrees about y: (cos, 0, -sin); then by 90 degrees about z: (0, cos, -sin).
   expect_near(-s.direction, {0, float(std::cos(M_PI / 6)), -0.5f});
 
   const Ref<SceneObject> environment = prepared_as<SceneObject>(
@@ -229,7 +230,7 @@ TEST(TransformedLamps, DirectionsFromInfinityTurn) {
   }
 }
 
-// A ball that grows while it moves is sampled as it is at each time.
+// A ball that grows while it moves is sampled with its shape at each time.
 TEST(TransformedLamps, MovingAndGrowing) {
   const Ref<SceneObject> ball = lamp("Sphere { radius: 0.5", "keyframes(0, scale(1), 1, translate(0, 0, 2) * scale(2))");
   for (const double time : {0.0, 0.25, 0.5, 1.0}) {
@@ -242,7 +243,7 @@ TEST(TransformedLamps, MovingAndGrowing) {
   }
 }
 
-// Lamps in stretched, mirrored and nested scenes light a floor as the same shapes do that are written down in place.
+// Lamps in stretched, mirrored and nested scenes light a floor like the same shapes written directly in place.
 TEST(TransformedLamps, InNestedScenes) {
   const std::string floor =
       "Rectangle { corner: [-9, -9, -1.5], edge_u: [18, 0, 0], edge_v: [0, 18, 0], shader: Lambertian { color: 1 } }\n";

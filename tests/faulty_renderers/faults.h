@@ -1,5 +1,5 @@
 #pragma once
-// Renderers with one fault each of the kind that gives plausible pictures: `verify` must find it.
+// Renderers with one fault each, of the kind that gives plausible images: `verify` must find every fault.
 
 #include "etendue/render/renderer.h"
 
@@ -7,24 +7,24 @@ namespace etendue {
 
 enum class Fault : std::uint8_t {
   none,
-  wrong_mis_weight,       ///< the other strategy's density enters unsquared
+  wrong_mis_weight,       ///< the square root of the weight of the power heuristic
   no_squared_index,       ///< radiance is not changed by refraction
-  lost_cosine,            ///< where luminaires are sampled
-  wrong_measure,          ///< a distance too many where luminaires are sampled
-  roulette_undivided,     ///< survivors are not made up for those that ended
-  luminaire_twice,        ///< met luminaires count in full beside sampled ones
+  lost_cosine,            ///< of next event estimation
+  wrong_measure,          ///< of next event estimation: a factor of the distance too many
+  roulette_undivided,     ///< survivors are not divided by the survival probability
+  luminaire_twice,        ///< emitter hits count in full, in addition to next event estimation
   lens_importance,        ///< of light tracing: one cosine of the camera too many
-  phase_pdf,              ///< phase functions sampled as they are, weighted as if uniform
-  transmittance_squared,  ///< on the way to luminaires
+  phase_pdf,              ///< phase functions are importance sampled, but weighted with the uniform pdf
+  transmittance_squared,  ///< of shadow rays
   skipped_length,         ///< no paths of exactly four segments
   acceptance_inverted,    ///< of chains: accepted with I(u) / I(v)
-  no_expected_values,     ///< states are not added again when a proposal is rejected
-  large_steps_twice,      ///< large steps count as independent samples, beside all that chains find
-  direct_light_twice,     ///< chains carry what is sampled apart
-  guide_pdf,              ///< directions that a guide chooses are weighted as if scattering had chosen them
-  merging_unweighted,     ///< photons count in full beside connections
-  kernel_not_shrunk,      ///< photons are looked for within the shrunk radius, and divided by the first one's area
-  dark_paths_left_out,    ///< of chains: brightness is the mean over the paths that bring any light
+  no_expected_values,     ///< the state before a proposal is not added with its weight 1 - a
+  large_steps_twice,      ///< large steps are also added in full as independent samples
+  direct_light_twice,     ///< chains carry direct light, which is also sampled separately
+  guide_pdf,              ///< the guide's pdf is missing in the pdf of the mixture
+  merging_unweighted,     ///< photons count in full, in addition to connections
+  kernel_not_shrunk,      ///< photons within the shrunk radius are divided by the area of the first radius
+  dark_paths_left_out,    ///< of chains: brightness is the mean over paths that are not black
 };
 
 template <auto member, class R>

@@ -1,5 +1,5 @@
-// A guided path tracer with a fault, of the same parts as GuidedPathTracer. What guides is the same everywhere: it looks
-// upwards.
+// A guided path tracer with a fault, built from the same parts as GuidedPathTracer. Its guide is the same mixture of lobes at
+// all places, mostly upwards.
 
 #include "etendue/guiding/lobe_mixture.h"
 #include "etendue/transport/camera_walk.h"

@@ -1,4 +1,4 @@
-// A light tracer with a fault, of the same parts as LightTracer.
+// A light tracer with a fault, built from the same parts as LightTracer.
 
 #include "etendue/transport/renderer_members.h"
 #include "etendue/transport/subpath.h"

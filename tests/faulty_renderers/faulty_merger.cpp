@@ -1,4 +1,4 @@
-// Vertex connection and merging with a fault, of the same parts as VertexConnectionMerging.
+// Vertex connection and merging with a fault, built from the same parts as VertexConnectionMerging.
 
 #include "etendue/render/photon_process.h"
 #include "etendue/render/shrinking_bias.h"

@@ -1,4 +1,4 @@
-// A Metropolis renderer around a path tracer with a fault, of the same parts as PrimarySampleMetropolis.
+// A Metropolis renderer around a path tracer with a fault, built from the same parts as PrimarySampleMetropolis.
 
 #include "etendue/transport/metropolis.h"
 #include "etendue/transport/primary_sample_vectors.h"
@@ -29,7 +29,7 @@ class Process final : public RenderProcess {
   const Fault fault_;
   const std::unique_ptr<RenderProcess> inner_;
   static constexpr double large_steps = 0.3;
-  static constexpr std::uint64_t chains = 64, pool_size = 128;  // of each chain
+  static constexpr std::uint64_t chains = 64, pool_size = 128;  // chains per step; bootstrap paths per chain
 
   void evaluate(const NumberSource& numbers, Contribution& f, Arena& arena, bool direct) const {
     std::array<Spectrum, 3> lengths;

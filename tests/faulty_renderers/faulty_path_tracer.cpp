@@ -1,4 +1,4 @@
-// A path tracer with a fault, of the same parts as PathTracer.
+// A path tracer with a fault, built from the same parts as PathTracer.
 
 #include "etendue/transport/direct_light.h"
 #include "etendue/transport/renderer_members.h"

@@ -1,5 +1,5 @@
-// The photon mapper of tests/plugin, and one around it whose photons carry the wrong power, or whose radius does not shrink
-// although it says so: `verify` must find that it goes to something else.
+// The photon mapper of tests/plugin, and a wrapper around it whose photons carry the wrong power, or that declares a shrinking
+// of the radius other than the actual one: `verify` must find that it converges to a different image.
 
 #include "../plugin/small_photon_mapper.cpp"
 

@@ -1,4 +1,4 @@
-// A path tracer whose light is a little too much everywhere, or in one part of the picture.
+// A path tracer whose radiance is multiplied by a factor slightly above 1.
 
 #include "etendue/render/renderer.h"
 #include "etendue/transport/camera_walk.h"

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int width = 50, height = 37;
 
-/// Matt, mirroring, transparent and glossy things, so that every renderer has something to show.
+/// Diffuse, specular, transparent and glossy objects, so that every renderer has something to show.
 Ref<Job> room(const std::string& renderer, const Ref<Filter>& filter) {
   const Ref<Job> job = load_job_text("Job { renderer: " + renderer + R"(
         camera: PerspectiveCamera { from: [0.1, 0.2, -3.5] m, to: [0, 0, 0] m, fov: 50 deg }
@@ -41,13 +41,13 @@ Image render(const Ref<Job>& job, std::vector<int> crop, int threads = 0) {
   return done->film().develop();
 }
 
-/// Pieces that have edges on and off the tiles' edges, one of a single pixel among them.
+/// Pieces with edges on and off the tiles' edges; one of them is a single pixel.
 std::vector<std::vector<int>> pieces() {
   return {{0, 0, 16, height}, {16, 0, 33, 20},     {33, 0, width, 20},
           {16, 20, 17, 21},   {17, 20, width, 21}, {16, 21, width, height}};
 }
 
-/// The pieces put together.
+/// The image put together from the pieces.
 Image merged(const Ref<Job>& job) {
   Image all;
   std::vector<int> seen(size_t(width) * size_t(height));
@@ -66,13 +66,13 @@ Image merged(const Ref<Job>& job) {
   return all;
 }
 
-/// Whether what a renderer does in a pixel hangs on other pixels: it brings light to them, or learns from their samples.
+/// Whether a pixel's value depends on the samples of other pixels: the renderer splats, or its steps depend on each other.
 bool knows_other_pixels(const std::string& renderer) {
   const Ref<Renderer> made = room(renderer + " {}", test::make_filter("BoxFilter"))->renderer;
   return made->splats() || made->steps_depend();
 }
 
-/// Every value of every channel, bit by bit.
+/// Every value of every channel is equal to the bit.
 void expect_same(const Image& a, const Image& b, const std::string& what) {
   ASSERT_EQ(a.channels, b.channels) << what;
   size_t different = 0;
@@ -127,10 +127,10 @@ TEST(Crop, does_not_depend_on_threads) {
   expect_same(render(job, {10, 5, 29, 30}, 1), render(job, {10, 5, 29, 30}, 4), "threads");
 }
 
-// What light paths bring depends on which were begun: those of the crop's pixels only. The mean is the same, at the crop's edge
-// too. A piece and the whole are independent where different seeds make them; each pixel's mean over 16 renders with different
-// seeds has a standard error from their spread. Significance 1e-4 over all pixels together: 4.9 errors for each of 48 pixels
-// and 2 renderers (Student's distribution with 15 degrees of freedom is beyond 6.5 as seldom).
+// The contributions of light paths depend on which paths were traced: only those of the crop's pixels. Their mean is the same,
+// also at the crop's edge. A piece and the whole are independent if their seeds differ; the standard error of each pixel's mean
+// over 16 renders with different seeds comes from their spread. Significance 1e-4 over all pixels together: 4.9 errors for each
+// of 48 pixels and 2 renderers (Student's distribution with 15 degrees of freedom exceeds 6.5 as rarely).
 TEST(Crop, pieces_of_light_paths_have_the_means_of_the_whole) {
   constexpr int runs = 16;
   const std::vector<int> crop = {20, 12, 28, 18};

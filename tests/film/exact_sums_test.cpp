@@ -1,4 +1,4 @@
-// Sums that do not depend on order, against integers of as many bits as doubles have places.
+// Sums that do not depend on order, against integers with as many bits as doubles have binary places.
 
 #include "film/exact_sums.h"
 
@@ -10,7 +10,7 @@
 namespace etendue {
 namespace {
 
-/// A whole number of units of 2^-1074, of which every double is one: two's complement, lowest word first.
+/// An integer multiple of 2^-1074, as every double is: two's complement, lowest word first.
 class Exact {
  public:
   void add(double x) {
@@ -18,7 +18,7 @@ class Exact {
     const auto mantissa = std::int64_t(std::frexp(x, &exponent) * 0x1p53);
     shift_add(mantissa, exponent - 53 + 1074);
   }
-  /// mantissa * 2^shift; what a negative shift cuts off must be zero.
+  /// Adds mantissa * 2^shift; the bits that a negative shift cuts off must be zero.
   void shift_add(std::int64_t mantissa, int shift) {
     if (shift < 0) mantissa >>= std::min(-shift, 63), shift = 0;
     const bool negative = mantissa < 0;
@@ -43,7 +43,7 @@ class Exact {
     }
     return result;
   }
-  /// To a relative 2^-60 or so: from the top, without cancellation.
+  /// The value to a relative 2^-60 or so: summed from the highest word, without cancellation.
   long double approximately() const {
     Exact positive = *this;
     const bool negative = words_.back() >> 63;
@@ -61,7 +61,7 @@ class Exact {
 
 constexpr int place_bits = 40, lowest = -960;
 
-/// N(x, place) of exact_sums.h, by integers.
+/// N(x, place) of exact_sums.h, computed with integers.
 std::int64_t rounded(double x, int place) {
   if (x == 0) return 0;
   int exponent = 0;
@@ -79,7 +79,7 @@ std::int64_t rounded(double x, int place) {
   return x < 0 ? -n : n;
 }
 
-/// What a sum of these must be: each rounded to the place below the highest that any of them reaches.
+/// The exact result for these addends: each is rounded to the place below the highest that any of them reaches.
 Exact expected(const std::vector<double>& addends, int& place) {
   place = 0;
   for (const double x : addends)
@@ -139,10 +139,10 @@ TEST(ExactSums, are_those_of_rounded_addends) {
       got.shift_add(sums.digits()[0], lowest + place_bits * (place + 1) + 1074);
       got.shift_add(sums.digits()[1], lowest + place_bits * place + 1074);
       EXPECT_TRUE(got == wanted) << low << " " << count;
-      // As a number it is rounded once,
+      // The result is rounded only once, when it is converted to double,
       const long double value = got.approximately();
       EXPECT_LE(std::abs((long double)sums.value(0, 0) - value), std::abs(value) * 0x1.1p-53L + 0x1p-1074L);
-      // and near the true sum.
+      // and it is close to the true sum.
       Exact truth;
       double largest = 0;
       for (const double x : addends) truth.add(x), largest = std::max(largest, std::abs(x));
@@ -161,7 +161,7 @@ TEST(ExactSums, do_not_depend_on_order_or_division) {
       if (order == 1) std::ranges::reverse(addends);
       if (order > 1) std::ranges::shuffle(addends, random);
       expect_same(sum_of(addends), straight);
-      // Parts of any size, put together in any order.
+      // The sums of parts of any size, merged in any order.
       std::vector<ExactSums> parts;
       for (size_t i = 0; i < addends.size();) {
         const size_t n = std::min<size_t>(1 + random() % 60, addends.size() - i);
@@ -194,7 +194,7 @@ TEST(ExactSums, groups_have_the_places_of_their_largest) {
   expect_same(none, forwards);
 }
 
-// So many of the largest digits as there may be fill 63 bits and no more.
+// The largest permitted number of largest digits fills 63 bits and no more.
 TEST(ExactSums, have_room_for_the_addends_they_promise) {
   const double largest = 0x1p119 - 0x1p66;  // just below the tie: digits of 2^39 at a place, and nearly so below it
   ExactSums sums = sum_of({largest});

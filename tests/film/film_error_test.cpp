@@ -1,4 +1,4 @@
-// Whether the error that a film reports is the one it has: renders with many seeds spread as each of them says.
+// Whether the error that a film reports is the true one: renders with many seeds have the spread that each of them reports.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace etendue {
 namespace {
 
-/// Pictures of one thing by different seeds, each with the variance it reports.
+/// Pictures of one scene with different seeds, each with the variance it reports.
 class Spread {
  public:
   void add(const Image& picture) {
@@ -25,10 +25,11 @@ class Spread {
       }
   }
 
-  /// The mean over pictures of (squared distances from their mean - reported variances), in standard errors of it. Student's
-  /// distribution with 100 degrees of freedom and more is beyond 4.5 with a probability of 2e-5.
+  /// The mean over pictures of (squared deviation from their mean - reported variance), in units of its standard error.
+  /// Student's distribution with 100 degrees of freedom and more exceeds 4.5 with a probability of 2e-5.
   double excess() const { return mean().first / mean().second; }
-  /// Reported variance over the true one, and the standard error of the latter, relative: what the test could see.
+  /// The reported variance over the true one; and the relative standard error of the true one, that is, the smallest deviation
+  /// that the test could detect.
   double ratio() const { return reported() / (reported() + mean().first); }
   double sharpness() const { return mean().second / (reported() + mean().first); }
 
@@ -85,7 +86,7 @@ Spread spread_of(const Ref<Job>& job, int runs) {
   return spread;
 }
 
-// Independent samples, splats, and both: exactly as reported.
+// Independent samples, splats, and both: the spread is exactly as reported.
 TEST(FilmError, independent_samples_and_splats_spread_as_reported) {
   for (const char* renderer : {"PathTracer", "LightTracer", "BidirectionalPathTracer"}) {
     const Spread spread = spread_of(lit_balls(renderer, "BoxFilter", "IndependentSampler"), 400);
@@ -97,7 +98,7 @@ TEST(FilmError, independent_samples_and_splats_spread_as_reported) {
   EXPECT_LT(spread.sharpness(), 0.06);
 }
 
-// Points of a low-discrepancy sequence spread better: what is reported is an upper bound.
+// Points of a low-discrepancy sequence give less spread: the reported variance is an upper bound.
 TEST(FilmError, low_discrepancy_samples_spread_less_than_reported) {
   for (const char* renderer : {"PathTracer", "BidirectionalPathTracer"})
     for (const char* filter : {"BoxFilter", "GaussianFilter"}) {
@@ -107,8 +108,9 @@ TEST(FilmError, low_discrepancy_samples_spread_less_than_reported) {
     }
 }
 
-// --error stops by the mean of standard errors over values. By light paths, which reach every pixel that is lit: one that is
-// lit by a rare path alone has a large relative error that most renders know nothing of, whatever they report.
+// --error stops rendering by the mean over pixels of standard error over value. Tested with light paths, which reach every
+// pixel that is lit: a pixel that is lit by rare paths only has a large relative error, of which most renders see nothing,
+// whatever they report.
 TEST(FilmError, relative_error_is_that_of_the_pixels) {
   const Ref<Job> job = lit_balls("LightTracer", "BoxFilter", "IndependentSampler");
   job->renderer->samples = 1024;
@@ -129,7 +131,7 @@ TEST(FilmError, relative_error_is_that_of_the_pixels) {
   double error = 0, mean = 0;
   for (const double value : sum) mean += value / 80;
   for (size_t i = 0; i < 80; ++i) error += std::sqrt(std::max(0.0, squares[i] - sum[i] * sum[i])) / (sum[i] + 1e-3 * mean) / 80;
-  // A root of a varying variance is a little small, a quotient by a varying mean a little large: to 15 %.
+  // The root of a varying variance is biased low, a quotient by a varying mean biased high: equal to 15 %.
   EXPECT_NEAR(reported / error, 1, 0.15);
 }
 
@@ -145,7 +147,8 @@ Ref<ImageBuffer> picture(const Ref<Filter>& filter) {
   return image;
 }
 
-// Values around a mean, independent, at film points that are spread evenly: noise by every filter, at the film's border too.
+// Independent values around a mean, at evenly spread film points: the noise is as reported for every filter, also at the film's
+// border.
 TEST(FilmError, filtered_noise_is_as_reported) {
   for (const Ref<Filter>& filter : test::all_filters()) {
     const Ref<ImageBuffer> image = picture(filter);
@@ -167,13 +170,13 @@ TEST(FilmError, filtered_noise_is_as_reported) {
       film.end_step();
       spread.add(film.develop());
     }
-    // The lattice's points are not quite an integral: 2 % more.
+    // The sum over the lattice's points differs from the integral by up to 2 %.
     EXPECT_LT(std::abs(spread.excess()), significant + 0.02 / spread.sharpness()) << test::name(*filter) << spread.ratio();
     EXPECT_LT(spread.sharpness(), 0.05);
   }
 }
 
-// Splats of one path often fall side by side: they are one outcome, so their noise is more than that of as many paths.
+// Splats of one path often fall side by side: they are one outcome, so they have more noise than as many independent paths.
 TEST(FilmError, splats_of_a_path_are_one_outcome) {
   for (const char* filter : {"BoxFilter", "GaussianFilter"}) {
     const Ref<ImageBuffer> image = picture(test::make_filter(filter));
@@ -204,7 +207,7 @@ TEST(FilmError, splats_of_a_path_are_one_outcome) {
   }
 }
 
-// An estimator whose samples of a step share their luck, as those of a Markov chain or of one photon map do.
+// An estimator whose samples within a step are correlated, like those of a Markov chain or of one photon map.
 TEST(FilmError, correlated_samples_spread_by_steps) {
   for (const bool splats : {false, true}) {
     const Ref<ImageBuffer> image = picture(test::make_filter("GaussianFilter"));
@@ -215,7 +218,7 @@ TEST(FilmError, correlated_samples_spread_by_steps) {
     for (int run = 0; run < 300; ++run) {
       Film film(*image, Estimator::correlated), blind(*image);
       for (int step = 0; step < 12; ++step) {
-        const int samples = step < 6 ? 4 : 8;  // steps need not be equal, but their luck lasts as long
+        const int samples = step < 6 ? 4 : 8;  // steps may differ in size; one random value per 4 samples
         for (int part = 0; part < samples / 4; ++part) {
           const float light = luck(random);
           ImageTile tile;
@@ -241,12 +244,12 @@ TEST(FilmError, correlated_samples_spread_by_steps) {
     }
     EXPECT_LT(std::abs(by_steps.excess()), significant) << splats << " " << by_steps.ratio();
     EXPECT_LT(by_steps.sharpness(), 0.15);
-    EXPECT_LT(by_samples.ratio(), 0.3);  // taken for independent ones they would seem much better than they are
+    EXPECT_LT(by_samples.ratio(), 0.3);  // treated as independent, they would seem much better than they are
   }
 }
 
-// Eight steps of as many samples, whose means are as 1, 2, … 8: the variance of such numbers is 8 * 9 / 12 = 6 (unbiased), so
-// that of their mean, 4.5, is 6 / 8.
+// Eight steps of equally many samples, whose means are proportional to 1, 2, … 8: the unbiased variance of these numbers is 8 *
+// 9 / 12 = 6, so that of their mean, 4.5, is 6 / 8.
 TEST(FilmError, eight_steps_spread_as_eight_numbers) {
   for (const bool splats : {false, true}) {
     const Ref<ImageBuffer> image = picture(test::make_filter("BoxFilter"));
@@ -265,7 +268,7 @@ TEST(FilmError, eight_steps_spread_as_eight_numbers) {
       film.merge(tile);
       film.end_step();
     }
-    // The relative error is smoothed by a thousandth of the mean.
+    // The relative error is regularized by a thousandth of the mean.
     EXPECT_NEAR(film.relative_error(), std::sqrt(6.0 / 8) / (4.5 * 1.001), 1e-6) << splats;
     const Image developed = film.develop();
     const auto variance = size_t(std::ranges::find(developed.channels, std::string("variance.Y")) - developed.channels.begin());

@@ -1,5 +1,5 @@
-// The film against integrals done here in double precision: filters with all members away from their defaults, the film's table
-// of them to a fraction of a per cent, splats in crops and at borders, lengths, variances and features.
+// The film against integrals computed here in double precision: filters with all members away from their defaults, the film's
+// table of them to a fraction of a per cent, splats in crops and at borders, path lengths, variances and features.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ struct Case {
   std::string name;
   std::vector<Setting> settings;
   double radius;
-  Formula along;  // the papers' formulas, by distance along one axis
+  Formula along;  // the papers' formulas, as functions of the distance along one axis
 };
 
 double sinc(double x) { return x == 0 ? 1 : std::sin(M_PI * x) / (M_PI * x); }
@@ -83,14 +83,14 @@ double whole(const Case& c) {
   return sum;
 }
 
-// A splat leaves its weight over the filter's integral in each pixel around it. The film's table of the filter has cells, 64 in
-// the radius: over many places their errors cancel. By distance from the pixel's centre in twelve steps, and in the whole to
-// 0.3 %.
+// A splat contributes its weight over the filter's integral to each pixel around it. The film's table of the filter has 64
+// cells within the radius, whose errors cancel over many positions. Compared in twelve bins by distance from the pixel's
+// centre, and in total to 0.3 %.
 TEST(FilmNumbers, PixelsWeighSplatsByTheFilter) {
   for (const Case& c : cases()) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform(0, 1);
-    constexpr size_t bins = 13;  // of a tenth of the radius each, up to and with 1.2
+    constexpr size_t bins = 13;  // of a tenth of the radius each, up to 1.2 inclusive
     std::array<double, bins> got{}, expected{}, size{};
     const double norm = whole(c) * whole(c);
     const Ref<ImageBuffer> buffer = picture(c, 13, 13);
@@ -127,7 +127,7 @@ TEST(FilmNumbers, PixelsWeighSplatsByTheFilter) {
   }
 }
 
-/// The integral of a filter around a pixel's centre over what lies in the film [x0, x1) x [y0, y1).
+/// The integral of a filter around a pixel's centre over the part within the film [x0, x1) x [y0, y1).
 double integral(const Case& c, int px, int py, int x0, int y0, int x1, int y1) {
   const auto along = [&](double low, double high) {
     low = std::max(low, -c.radius), high = std::min(high, c.radius);
@@ -139,11 +139,12 @@ double integral(const Case& c, int px, int py, int x0, int y0, int x1, int y1) {
   return along(x0 - px - 0.5, x1 - px - 0.5) * along(y0 - py - 0.5, y1 - py - 0.5);
 }
 
-// Light that is splatted evenly over the film of a crop, of which each path brings 1: the mean radiance is then the same in
-// every pixel, and a single splat leaves f / integral of f over the film, times the picture's pixels, in each pixel near it.
+// Light that is splatted evenly over the film of a crop, with a contribution of 1 from each path: the mean radiance is the same
+// in every pixel, and a single splat contributes f / integral of f over the film, times the picture's number of pixels, to each
+// pixel near it.
 TEST(FilmNumbers, SplatsInACropAndAtItsBorders) {
   for (const Case& c : cases()) {
-    if (c.name == "BoxFilter") continue;  // whose edges lie within cells
+    if (c.name == "BoxFilter") continue;  // its edges lie within cells
     const std::vector<int> crop = {3, 2, 12, 9};
     for (const Point2 at : {Point2{7.3f, 5.6f}, {3.2f, 2.1f}, {11.8f, 5.4f}, {6.4f, 8.9f}}) {
       const Ref<ImageBuffer> buffer = picture(c, 20, 15, crop);
@@ -155,7 +156,7 @@ TEST(FilmNumbers, SplatsInACropAndAtItsBorders) {
       constexpr int paths = 63;
       for (int i = 0; i < paths; ++i) tile.count_path();
       tile.splat(at, 5, 5, 0, Spectrum(1.0f), lambda(), 2);
-      tile.splat({19, 14}, 5, 5, 0, Spectrum(1.0f), lambda(), 2);  // farther from the crop than filters reach: nothing
+      tile.splat({19, 14}, 5, 5, 0, Spectrum(1.0f), lambda(), 2);  // beyond the filter's radius: no contribution
       film.merge(tile);
       const Image image = film.develop();
       double largest = 0;
@@ -166,12 +167,12 @@ TEST(FilmNumbers, SplatsInACropAndAtItsBorders) {
           largest = std::max(largest, std::abs(expected));
           const double got = image.at(x - 3, y - 2, 1);
           EXPECT_NEAR(got, expected, 0.03 * unit() * 20 * 15 / paths * 0.3 + 0.02 * std::abs(expected)) << c.name << x << y;
-          // By length: all of it is in the second.
+          // By path length: all of it is in the layer of the second length.
           EXPECT_NEAR(image.at(x - 3, y - 2, 3 + 3 + 1), got, 1e-12);
           EXPECT_EQ(image.at(x - 3, y - 2, 3 + 1), 0);
         }
     }
-    // Even light over the film: every pixel of the crop has it all, to 0.3 %.
+    // Uniform light over the film: every pixel of the crop has all of it, to 0.3 %.
     const Ref<ImageBuffer> buffer = picture(c, 20, 15, crop);
     buffer->prepare();
     Film film(*buffer);
@@ -205,7 +206,7 @@ TEST(FilmNumbers, VarianceAndFeatures) {
     Features f;
     f.normal = {0.1f * float(i), 0.2f * float(i), -0.3f * float(i)};
     f.albedo = {0.5f, 0.25f * float(i), 0.125f};
-    f.depth = i < 2 ? 0 : 10 * float(i);  // nothing was met by the first two
+    f.depth = i < 2 ? 0 : 10 * float(i);  // the first two samples hit nothing
     tile.features(0, 0, i, f);
   }
   film.merge(tile);

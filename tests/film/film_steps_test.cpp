@@ -1,4 +1,4 @@
-// What a film holds at the end of a step, in the middle of one, and when one is dropped.
+// What a film holds at the end of a step, within a step, and after a step was dropped.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ Ref<ImageBuffer> picture(int width, int height, const std::string& filter = "Gau
   return image;
 }
 
-/// Samples of all kinds of one pass, of sizes that differ by orders of magnitude; a function of the pass.
+/// Samples of all kinds for one pass, with values that differ by orders of magnitude; they depend on the pass only.
 void add_pass(const ImageBuffer& image, Film& film, unsigned pass, std::uint32_t block = 0, int rows = 1 << 20) {
   std::mt19937 random(pass);
   std::uniform_real_distribution<float> uniform(0, 1);
@@ -73,7 +73,7 @@ void expect_same(const Film& a, const Film& b) {
   for (size_t i = 0; i < largest.size(); ++i) EXPECT_EQ(largest[i].luminance, others[i].luminance);
 }
 
-// Steps in three orders, at once and in parts that are added in different orders.
+// Steps added in three orders, all to one film or to parts that are merged in different orders.
 TEST(FilmSteps, any_order_and_division_gives_the_same_bits) {
   for (const Estimator estimator : {Estimator::independent, Estimator::correlated}) {
     const Ref<ImageBuffer> image = picture(13, 10);
@@ -114,7 +114,7 @@ TEST(FilmSteps, a_dropped_step_leaves_nothing) {
       for (int block = 0; block < blocks; ++block) add_pass(*image, film, unsigned(50 + block), std::uint32_t(block));
       add_pass(*image, film, 77, 9, 4);
       EXPECT_GT(film.samples(), other.samples());
-      EXPECT_TRUE(film.save_state() == state);  // that at the end of the last step
+      EXPECT_TRUE(film.save_state() == state);  // the state at the end of the last step
       film.drop_step();
       expect_same(film, other);
     }
@@ -124,7 +124,7 @@ TEST(FilmSteps, a_dropped_step_leaves_nothing) {
   }
 }
 
-// What is added while a step is open is not dropped with it.
+// A part that is added while a step is open is not dropped with the step.
 TEST(FilmSteps, another_part_may_come_in_the_middle_of_a_step) {
   const Ref<ImageBuffer> image = picture(7, 5);
   Film film(*image), part(*image), straight(*image);
@@ -141,7 +141,7 @@ TEST(FilmSteps, another_part_may_come_in_the_middle_of_a_step) {
   expect_same(film, straight);
 }
 
-// Blocks are steps of their own for the sums: as when they had been ended one by one.
+// The sums treat each block of a step like a step of its own: the result is as if each had been ended separately.
 TEST(FilmSteps, blocks_of_a_step_are_summed_like_steps) {
   const Ref<ImageBuffer> image = picture(9, 9, "BoxFilter");
   Film blocks(*image), steps(*image);
@@ -153,7 +153,8 @@ TEST(FilmSteps, blocks_of_a_step_are_summed_like_steps) {
   expect_same(blocks, steps);
 }
 
-// Tiles that came so far count by their own samples: constant light stays constant, where others are still missing.
+// Tiles that have been merged so far are divided by their own numbers of samples: constant light stays constant although other
+// tiles are still missing.
 TEST(FilmSteps, pictures_in_the_middle_of_a_step) {
   auto image = make<ImageBuffer>();
   image->width = image->height = 16;
@@ -182,11 +183,11 @@ TEST(FilmSteps, pictures_in_the_middle_of_a_step) {
       EXPECT_EQ(now.at(x, y, 3), y < 8 ? 3 : 2);
     }
   film.clear();
-  EXPECT_TRUE(same(held.develop(), now));  // a snapshot is on its own
+  EXPECT_TRUE(same(held.develop(), now));  // a snapshot does not change with the film
   EXPECT_EQ(film.develop().at(3, 3, 1), 0);
 }
 
-/// Weights that spectra cannot be multiplied with: a plugin's, perhaps.
+/// A filter whose weights times a large spectrum overflow a float, as a plugin's could.
 class HugeFilter final : public Filter {
  public:
   float weight(float, float) const override { return 4; }
@@ -225,7 +226,7 @@ TEST(FilmSteps, too_many_steps_and_impossible_states_are_refused) {
   Film film(*image);
   add_step(*image, film, 1);
   std::vector<std::byte> state = film.save_state();
-  // Magic, nine numbers of the picture, the filter's hash; then come the steps.
+  // The state begins with the magic number, nine numbers of the picture and the filter's hash; then the steps follow.
   const size_t at = 8 + 9 * 4 + 8;
   std::uint32_t steps = 0;
   std::memcpy(&steps, &state[at], sizeof steps);
@@ -242,13 +243,13 @@ TEST(FilmSteps, too_many_steps_and_impossible_states_are_refused) {
   EXPECT_TRUE(full.save_state() == state);
   steps = 0;
   std::memcpy(&state[at], &steps, sizeof steps);
-  EXPECT_THROW(film.load_state(state), Error);  // sums of nothing
+  EXPECT_THROW(film.load_state(state), Error);  // sums of no step
   steps = ExactSums::most_addends + 1;
   std::memcpy(&state[at], &steps, sizeof steps);
   EXPECT_THROW(film.load_state(state), Error);
 }
 
-// Snapshots from another thread while tiles come in, steps end and are dropped: each holds every row it has completely.
+// Snapshots from another thread while tiles are merged and steps are ended and dropped: each snapshot holds complete rows.
 TEST(FilmSteps, snapshots_from_another_thread_are_consistent) {
   auto image = make<ImageBuffer>();
   image->width = 16, image->height = 32;

@@ -1,5 +1,5 @@
-// Arbitrary bytes as a render description: they load or are rejected with Errors, and nothing else happens. What loads is
-// written, and reads back as an equal job.
+// Arbitrary bytes as a render description: they load or are rejected with Errors, without any other failure. A description that
+// loads is written and reads back as an equal job.
 
 #include <cstdio>
 #include <cstdlib>
@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size) {
   using namespace etendue;
   const std::string text(reinterpret_cast<const char*>(data), size);
   LoadOptions options;
-  options.allow_files = false;  // the texts come from nowhere: they must open nothing
+  options.allow_files = false;  // the texts have no folder: they must open no file
   try {
     const Ref<Job> job = load_job_text(text, "fuzz", {}, options);
     if (!job) stop("neither a job nor an error", text);

@@ -1,10 +1,11 @@
-// Arbitrary bytes as a file of another program: it is read, or refused with Errors that say where, and nothing else happens.
+// Arbitrary bytes as a file of another program: it is read, or refused with Errors that give the location, without any other
+// failure.
 //
 //     readers_fuzz --reader=pbrt --beside=FOLDER [libFuzzer's options] corpus/…
 //
-// Each input becomes a file in a folder of this process's own, beside copies of the files in FOLDER, which it may name. What
-// becomes of it is looked at as the program would: meshes and volumes are read, the description is written. fuzz.py makes
-// corpora and runs all readers.
+// Each input becomes a file in a folder of this process's own, beside copies of the files in FOLDER, which it may name. The
+// result is used as the program would use it: meshes and volumes are read, the description is written. fuzz.py makes corpora
+// and runs all readers.
 
 #include <unistd.h>
 
@@ -40,7 +41,7 @@ void check(const Error& error) {
   if (show(error).empty()) stop("an error that shows nothing");
 }
 
-fs::path folder;  // this process's own
+fs::path folder;  // private to this process
 
 void visit(Component& part, std::set<const Component*>& seen) {
   if (!seen.insert(&part).second) return;
@@ -50,7 +51,7 @@ void visit(Component& part, std::set<const Component*>& seen) {
     const std::string* const name = name_value.as<std::string>();
     if (file && !file->empty()) try {
         read_mesh(file->resolved(), name ? *name : "");
-      } catch (const Error&) {  // of which a render tells the place
+      } catch (const Error&) {  // a render reports its location
       }
   }
   for (Component* const inner : components_of(part)) visit(*inner, seen);
@@ -75,7 +76,7 @@ void import(const std::string& path) {
   }
 }
 
-/// The first meshes of a file.
+/// Reads the first meshes of a file.
 void mesh(const std::string& path) {
   for (const char* number : {"0", "1"}) try {
       read_mesh(path, number);
@@ -98,7 +99,7 @@ void volume(const std::string& path) {
 
 struct Reader {
   std::string_view name;
-  const char *written, *read;  ///< the file that is made of an input, and the one that is read, which names it
+  const char *written, *read;  ///< the file that is made from an input, and the file that is read, which names the former
   void (*run)(const std::string& path);
 };
 

@@ -2,10 +2,10 @@
 //
 //     LD_PRELOAD=libhostile_server.so ETENDUE_SERVER_LOADS=…/libetendue_openimageio.so etendue
 //
-// Its libraries are loaded, then, in place of main(), lines are read from standard input, each with a folder, a file for what
-// is printed, a number of bytes of memory or 0, and the arguments, all with the character 31 between them. For each line a
-// child process goes there and calls main() with them: it is what a fresh process would be, and what it does leaves no trace
-// here. The answers on standard output are "pid N", at once, and "status S seconds T kilobytes K", at the end (see attack.py).
+// Its libraries are loaded, then, in place of main(), lines are read from standard input. Each line holds a folder, a file for
+// the output, a number of bytes of memory or 0, and the arguments, separated by the character 31. For each line a child process
+// changes to the folder and calls main() with the arguments: it behaves like a fresh process, and leaves no trace in this one.
+// The answers on standard output are "pid N", at once, and "status S seconds T kilobytes K", at the end (see attack.py).
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -35,7 +35,7 @@ std::vector<std::string> parts_of(const std::string& line) {
   return parts;
 }
 
-/// Lets the memory that can be written to grow by this much. (The address space of a program with sanitizers is terabytes.)
+/// Lets the writable memory grow by this much. (The address space of a program with sanitizers is terabytes.)
 void limit_memory(unsigned long long bytes) {
   std::FILE* const file = std::fopen("/proc/self/statm", "r");
   unsigned long long pages[6] = {};
@@ -62,7 +62,7 @@ void limit_memory(unsigned long long bytes) {
   const int status = program_main(int(arguments.size()) - 1, arguments.data(), environment);
   std::cout.flush();
   std::fflush(nullptr);
-  // Libraries that were loaded wait at a proper end for threads that only the server has.
+  // At a normal exit, loaded libraries would wait for threads that exist only in the server.
   ::_exit(status);
 }
 
@@ -71,7 +71,7 @@ void say(const std::string& text) {
 }
 
 int serve(int, char** arguments, char** environment) {
-  ::unsetenv("LD_PRELOAD");  // for what the program may start
+  ::unsetenv("LD_PRELOAD");  // for programs that it may start
   if (const char* const library = std::getenv("ETENDUE_SERVER_LOADS"); library && !dlopen(library, RTLD_LAZY | RTLD_LOCAL)) {
     std::cerr << dlerror() << '\n';
     return 1;
@@ -95,7 +95,7 @@ int serve(int, char** arguments, char** environment) {
 
 }  // namespace
 
-/// What the start of every program calls with its main(); this one stands before the C library's.
+/// The start code of every program calls this function with its main(); this definition precedes the C library's.
 extern "C" int __libc_start_main(Main main, int count, char** arguments, void (*init)(), void (*fini)(), void (*end)(),
                                  void* stack) {
   using Start = int (*)(Main, int, char**, void (*)(), void (*)(), void (*)(), void*);

@@ -1,4 +1,5 @@
-// A plugin that misbehaves in the way which the environment variable ETENDUE_HOSTILE names; without it, it is well-behaved.
+// A plugin that misbehaves in the way that the environment variable ETENDUE_HOSTILE names; without the variable it is
+// well-behaved.
 
 #include <unistd.h>
 
@@ -15,7 +16,7 @@ using namespace etendue;
 
 namespace {
 
-/// Throws, crashes or hangs when that is what is asked for at this place.
+/// Throws, crashes or hangs if ETENDUE_HOSTILE requests that for this place.
 void misbehave(std::string_view place) {
   const char* text = std::getenv("ETENDUE_HOSTILE");
   const std::string_view asked = text ? text : "";

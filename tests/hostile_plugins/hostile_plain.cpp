@@ -1,2 +1,2 @@
-// The same plugin, compiled for another instruction set than the program (tests/CMakeLists.txt).
+// The plugin hostile.cpp, compiled for another instruction set than the program (tests/CMakeLists.txt).
 #include "hostile.cpp"

@@ -1,4 +1,4 @@
-// Files that are none, that lie about their size, and that change while they are read.
+// Files of another kind than expected, files that claim false sizes, and files that change while they are read.
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -25,10 +25,10 @@ constexpr bool sanitized = __has_feature(address_sanitizer);
 constexpr bool sanitized = false;
 #endif
 
-/// What reads a file of one kind: a scene with %s for its name, or a command with it.
+/// What reads a file of one kind: a scene or a command in which %s stands for the file's name.
 struct Reader {
   const char* name;
-  const char* object;  ///< of the scene; empty: the file is named by the command
+  const char* object;  ///< part of the scene; empty: the command names the file
   std::vector<std::string> command;
 };
 
@@ -74,7 +74,8 @@ class HostileFiles : public testing::Test {
   }
   void SetUp() override { folder.write("good.etd", scene("Sphere {}")); }
 
-  /// Runs the program within 4 GB and a minute (124: it took longer). With sanitizers its address space is terabytes.
+  /// Runs the program with at most 4 GB of memory for at most a minute (status 124: it took longer). With sanitizers the memory
+  /// is not limited: their address space is terabytes.
   int run(const std::vector<std::string>& arguments, const std::string& kilobytes = "4194304") {
     std::vector<std::string> all = {"-c", (sanitized ? "" : "ulimit -v " + kilobytes + "; ") + "exec timeout 60 \"$0\" \"$@\"",
                                     ETENDUE_BINARY_DIR "/etendue"};
@@ -84,7 +85,7 @@ class HostileFiles : public testing::Test {
     err = process.err();
     return status;
   }
-  /// Lets a reader read a file of this name, within the folder.
+  /// Runs a reader on a file of this name in the folder.
   int read(const Reader& reader, const std::string& name, const std::string& kilobytes = "4194304") {
     if (reader.command.empty()) {
       std::string text = filled(scene(reader.object), name);
@@ -141,7 +142,8 @@ TEST_F(HostileFiles, a_description_may_come_from_a_file_that_is_standard_input) 
   EXPECT_NE(piped.err().find("it is a pipe"), std::string::npos) << piped.err();
 }
 
-// The file is far larger than what is read in the meantime; the old program died of SIGBUS at one of the delays.
+// The file is far larger than the part that is read before it shrinks; an older version of the program died of SIGBUS at one of
+// the delays.
 TEST_F(HostileFiles, a_mesh_that_shrinks_while_it_is_read_ends_nothing) {
   const std::string header =
       "ply\nformat binary_little_endian 1.0\nelement vertex 20000000\nproperty float x\nproperty float y\nproperty float z\n"
@@ -185,7 +187,7 @@ TEST_F(HostileFiles, little_images_that_claim_much_are_refused_for_what_they_cla
     }
 }
 
-// A PNG of 73 bytes whose text claims 2 GB, which were taken and filled before its end was noticed.
+// A PNG of 73 bytes whose text chunk claims 2 GB, which were allocated and filled before the end of the file was noticed.
 TEST_F(HostileFiles, a_png_holds_what_its_pieces_claim) {
   const std::string header("\0\0\0\rIHDR\0\0\0\x9\0\0\0\x7\x8\x6\0\0\0\xda\x9b\x67\x60", 25);
   const std::string png = "\x89PNG\r\n\x1a\n" + header + "\x7f\xff\xff\xfe" + "tEXtComment" + std::string(20, '\0');
@@ -194,7 +196,7 @@ TEST_F(HostileFiles, a_png_holds_what_its_pieces_claim) {
   EXPECT_TRUE(said("text.png") && said("claims 2147483646 bytes")) << err;
 }
 
-// A BMP whose pixels of 24 bits are said to be packed as those of 8 are: the library's reader went beyond what it had unpacked.
+// A BMP whose pixels of 24 bits claim the packing of 8-bit pixels: the image library's reader read beyond its unpacked data.
 TEST_F(HostileFiles, a_bmp_is_packed_in_a_way_that_goes_with_its_bits) {
   const auto bmp = [](char bits, char packing, char begin) {
     std::string file("BM\x4a\x4\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x7\0\0\0\x5\0\0\0\x1\0\x18\0\x1\0\0\0", 34);
@@ -218,7 +220,7 @@ TEST_F(HostileFiles, a_bmp_is_packed_in_a_way_that_goes_with_its_bits) {
   EXPECT_TRUE(said("begin at byte 1846 of 1098")) << err;
 }
 
-// A TIFF so near the end of whole numbers that its place and its width add up to none.
+// A TIFF whose position plus width overflows a 32-bit integer.
 TEST_F(HostileFiles, windows_of_pictures_lie_where_they_can_be_counted) {
   std::string tiff("II*\0\x8\0\0\0", 8);
   const auto add = [&](std::uint32_t number, int bytes) {
@@ -227,7 +229,7 @@ TEST_F(HostileFiles, windows_of_pictures_lie_where_they_can_be_counted) {
   const std::uint32_t entries[][3] = {{256, 4, 200}, {257, 4, 1}, {258, 3, 8},   {259, 3, 1},   {262, 3, 1},  {273, 4, 166},
                                       {277, 3, 1},   {278, 4, 1}, {279, 4, 200}, {286, 5, 150}, {287, 5, 158}};
   add(std::size(entries), 2);
-  for (const auto& [tag, type, value] : entries) {  // tag, kind of number, how many, the number or where it is
+  for (const auto& [tag, type, value] : entries) {  // tag, type of number, count, the number or its offset
     add(tag, 2);
     add(type, 2);
     add(1, 4);
@@ -245,8 +247,8 @@ TEST_F(HostileFiles, windows_of_pictures_lie_where_they_can_be_counted) {
   }
 }
 
-// The image library reads 28 formats, and its readers of rare ones crash or do not end with damaged files. How a file begins
-// says which reader gets it, not its name, and no other one tries.
+// The image library reads 28 formats, and its readers of rare formats crash or hang on damaged files. A file's first bytes, not
+// its name, select the reader, and no other reader is tried.
 TEST_F(HostileFiles, images_of_formats_that_are_not_read_reach_no_reader) {
   const std::vector<std::pair<const char*, std::string>> kinds = {
       {"iff", "FOR4"},          {"dds", "DDS "}, {"psd", "8BPS"},    {"gif", "GIF89a"},       {"ico", "icon"},
@@ -273,7 +275,7 @@ TEST_F(HostileFiles, images_of_formats_that_are_not_read_reach_no_reader) {
     EXPECT_EQ(answer(whole, folder.write(name, "P3 1 1 255 255 0 0\n")), "") << name;
 }
 
-// Sparse files of 3 GB, where 2 GB of memory are allowed.
+// Sparse files of 3 GB, with 2 GB of memory allowed.
 TEST_F(HostileFiles, memory_that_runs_out_names_the_file_and_who_asked) {
   if (sanitized) GTEST_SKIP() << "memory cannot be limited for a program with sanitizers";
   for (const Reader& reader : readers()) {

@@ -1,4 +1,4 @@
-// Means of an ImageMap over ellipses, on images of any size.
+// ImageMap filtered over elliptical footprints, on images of any size.
 
 #include <random>
 
@@ -12,10 +12,10 @@ namespace {
 
 using test::create;
 
-/// A grey image of floats in a file that goes with it.
+/// A grey image of floats and the file that holds it.
 struct GreyImage : test::ImageFile {
   int width, height;
-  std::vector<float> texels;  // from the top
+  std::vector<float> texels;  // rows from the top
   template <class F>
   GreyImage(const std::string& name, int w, int h, F value) : ImageFile(name + ".exr"), width(w), height(h) {
     for (int y = 0; y < h; ++y)
@@ -28,7 +28,7 @@ struct GreyImage : test::ImageFile {
     for (const float t : texels) sum += double(t);
     return sum / double(texels.size());
   }
-  /// Between texels, repeated.
+  /// Bilinear interpolation between texels; the image is repeated.
   double at(double u, double v) const {
     const double x = u * width - 0.5, y = (1 - v) * height - 0.5, fx = x - std::floor(x), fy = y - std::floor(y);
     const auto texel = [&](int i, int k) {
@@ -63,7 +63,7 @@ double mean_over(const GreyImage& image, const SurfacePoint& p) {
   const double det = double(p.dpdu.x) * double(p.dpdv.y) - double(p.dpdu.y) * double(p.dpdv.x);
   constexpr int n = 4000;
   double sum = 0;
-  for (int k = 0; k < n; ++k) {  // a sunflower
+  for (int k = 0; k < n; ++k) {  // on Vogel's spiral (sunflower)
     const float r = 0.5f * std::sqrt((float(k) + 0.5f) / n), phi = 2.399963f * float(k);
     const Vector3 s = r * std::cos(phi) * f.longer + r * std::sin(phi) * f.shorter;
     sum += image.at(double(p.uv.x) + double(s.x * p.dpdv.y - s.y * p.dpdv.x) / det,
@@ -85,7 +85,7 @@ TEST(ImageFilter, StripesAlongTheViewStaySharp) {
     crosswise = std::max(crosswise, std::abs(double(map->scalar(across)) - 0.5));
     worst = std::max(worst, std::abs(double(map->scalar(p)) - mean_over(stripes, p)));
     EXPECT_EQ(map->scalar(p), standard->scalar(p));
-    EXPECT_EQ(map->scalar(p), squares->scalar(p));  // of squares smaller than the ellipse it is the same mean
+    EXPECT_EQ(map->scalar(p), squares->scalar(p));  // texels are smaller than the ellipse: the mean is the same
   }
   EXPECT_GT(contrast, 0.38);
   EXPECT_LT(crosswise, 0.02);
@@ -114,15 +114,16 @@ TEST(ImageFilter, AgreesWithTheMeanOverTheEllipse) {
     }
 }
 
-// Of x^2 any mean around x is x^2 + the variance of what it is taken over: w^2 / 16 of a circle w wide, and 1 / 6 on the
-// average of the interpolation between texels. It is so for circles that one of the halved images stands for.
+// The mean of x^2 over any distribution around x is x^2 plus the distribution's variance: w^2 / 16 for a circle of diameter w,
+// plus 1 / 6 on average for the interpolation between texels. This holds for circles that one of the halved images (mip levels)
+// represents.
 TEST(ImageFilter, BlursAsMuchAsACircleDoes) {
   const GreyImage bowl("bowl", 128, 128, [](int x, int) { return square(float(x) + 0.5f - 64); });
   const Ref<ObjectMap> map = bowl.map();
   for (const float squared : {0.0f, 12.0f, 60.0f}) {  // 4 (4^level - 1)
     double variance = 0;
     constexpr int n = 256;
-    for (int i = 0; i < n; ++i) {  // over texels and squares of texels alike
+    for (int i = 0; i < n; ++i) {  // evenly over texels
       const float x = 60 + 8 * (float(i) + 0.5f) / n;
       variance += double(map->scalar(seen(x / 128, 0.4f, std::sqrt(squared) / 128)) - square(x - 64)) / n;
     }
@@ -166,7 +167,7 @@ TEST(ImageFilter, HasNoSeamWhereTheImageIsRepeated) {
     SurfacePoint q = p, r = p;
     q.uv = {p.uv.x - 0.5f, p.uv.y + 0.5f};
     EXPECT_NEAR(map->scalar(p), other->scalar(q), 1e-4f);
-    // What is mirrored is even about the border, and so is the ellipse after a reflection.
+    // A mirrored image is even about its border, and so is the ellipse after a reflection.
     r.uv.x = -r.uv.x;
     r.ray_direction.x = -r.ray_direction.x;
     EXPECT_NEAR(mirrored->scalar(p), mirrored->scalar(r), 1e-4f);
@@ -211,7 +212,8 @@ TEST(ImageFilter, KnowsPicturesThatAreSmallerThanTheirFrame) {
   EXPECT_NEAR(image.map()->scalar(seen(0, 0, 1000)), 80.0f * 90 / (150 * 130), 1e-5f);
 }
 
-/// Images of few different numbers are kept as bytes; one that turns out to have more becomes floats on the way.
+/// Images with few different values are stored as bytes; an image that turns out to have more is converted to floats while it
+/// is read.
 TEST(ImageTexels, AreTheFilesHoweverManyDifferentNumbers) {
   for (const int different : {1, 3, 255, 256, 257, 4000}) {
     const GreyImage image("texels" + std::to_string(different), 80, 50,

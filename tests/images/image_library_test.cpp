@@ -41,7 +41,7 @@ TEST(ImageLibrary, IsLoadedForImageFilesAlone) {
 }
 
 TEST(ImageLibrary, IsMissedBeforeRendering) {
-  // The program and its library in a folder of their own.
+  // The program's own library in a folder without the library for image files.
   const TemporaryFolder folder, other;
   folder.write("a.etd", scene);
   for (const auto& entry : std::filesystem::directory_iterator(ETENDUE_BINARY_DIR))
@@ -62,7 +62,7 @@ TEST(ImageLibrary, IsMissedBeforeRendering) {
   said = run({"image", "info", "a.png"}, 2);
   EXPECT_NE(said.find("cannot read 'a.png': the library for image files cannot be loaded"), std::string::npos) << said;
 
-  // Any other library in its place says nothing when it is loaded.
+  // Any other library of that name is loaded without error, but does not report this version.
   std::filesystem::copy_file(ETENDUE_CONFORM_FAULTS_LIBRARY, other / "libetendue_openimageio.so");
   said = run({"image", "info", "a.png"}, 2);
   EXPECT_NE(said.find("not of this version"), std::string::npos) << said;

@@ -26,7 +26,7 @@ struct Sample {
   float value;
 };
 
-/// `count` samples in each pixel, by pixel.
+/// `count` random samples in each pixel; one list per pixel.
 std::vector<std::vector<Sample>> random_samples(const PixelArea& area, int count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(0, 1);
@@ -64,8 +64,8 @@ void render(const ImageBuffer& buffer, Film& film, const std::vector<std::vector
 }
 
 TEST(Film, ConstantStaysConstantUnderEveryFilter) {
-  // Samples on a lattice of which every cell of the filters' tables holds as many as it is large, so that sums are integrals:
-  // at the border as well.
+  // Samples on a lattice that gives every cell of the filters' tables a number of samples proportional to its size, so that
+  // sums are integrals, also at the border.
   const Xyz expected = to_xyz(Spectrum(0.7f), wavelengths);
   for (const auto& f : all_filters()) {
     const auto buffer = make_buffer(9, 7, f);
@@ -89,8 +89,8 @@ TEST(Film, ConstantStaysConstantUnderEveryFilter) {
 }
 
 TEST(Film, TableGivesTheFiltersOwnWeights) {
-  // One sample near the centre of a pixel and one beside it, no others: their sum by the filter, over twice its integral over
-  // that pixel.
+  // Only one sample near the centre of a pixel and one near its edge: the pixel's value is their sum weighted by the filter,
+  // over twice the filter's integral over that pixel.
   for (const auto& f : all_filters()) {
     const auto buffer = make_buffer(7, 7, f);
     Film film(*buffer);
@@ -99,13 +99,13 @@ TEST(Film, TableGivesTheFiltersOwnWeights) {
     tile.contribute({3.4f, 3.7f}, 3, 3, 0, Spectrum(1.0f), wavelengths);
     tile.contribute({3.9f, 3.2f}, 3, 3, 1, Spectrum(3.0f), wavelengths);
     film.merge(tile);
-    // Of the filter at the middles of the 64 cells within its radius.
+    // The table's weights: those of the filter at the middles of the 64 cells within its radius.
     const float cell = f->radius() / 64;
     const auto weight = [&](float dx, float dy) {
       return double(
           f->weight((std::floor(std::abs(dx) / cell) + 0.5f) * cell, (std::floor(std::abs(dy) / cell) + 0.5f) * cell));
     };
-    constexpr int fine = 400;  // its integral over the pixel
+    constexpr int fine = 400;  // the filter's integral over the pixel
     double share = 0;
     for (int i = 0; i < fine * fine; ++i)
       share += weight((float(i % fine) + 0.5f) / fine - 0.5f, (float(i / fine) + 0.5f) / fine - 0.5f) / (fine * fine);
@@ -176,10 +176,10 @@ TEST(Film, BadSamplesAreCountedLocatedAndBlack) {
     tile.contribute({6.5f, 3.5f}, 6, 3, 9, Spectrum(1.0f), wavelengths, nan);
     Spectrum rounding(1.0f);
     rounding.set(1, -1e-7f);
-    tile.contribute({1.5f, 6.5f}, 1, 6, 9, rounding, wavelengths);  // not bad
+    tile.contribute({1.5f, 6.5f}, 1, 6, 9, rounding, wavelengths);  // rounding only: not bad
     Wavelengths single = wavelengths;
     single.drop_secondary();
-    tile.contribute({5.5f, 6.5f}, 5, 6, 9, partly, single);  // nor this: the value is of a dropped wavelength
+    tile.contribute({5.5f, 6.5f}, 5, 6, 9, partly, single);  // nor is this: the NaN is of a dropped wavelength
     tile.splat({2.5f, 3.5f}, 4, 5, 11, Spectrum(nan), wavelengths, 2);
     film.merge(tile);
     EXPECT_EQ(film.bad_samples(), 6u);
@@ -211,8 +211,8 @@ TEST(Film, BadSamplesAreCountedLocatedAndBlack) {
 }
 
 TEST(Film, SplatsOfAnEvenFilmAreEvenUpToTheEdge) {
-  // 100 x 100 splats a pixel on a lattice, each of the light of one path: every filter must give back the value itself,
-  // at the edge too, where part of the filter lies outside.
+  // 100 x 100 splats per pixel on a lattice, one of each path: every filter must reproduce the value, also at the edge, where
+  // part of the filter lies outside.
   for (const auto& f : all_filters()) {
     const auto buffer = make_buffer(6, 5, f);
     Film film(*buffer);
@@ -311,7 +311,7 @@ TEST(Film, LayersAreMeansOfTheFirstHits) {
   tile.begin(*buffer, buffer->area());
   tile.features(1, 2, 4, {{0.2f, 0.4f, 0.6f}, {0, 0, 1}, 3, 5});
   tile.features(1, 2, 2, {{0.4f, 0.4f, 0.6f}, {0, 1, 0}, 5, 6});
-  tile.features(1, 2, 9, {});  // met nothing
+  tile.features(1, 2, 9, {});  // hit nothing
   film.merge(tile);
   tile.begin(*buffer, buffer->area());
   tile.features(1, 2, 3, {{0.4f, 0.4f, 0.6f}, {0, 1, 0}, 7, 8});
@@ -321,8 +321,8 @@ TEST(Film, LayersAreMeansOfTheFirstHits) {
   EXPECT_EQ(image.channels[3], "albedo.R");
   EXPECT_NEAR(image.at(1, 2, 3), 1.0 / 4, 1e-6);
   EXPECT_NEAR(image.at(1, 2, 7), 0.5, 1e-6);
-  EXPECT_NEAR(image.at(1, 2, 9), 5, 1e-6);  // the mean of 3, 5, 7: what met nothing has no depth
-  EXPECT_EQ(image.at(1, 2, 10), 6);         // of the least sample, whenever it came
+  EXPECT_NEAR(image.at(1, 2, 9), 5, 1e-6);  // the mean of 3, 5, 7: a sample without a hit has no depth
+  EXPECT_EQ(image.at(1, 2, 10), 6);         // of the sample with the least index, in whatever order
   EXPECT_EQ(image.at(0, 0, 9), 0);
   buffer->layers = {"albdo"};
   EXPECT_THROW(buffer->prepare(), Error);

@@ -140,7 +140,7 @@ TEST_F(OutputTest, ExrLayersPrecisionSpaceAndCrop) {
   output->write_image(image, path("a.exr"));
   Image back = read_image(path("a.exr"));
   ASSERT_EQ(back.channels.size(), 5u);
-  EXPECT_EQ(back.at(3, 4, channel(back, "object.ID")), 100001);  // half could not hold it
+  EXPECT_EQ(back.at(3, 4, channel(back, "object.ID")), 100001);  // a half float could not represent it
   EXPECT_NEAR(back.at(3, 4, channel(back, "depth.Z")), image.at(3, 4, 3), 1e-6 * image.at(3, 4, 3));
   EXPECT_EQ(back.metadata.at("crop_x"), "5");
   EXPECT_EQ(back.metadata.at("crop_y"), "3");
@@ -174,7 +174,7 @@ TEST_F(OutputTest, PngOf16BitsAndDither) {
   set(*output, "bits", Value(Number{12}));
   EXPECT_THROW(output->prepare(), Error);
 
-  // An even grey between two steps: rounded it is one of them, with noise the mean is right.
+  // A uniform grey between two code values: rounding gives one of them, with dither the mean is right.
   Image grey(64, 64, {"R", "G", "B"});
   std::fill(grey.values.begin(), grey.values.end(), 100.3 / 255);
   grey.metadata = {{"color_space", "srgb"}, {"transfer", "linear"}};
@@ -183,7 +183,8 @@ TEST_F(OutputTest, PngOf16BitsAndDither) {
   EXPECT_NEAR(compare(read_image(path("b.png")), grey, "srgb").channels[0].mean_a * 255, 100, 1e-4);
   set(*output, "dither", Value(true));
   output->write_image(grey, path("b.png"));
-  // deviation of a mean of 4096 values that are one off with probability 0.3: 0.007; five of them
+  // the standard deviation of a mean of 4096 values that are off by one with probability 0.3 is 0.007; the tolerance is five of
+  // these
   EXPECT_NEAR(compare(read_image(path("b.png")), grey, "srgb").channels[0].mean_a * 255, 100.3, 0.036);
 }
 
@@ -217,7 +218,7 @@ TEST_F(OutputTest, FailedWritesNameTheReasonAndKeepTheOldFile) {
     EXPECT_NE(said.find("no folder"), std::string::npos) << said;
     EXPECT_NE(message([&] { output->write_image(image, folder.string()); }).find("is a folder"), std::string::npos);
 
-    // A limit on the size of files stands for a disk that is full.
+    // A limit on the size of files simulates a full disk.
     const std::string file = path("picture" + output->extension());
     write_bytes(file, "what was there before");
     rlimit old{};
@@ -262,7 +263,7 @@ TEST_F(OutputTest, DamagedFilesAreRefused) {
     const std::vector<double> values = read_image(file).values;
     for (const double part : {0.02, 0.2, 0.4, 0.6, 0.8, 0.95}) {
       write_bytes(file, whole.substr(0, size_t(double(whole.size()) * part)));
-      bool refused_or_equal = false;  // what follows the pixels of a TGA file may be missing
+      bool refused_or_equal = false;  // the part after a TGA file's pixels may be missing
       const std::string said = message([&] { refused_or_equal = read_image(file).values == values && part > 0.5; });
       EXPECT_TRUE(refused_or_equal || said.find(file) != std::string::npos) << part << ' ' << said;
     }

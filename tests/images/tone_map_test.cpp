@@ -83,7 +83,7 @@ TEST(ToneMap, Formulas) {
   // F(x) = p x / ((p - 1) x + 1) at x = 0.001, 0.1, 0.4
   check(make_map("SchlickToneMap", {{"p", 10}}), {0.01 / 1.009, 1 / 1.9, 4 / 4.6, 1});
   check(make_map("SchlickToneMap", {{"p", 1}}), {0.001, 0.1, 0.4, 1});
-  // Found so that the darkest becomes the level M of N.
+  // p is found so that the darkest value becomes the level M of N.
   check(make_map("SchlickToneMap"), {1.0 / 256});
   check(make_map("SchlickToneMap", {{"darkest_grey", 3}, {"levels", 64}}), {3.0 / 64});
 }
@@ -102,7 +102,7 @@ TEST(ToneMap, EncodesAndClips) {
   // sRGB: 0.5 encodes as 1.055 * 0.5^(1/2.4) - 0.055
   EXPECT_NEAR(make_map("ExposureToneMap", {}, "srgb")->apply(greys({0.5})).at(0, 0, 0), 0.735357, 1e-5);
   EXPECT_NEAR(make_map("ExposureToneMap", {}, "gamma2.2")->apply(greys({0.5})).at(0, 0, 0), std::pow(0.5, 1 / 2.2), 1e-6);
-  // A colour outside the space: clipped by all but the map that changes nothing.
+  // A colour outside the space: clipped by all maps except the one that changes nothing.
   Image outside(1, 1, {"X", "Y", "Z"});
   outside.values = {0, 0.5, 0};
   EXPECT_EQ(make_map("ExposureToneMap")->apply(outside).at(0, 0, 0), 0);

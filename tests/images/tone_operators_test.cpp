@@ -1,5 +1,5 @@
-// The operators that begin with an exposure, held against published numbers and closed forms, and what automatic exposure does
-// not let spoil a picture: fireflies, lamps, black backgrounds, a sky.
+// Tone operators that begin with an exposure, against published numbers and closed forms; and contents of pictures that
+// automatic exposure must cope with: fireflies, lamps, black backgrounds, a sky.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ Image grey(const std::vector<double>& values, int width = 0) {
   return colored(colors, width);
 }
 
-/// What a colour in linear sRGB becomes.
+/// The tone mapped value of a colour in linear sRGB.
 Rgb shown(const Ref<ToneMap>& map, const Rgb& color) {
   const Image out = map->apply(colored({color}));
   return {out.values[0], out.values[1], out.values[2]};
@@ -70,7 +70,7 @@ TEST(AgX, MiddleGreyIsHalfTheCodeValues) {
         tone_map(std::string("AgXToneMap { exposure: fixed, transfer: \"gamma2.2\", contrast: ") + contrast + " }");
     EXPECT_NEAR(shown(map, {0.18, 0.18, 0.18})[1], 0.5, 1e-6) << contrast;
   }
-  // Contrasts there are those of the scene with the default.
+  // With the default contrast, contrasts near middle grey are those of the scene.
   const auto light = tone_map("AgXToneMap { exposure: fixed, transfer: \"linear\" }");
   const double up = shown(light, {0.185, 0.185, 0.185})[1], down = shown(light, {0.175, 0.175, 0.175})[1];
   EXPECT_NEAR(std::log(up / down) / std::log(0.185 / 0.175), 1, 0.002);
@@ -108,7 +108,7 @@ TEST(AgX, BrightColorsGoToWhite) {
     }
     EXPECT_GT(paleness, 0.99);
   }
-  // A green of 530 nm, which sRGB does not hold, keeps a little of all components.
+  // A spectral green of 530 nm, outside sRGB's gamut, keeps a little of all components.
   const Xyz green = observer(530);
   Image in(1, 1, {"X", "Y", "Z"});
   in.values = {0.5 * green.x, 0.5 * green.y, 0.5 * green.z};
@@ -147,7 +147,7 @@ TEST(Reinhard, EquationFourByHand) {
   // L (1 + L / 16) / (1 + L)
   for (const auto& [l, expected] : {std::pair{0.18, 0.18 * 1.01125 / 1.18}, {1.0, 0.53125}, {4.0, 1.0}, {9.0, 1.0}})
     EXPECT_NEAR(shown(map, {l, l, l})[1], expected, 1e-9) << l;
-  // White found: 99.5 % of 4000 pixels do not exceed 8.
+  // The white is found automatically: 99.5 % of 4000 pixels do not exceed 8.
   std::vector<double> values(4000, 2.0);
   std::fill_n(values.begin() + 3, 30, 8.0);
   values[35] = values[40] = 1e7;
@@ -164,7 +164,7 @@ TEST(Reinhard, ColorsAreMixedWithGreyOfTheirLuminance) {
     const double l = red * color[0] + green * color[1] + blue * color[2], expected = l * (1 + l / 1e4) / (1 + l);
     const Rgb c = shown(map, color);
     EXPECT_NEAR(red * c[0] + green * c[1] + blue * c[2], expected, 1e-9);
-    // On the line from grey to the colour, all three parts of which shrink alike.
+    // The result lies on the line from grey to the colour: all three components approach grey by the same factor.
     const double s = expected / l, kept = (c[0] - expected) / (s * color[0] - expected);
     EXPECT_NEAR((c[1] - expected) / (s * color[1] - expected), kept, 1e-9);
     EXPECT_NEAR((c[2] - expected) / (s * color[2] - expected), kept, 1e-9);
@@ -176,9 +176,10 @@ TEST(Reinhard, LocalKeepsDetailsThatGlobalFlattens) {
   const char* members = "{ exposure: fixed, white: 1e9, transfer: \"linear\" }";
   const auto local = tone_map(std::string("ReinhardLocalToneMap ") + members),
              global = tone_map(std::string("ReinhardToneMap ") + members);
-  // Of one value: L / (1 + L) both.
+  // Of a uniform image both give L / (1 + L).
   EXPECT_NEAR(local->apply(grey(std::vector<double>(100, 3.0), 10)).values[150], 0.75, 1e-9);
-  // Stripes of 2 % on a bright ground: what is around a pixel is the ground, so the stripes stay: L / (1 + mean).
+  // Stripes of 2 % on a bright ground: the local mean is that of the ground, so the stripes keep their contrast: L / (1 +
+  // mean).
   constexpr int side = 96;
   std::vector<double> stripes;
   for (int i = 0; i < side * side; ++i) stripes.push_back(20 * (i % 2 ? 1.01 : 0.99));
@@ -187,7 +188,7 @@ TEST(Reinhard, LocalKeepsDetailsThatGlobalFlattens) {
   EXPECT_NEAR(a.values[middle + 3] / a.values[middle], 1.01 / 0.99, 1e-4);
   EXPECT_NEAR(a.values[middle], 20 * 0.99 / 21, 1e-4);
   EXPECT_NEAR(b.values[middle + 3] / b.values[middle], 1 + 0.02 / 20.8, 1e-4);
-  // Beside an edge of 100 to 1 the surrounding ends at the edge: no halo of the dark side in the bright one.
+  // Beside an edge of 100 to 1 the local mean ends at the edge: the dark side makes no halo on the bright one.
   std::vector<double> edge;
   for (int i = 0; i < side * side; ++i) edge.push_back(i % side < side / 2 ? 0.1 : 10);
   const Image c = local->apply(grey(edge, side));
@@ -201,7 +202,7 @@ TEST(Reinhard, LocalKeepsDetailsThatGlobalFlattens) {
 
 constexpr double candelas = 683 * 106.856917;
 
-/// Greys of evenly spread logarithms between luminances [cd/m^2]; a pixel is a degree.
+/// Greys whose logarithms are evenly spaced between two luminances [cd/m^2]; a pixel is one degree wide.
 Image even(double low, double high, int count = 1800) {
   std::vector<double> values;
   for (int i = 0; i < count; ++i) values.push_back(low * std::pow(high / low, (i + 0.5) / count) / candelas);
@@ -211,8 +212,8 @@ Image even(double low, double high, int count = 1800) {
 TEST(WardHistogram, EvenLogarithmsGiveAPower) {
   const auto map = tone_map("WardHistogramToneMap { ceiling: linear, degrees: 180, transfer: \"linear\" }");
   const Image in = even(5, 5000), out = map->apply(in);
-  // ln L_d = ln 1 + ln 100 * P, P = ln(L / 5) / ln 1000: a slope of 2/3, below the ceiling of 1. Ends are smeared by half a
-  // bin.
+  // ln L_d = ln 1 + ln 100 * P, P = ln(L / 5) / ln 1000: a slope of 2/3, below the ceiling of 1. The ends are smoothed by half
+  // a bin.
   for (size_t i = 20; i < 1780; i += 40) {
     const double p = std::log(in.values[3 * i + 1] * candelas / 5) / std::log(1000.0);
     EXPECT_NEAR(out.values[3 * i], (std::pow(100.0, p) - 1) / 99, 0.02 * std::pow(100.0, p) / 99) << i;
@@ -237,7 +238,7 @@ TEST(WardHistogram, OneLuminanceIsShownAsTheScaleFactorSays) {
 }
 
 TEST(WardHistogram, NoMoreContrastThanTheCeiling) {
-  // Two heaps, a room and a window, 300 to 1 apart, with a few pixels between them.
+  // Two groups of luminances, a room and a window, 300 to 1 apart, with a few pixels between them.
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   std::vector<double> values;
@@ -275,7 +276,7 @@ TEST(WardHistogram, AtNightLessContrastIsShown) {
 const char* const exposed[] = {"AgXToneMap",           "AcesToneMap",     "ReinhardToneMap",
                                "ReinhardLocalToneMap", "ExposureToneMap", "WardHistogramToneMap"};
 
-/// Pixels of logarithms that are spread normally, by 1.5 stops, with grain of all sizes.
+/// Independent pixels whose logarithms are normally distributed with a deviation of 1.5 stops, so with detail of all sizes.
 std::vector<double> room(size_t count, double middle) {
   std::mt19937 random(11);
   std::normal_distribution<double> normal;
@@ -286,13 +287,14 @@ std::vector<double> room(size_t count, double middle) {
 
 TEST(AutomaticExposure, AFireflyChangesNothingElse) {
   constexpr int side = 128;
-  // What is local finds surroundings that are alike: there are none in noise, so what is there is smooth, but for 3 %.
+  // A local operator averages over surroundings of similar luminance; noise has none, so local operators get a smooth picture
+  // with 3 % of the noise.
   std::vector<double> noise = room(side * side, 0.3), smooth = noise;
   for (size_t i = 0; i < smooth.size(); ++i)
     smooth[i] =
         0.3 * std::exp2(2 * std::sin(double(i % side) / 9) * std::sin(double(i / side) / 7)) * std::pow(noise[i] / 0.3, 0.03);
   for (const char* name : exposed) {
-    // Ward's histogram gives a part of the display's range to whatever there is, to a firefly too.
+    // Ward's histogram gives a part of the display's range to every luminance, also to that of a firefly.
     if (std::string(name) == "WardHistogramToneMap") continue;
     const auto map = tone_map(std::string(name) + " { exposure: automatic, transfer: \"linear\" }");
     const std::vector<double>& values = map->local() ? smooth : noise;
@@ -301,7 +303,7 @@ TEST(AutomaticExposure, AFireflyChangesNothingElse) {
     const Image a = map->apply(grey(values, side)), b = map->apply(grey(with, side));
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) {
-        // What is local may change near it.
+        // A local operator may change pixels near the firefly.
         if (y == 5 && x == 7) continue;
         if (map->local() && x < 7 + 60 && y < 5 + 60) continue;
         const double before = a.at(x, y, 1);
@@ -328,7 +330,8 @@ TEST(AutomaticExposure, ALampInViewLeavesTheRoomAsItIs) {
   for (size_t i = 0; i < values.size(); i += 32) values[i] = 100;  // 3 % of the picture, 17 stops brighter
   const double after = median_code(map->apply(grey(values, 64)), no_lamp);
   EXPECT_NEAR(after, before, 0.08);
-  EXPECT_LT(median_code(tone_map("NormalizeToneMap {}")->apply(grey(values, 64)), no_lamp), 0.01);  // what it was made for
+  EXPECT_LT(median_code(tone_map("NormalizeToneMap {}")->apply(grey(values, 64)), no_lamp),
+            0.01);  // without it the room is black
 }
 
 TEST(AutomaticExposure, BlackAroundAThingDoesNotCount) {
@@ -344,7 +347,7 @@ TEST(AutomaticExposure, BlackAroundAThingDoesNotCount) {
 }
 
 TEST(AutomaticExposure, SkyAndGroundBothShow) {
-  // The upper half a sky of 4 to 16 with a sun of 1e5, the lower half ground in its light and in shadow.
+  // The upper half is a sky of 4 to 16 with a sun of 1e5, the lower half ground in sunlight and in shadow.
   constexpr int side = 64;
   for (const double scale : {1e-5, 1.0, 300.0}) {
     std::vector<double> values = room(side * side, 1);
@@ -367,7 +370,7 @@ TEST(AutomaticExposure, IsWrittenDownAndStopsAreAdded) {
   const std::string found = exposure("AgXToneMap {}").at("exposure");
   EXPECT_NEAR(std::stod(exposure("AgXToneMap { stops: 1.5 }").at("exposure")), std::stod(found) + 1.5, 0.011);
   EXPECT_FALSE(exposure("AgXToneMap { exposure: fixed }").contains("exposure"));
-  // The number, fixed, gives the same picture.
+  // The exposure that was found, given as a fixed number, gives the same picture.
   const Image a = tone_map("AgXToneMap {}")->apply(grey(values, 30));
   const Image b =
       tone_map("AgXToneMap { exposure: fixed, stops: " + found.substr(0, found.find(' ')) + " }")->apply(grey(values, 30));

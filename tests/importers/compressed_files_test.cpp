@@ -1,4 +1,4 @@
-// Files compressed by gzip are read as what they hold.
+// Files compressed by gzip are read like their contents.
 
 #include <zlib.h>
 
@@ -39,7 +39,7 @@ TEST(CompressedFiles, HoldMeshesOfAnyFormat) {
   EXPECT_EQ(read_mesh(folder.write("mesh.ply.gz", compressed(one_triangle))).triangles.size(), 1u);
   const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   EXPECT_EQ(read_mesh(folder.write("MESH.OBJ.GZ", compressed(obj))).triangles.size(), 1u);
-  // What only calls itself compressed is taken as it is.
+  // A file that has only the extension of a compressed one is read unchanged.
   EXPECT_EQ(read_mesh(folder.write("plain.obj.gz", obj)).triangles.size(), 1u);
 }
 
@@ -47,7 +47,7 @@ TEST(CompressedFiles, AreMeshesAndPartsOfPbrtsScenes) {
   const TemporaryFolder folder;
   folder.write("mesh.ply.gz", compressed(one_triangle));
   folder.write("world.pbrt.gz", compressed("Shape \"plymesh\" \"string filename\" \"mesh.ply.gz\"\n"));
-  // With a light, the triangles are written out by the importer; without, the object reads the file.
+  // With an area light the importer writes out the triangles; without one the object reads the file.
   for (const char* light : {"", "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n"}) {
     const Imported read = import_text(folder, v4(std::string(light) + "Include \"world.pbrt.gz\"\n"));
     ASSERT_TRUE(read.job) << read.told();

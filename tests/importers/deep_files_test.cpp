@@ -1,5 +1,5 @@
-// Files that are right in each line and too much as a whole: chains of parts that refer to parts, many of a kind. What was
-// found by making files of other programs long.
+// Files whose lines are right one by one, but which are too much as a whole: chains of parts that refer to parts, and large
+// numbers of one kind. The cases were found by making files of other programs long.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace etendue {
 namespace {
 
-/// What is wrong with a file, with the line; or nothing.
+/// The error message of a file, with its line; or "".
 std::string error_of(const std::string& name, const std::string& text, Ref<Component>* imported = nullptr) {
   const TemporaryFolder folder;
   const std::string path = folder.write(name, text);
@@ -51,7 +51,7 @@ TEST(DeepFiles, MitsubasPluginsThatReferToPlugins) {
   EXPECT_EQ(error_of("scene.xml", mitsuba_mixtures(50)), "");
   EXPECT_NE(error_of("scene.xml", mitsuba_mixtures(10000)).find(": plugins that refer to plugins nest more than 100 deep"),
             std::string::npos);
-  // By the shape of a group, too.
+  // A chain just above the limit is found at the shape that uses it.
   EXPECT_NE(error_of("scene.xml", mitsuba_mixtures(120)).find("nest more than"), std::string::npos);
 }
 
@@ -77,7 +77,7 @@ std::string pbrt_mixtures(int count) {
               "NamedMaterial \"m" + number(count) + "\"\n");
 }
 
-// Mixtures of many become chains, at which the program once ended: its stack overflowed.
+// Mixtures of many parts become chains, which once overflowed the program's stack.
 TEST(DeepFiles, MitsubasMixturesOfManyParts) {
   constexpr int count = 20000;
   const auto scene = [](const std::string& of_sphere) {
@@ -113,7 +113,7 @@ TEST(DeepFiles, PbrtsAttributesOfOneNameAreOne) {
   ASSERT_EQ(error_of("scene.pbrt", pbrt(many + repeated(1000, [](int) { return std::string("Shape \"sphere\""); })), &read),
             "");
   const Ref<SceneObject>& sphere = ref_cast<Job>(read)->scene->objects.back();
-  EXPECT_EQ(get(*sphere, "radius").as<Number>()->value, 20000);  // the last counts
+  EXPECT_EQ(get(*sphere, "radius").as<Number>()->value, 20000);  // the last value counts
   const std::string different = repeated(300, [](int i) { return "Attribute \"shape\" \"float a" + number(i) + "\" 1"; });
   EXPECT_EQ(error_of("scene.pbrt", pbrt(different)), "203: more than 200 attributes are given to every shape");
 }
@@ -153,7 +153,7 @@ TEST(DeepFiles, APlyFileWithAttributesOfFacesAndWithoutTriangles) {
         "property list uchar int vertex_indices\nproperty float a_0\nproperty float a_1\nend_header\n0 0 0\n0 1 2\n");
     FAIL() << "nothing is to be seen in it";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "it has no faces");  // the undefined sanitizer saw what was done before
+    EXPECT_STREQ(error.what(), "it has no faces");  // reading on was undefined behaviour once, found by the sanitizer
   }
 }
 

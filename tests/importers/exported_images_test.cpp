@@ -1,5 +1,5 @@
-// Images that another program would read otherwise than here are exported as what is read here: their channels, their encoding,
-// and what colours are as numbers.
+// Images that another program would read differently are exported as they are read here: their channels, their encoding, and
+// the numbers that stand for colours.
 
 #include "etendue/exporter.h"
 #include "etendue/language/language.h"
@@ -22,7 +22,7 @@ std::string picture(const TemporaryFolder& folder, const std::string& name, Numb
   return folder / name;
 }
 
-/// A square in light of 1 from everywhere, which fills the view.
+/// A square that fills the view, in a uniform environment of radiance 1.
 std::string square(const std::string& shader) {
   return "Job { renderer: PathTracer { samples: 256, max_depth: 2 }\n image: ImageBuffer { width: 4, height: 4, filter: "
          "BoxFilter "
@@ -31,7 +31,7 @@ std::string square(const std::string& shader) {
          shader + " } ] } }\n";
 }
 
-/// By how much what a number is makes it brighter: from black to white.
+/// A square whose reflectance is the number that an image is evaluated to, between black and white.
 std::string mixed(const std::string& image) {
   return square("MixShader { first: Lambertian { color: 0 }, second: Lambertian { color: 1 }, amount: ImageMap { " + image +
                 " } }");
@@ -52,7 +52,7 @@ Exported exported(const std::string& job, const char* name) {
   for (const Error& note : exporting.notes())
     if (std::string(note.what()) != "pbrt's pictures are not tone mapped") ADD_FAILURE() << note.what();
   folder.write(name, result.text);
-  // Once more over the same files: what was written beside is none that was read.
+  // The export can be repeated over the same files: files written beside the scene are not noted as inputs.
   for (const auto& file : std::filesystem::directory_iterator(folder.path()))
     EXPECT_EQ(input_at(file.path().string()), "") << file.path();
   const Imported back = import_file(path);
@@ -66,8 +66,8 @@ Exported exported(const std::string& job, const char* name) {
   return result;
 }
 
-// That Mitsuba 3 takes the luminance: its `bitmap` of (0.500588, 0.429608, 0.468627) says 0.447519 (3.9.1, eval_1). Version 0.6
-// takes the average (its microfacets and blendbsdf).
+// Mitsuba 3 takes the luminance: its `bitmap` of (0.500588, 0.429608, 0.468627) evaluates to 0.447519 (3.9.1, eval_1). Version
+// 0.6 takes the average (its microfacets and blendbsdf).
 TEST(ImagesOfNumbers, AreOfMitsubasVersion) {
   const TemporaryFolder folder;
   picture(folder, "a.exr", NumberType::single);
@@ -81,7 +81,7 @@ TEST(ImagesOfNumbers, AreOfMitsubasVersion) {
       "0\"/></transform>");
   for (const auto& [version, expected] : {std::pair("3.0.0", luminance), std::pair("0.6.0", mean)})
     EXPECT_NEAR(seen(import_text(folder, scene(view + integrator() + shape, version)), 4096).y, expected, 0.01) << version;
-  // Of heights both take it.
+  // For heights both versions take the luminance.
   for (const char* version : {"3.0.0", "0.6.0"}) {
     const Imported bumps = import_text(
         folder,
@@ -117,7 +117,7 @@ TEST(ImagesOfNumbers, AreExported) {
   }
 }
 
-// A product is written anew once, and is not read before that.
+// A product is written once, as a new image, which is not read before it is written.
 TEST(ImagesOfNumbers, ProductsAreExportedToMitsuba) {
   const TemporaryFolder folder;
   const std::string file = picture(folder, "a.exr", NumberType::single, {0.4f, 0.4f, 0.4f}), path = folder / "out.xml";
@@ -153,12 +153,12 @@ TEST(ImagesOfColors, AreExportedToMitsubaAsTheyAreDecoded) {
     EXPECT_NEAR(after.mean.x / before.x, 1, 0.01);
     EXPECT_NEAR(after.mean.y / before.y, 1, 0.01);
     EXPECT_NEAR(after.mean.z / before.z, 1, 0.015);
-    // As colours its spectral variants refuse raw numbers.
+    // Mitsuba's spectral variants refuse raw numbers as colours.
     EXPECT_EQ(after.text.find("\"raw\""), std::string::npos);
   }
 }
 
-// A tilt of 30 degrees towards +x, seen from above in light from above: a cosine of sqrt(3) / 2.
+// A normal tilted by 30 degrees towards +x, seen from above in light from above: a cosine of sqrt(3) / 2.
 TEST(ImagesOfNormals, AreExportedToMitsuba) {
   const TemporaryFolder folder;
   const std::vector<float> tilted = {0.75f, 0.5f, 0.5f + 0.5f * std::sqrt(0.75f)};

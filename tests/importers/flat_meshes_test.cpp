@@ -1,4 +1,4 @@
-// Meshes without area among others, in files of all formats: they are left out and told, and the rest is there.
+// Meshes without area, among other objects, in files of all formats: they are left out with a warning, and the rest is read.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ void expect_left_out(const std::string& path, const std::string& of) {
   ASSERT_TRUE(p.job) << path << ": " << p.told;
   EXPECT_NE(p.told.find(of + "': none of its 1 triangles can be used"), std::string::npos) << p.told;
   EXPECT_NE(p.told.find("it is left out"), std::string::npos) << p.told;
-  EXPECT_NEAR(double(p.job->scene->radius()), std::sqrt(3), 0.1) << path;  // of a ball, or of what is as large
+  EXPECT_NEAR(double(p.job->scene->radius()), std::sqrt(3), 0.1) << path;  // of the ball, or of an object as large
 }
 
 TEST(FlatMeshes, OfPbrt) {
@@ -46,12 +46,12 @@ TEST(FlatMeshes, OfPbrt) {
   folder.write("flat.ply", flat_ply);
   const std::string head = "Camera \"perspective\" Film \"image\" WorldBegin LightSource \"infinite\"\nShape \"sphere\"\n";
   expect_left_out(folder.write("a.pbrt", head + "Shape \"plymesh\" \"string filename\" \"flat.ply\"\n"), "flat.ply");
-  // As a light it is none, and others are.
+  // A flat mesh is no luminaire, but the scene's other lights are.
   const Prepared lamp = prepared(
       folder.write("b.pbrt", head + "AreaLightSource \"diffuse\" Shape \"plymesh\" \"string filename\" \"flat.ply\"\n"));
   ASSERT_TRUE(lamp.job) << lamp.told;
   EXPECT_EQ(lamp.job->scene->luminaires().size(), 1u);
-  // So flat that floats lose its height.
+  // So flat that its height vanishes in floats.
   const Prepared thin = prepared(folder.write(
       "c.pbrt", head + "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 .5 1e-9 0]\n"));
   ASSERT_TRUE(thin.job) << thin.told;
@@ -112,7 +112,7 @@ TEST(FlatMeshes, OfDescriptions) {
     return folder.write("a.etd", text.replace(text.find("MESH"), 4, mesh));
   };
   expect_left_out(with("TriangleMesh { file: \"flat.ply\", emission: DiffuseEmission {} }"), "flat.ply");
-  // Of its own numbers the author is told.
+  // If the numbers stand in the description itself, they are an error.
   EXPECT_FALSE(prepared(with("TriangleMesh { positions: [[0, 0, 0], [1, 0, 0], [2, 0, 0]] m, triangles: [0, 1, 2] }")).job);
 }
 

@@ -1,5 +1,5 @@
-// Models that are read by other libraries in a process of their own (Assimp, USD): small ones written here, and those of the
-// validation data, whose numbers of triangles another program told or the file itself.
+// Models that other libraries (Assimp, USD) read in a process of their own: small models written here, and those of the
+// validation data, whose numbers of triangles come from another program or from the file itself.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 struct Model {
   Ref<Scene> scene;
   std::vector<std::string> notes;
-  std::string error;  ///< none: it was read
+  std::string error;  ///< empty if it was read
 };
 
 Model model(const std::string& path) {
@@ -49,7 +49,7 @@ Model model(const std::string& path) {
   return result;
 }
 
-/// Of all meshes, each once however often it is placed.
+/// The triangles of all meshes; a mesh that is placed several times counts once.
 size_t triangles(const Scene& scene, std::set<std::string>& counted) {
   size_t count = 0;
   for (const Ref<SceneObject>& object : scene.objects) {
@@ -123,7 +123,7 @@ std::string bytes(std::initializer_list<T> values) {
   for (const T value : values) all.append(reinterpret_cast<const char*>(&value), sizeof value);
   return all;
 }
-/// A piece of a 3D Studio file: its kind, its length, what it holds.
+/// A chunk of a 3D Studio file: kind, length, content.
 std::string chunk(std::uint16_t kind, const std::string& content) {
   return bytes<std::uint16_t>({kind}) + bytes<std::uint32_t>({std::uint32_t(6 + content.size())}) + content;
 }
@@ -152,7 +152,7 @@ fs::path data() { return fs::path(ETENDUE_SOURCE_DIR) / "../shared/validation/im
 void expect_pyramid(const Model& m) {
   ASSERT_EQ(m.error, "");
   EXPECT_EQ(triangles(*m.scene), 4u);
-  // How a format's axes are turned differs: its box has the sides 2, 2 and 2 in any case.
+  // The orientation of the axes depends on the format: the pyramid's bounding box has the sides 2, 2 and 2 in any case.
   const Vector3 size = bounds(*m.scene).diagonal();
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(size[k], 2, 1e-4) << k;
 }
@@ -185,7 +185,7 @@ TEST(ForeignModels, AseInUtf16) {
   expect_pyramid(model(folder.write("p.ase", wide)));
 }
 
-// Of a Lambertian surface the library makes up highlights.
+// The library adds highlights to a Lambertian surface; they are removed.
 TEST(ForeignModels, LambertianSurfacesDoNotShine) {
   const TemporaryFolder folder;
   const Model m = model(folder.write("p.dae", collada));
@@ -194,7 +194,7 @@ TEST(ForeignModels, LambertianSurfacesDoNotShine) {
   EXPECT_NE(written.find("specular_weight: 0\n"), std::string::npos) << written;
 }
 
-/// A box of FBX, as text, with more in it and another unit.
+/// A box as FBX text, with more objects in it and another unit of length.
 std::string box_of_fbx(double unit, const std::string& objects, const std::string& connections) {
   std::string text = read_regular_file((data() / "fbx/embedded_ascii/box.FBX").string());
   const std::string stated = "\"UnitScaleFactor\", \"double\", \"Number\", \"\",100";
@@ -203,7 +203,7 @@ std::string box_of_fbx(double unit, const std::string& objects, const std::strin
   return text.insert(text.find("Connections:  {") + 15, connections);
 }
 
-// Lights have no unit there: the middle is lit as the colour says, however long a unit is.
+// Lights have no unit of length in FBX: the middle is lit as the colour says, however long a unit is.
 TEST(ForeignModels, LightsOfFbxDoNotDependOnTheUnit) {
   if (!fs::exists(data() / "fbx/embedded_ascii/box.FBX")) GTEST_SKIP() << "no validation data";
   const std::string light =
@@ -227,7 +227,7 @@ TEST(ForeignModels, LightsOfFbxDoNotDependOnTheUnit) {
   EXPECT_NEAR(intensity(1) / metres, 1e-4, 1e-7);
 }
 
-// An image of metal alone, which glTF has no place for, is kept, and makes nothing metal where it cannot be read.
+// An image of metalness alone, for which glTF has no place, is kept; where it cannot be read, nothing becomes metal.
 TEST(ForeignModels, ImagesOfMetalOfFbx) {
   if (!fs::exists(data() / "fbx/embedded_ascii/box.FBX")) GTEST_SKIP() << "no validation data";
   const std::string line = "\n\tC: \"OP\",2669981291872,2669981279872, \"ReflectionFactor\"\n";
@@ -293,8 +293,8 @@ TEST(ForeignModels, ImportedInADescriptionAsOnTheirOwn) {
       "2, 3, 4, 3, 0, 4], shader: Lambertian {} }";
   const double model_mean = seen("Import { file: \"p.x\" }").mean.y;
   EXPECT_GT(model_mean, 0.01);
-  // These files count z away from who looks (x to the right, y upwards): the top is behind and the inside of the pyramid is
-  // seen.
+  // These files have z pointing away from the viewer (x to the right, y upwards): the top is behind, and the inside of the
+  // pyramid is seen.
   const double turned = seen("Instance { scene: EmbreeScene { objects: [" + list + "] }, transform: scale(1, 1, -1) }").mean.y;
   EXPECT_NEAR(model_mean, turned, 0.01);
   EXPECT_GT(seen(list).mean.y, turned + 0.02) << "nothing is hidden from the outside of a pyramid";
@@ -304,8 +304,8 @@ TEST(ForeignModels, ImportedInADescriptionAsOnTheirOwn) {
 
 TEST(ForeignModels, HaveTheTrianglesThatTheirFilesHold) {
   if (!fs::exists(data() / "expected.csv")) GTEST_SKIP() << "no validation data";
-  // What the table's program told after it had joined meshes of the same shape and left out faces that have a corner twice: the
-  // files hold more.
+  // The program that made the table joined meshes of the same shape and left out faces with a corner twice before it counted:
+  // the files hold more.
   const std::map<std::string, size_t> held = {
       {"3ds/test1.3ds", 108},                           // nine boxes (nine objects of 12 faces), of which five shapes differ
       {"ase/MotionCaptureROM.ase", 2016},               // the sum of its *MESH_NUMFACES; two feet and two toes are alike
@@ -314,7 +314,7 @@ TEST(ForeignModels, HaveTheTrianglesThatTheirFilesHold) {
       {"fbx/cubes_with_outofrange_float.fbx", 420},
       {"fbx/spider.fbx", 1368}};
   std::ifstream table(data() / "expected.csv");
-  const std::set<std::string> formats = {"3ds", "ase", "dae", "fbx", "lwo", "lws"};  // others have readers of our own
+  const std::set<std::string> formats = {"3ds", "ase", "dae", "fbx", "lwo", "lws"};  // the others have importers of our own
   int compared = 0;
   for (std::string line; std::getline(table, line);) {
     std::istringstream fields(line);
@@ -325,7 +325,7 @@ TEST(ForeignModels, HaveTheTrianglesThatTheirFilesHold) {
     const auto own = held.find(file);
     const Model m = model((data() / file).string());
     if (line.find("5.2.5") != std::string::npos && (!m.error.empty() || triangles(*m.scene) == 0))
-      continue;  // as that version here
+      continue;  // the library here fails as that version did
     ASSERT_EQ(m.error, "") << file;
     EXPECT_EQ(triangles(*m.scene), own != held.end() ? own->second : std::stoul(count)) << file;
     ++compared;
@@ -336,7 +336,7 @@ TEST(ForeignModels, HaveTheTrianglesThatTheirFilesHold) {
 TEST(ForeignModels, BrokenOnesAreRefusedByName) {
   if (!fs::exists(data() / "broken")) GTEST_SKIP() << "no validation data";
   for (const auto& entry : fs::directory_iterator(data() / "broken")) {
-    if (entry.path().extension() == ".bin") continue;  // named by a .gltf
+    if (entry.path().extension() == ".bin") continue;  // referred to by a .gltf
     const TemporaryFolder folder;
     Process check(ETENDUE_BINARY_DIR "/etendue", {"check", entry.path().string()}, folder);
     EXPECT_EQ(check.wait(), 2) << entry.path();

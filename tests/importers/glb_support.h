@@ -1,5 +1,5 @@
 #pragma once
-// Small .glb files of single views, and what is told when they are read.
+// Small .glb files, each array in a buffer view of its own, and the messages that reading them gives.
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@ namespace etendue::glb_test {
 
 using Json = nlohmann::json;
 
-/// A .glb, of JSON and of the bytes of its views.
+/// A .glb file, from JSON and the bytes of its buffer views.
 struct File {
   Json json{{"asset", {{"version", "2.0"}}}, {"nodes", {{{"mesh", 0}}}}, {"scenes", {{{"nodes", {0}}}}}, {"scene", 0}};
   std::string binary;
 
-  /// Bytes at a place that is a multiple of four.
+  /// Appends bytes at an offset that is a multiple of four, and returns the offset.
   size_t put(const std::string& bytes) {
     binary.resize((binary.size() + 3) / 4 * 4);
     binary += bytes;

@@ -1,4 +1,4 @@
-// Compressed views of glTF files, in the plainest way that meshopt's codec allows, and numbers of few bits.
+// Compressed buffer views of glTF files, in the simplest encoding that meshopt's codec allows, and quantized numbers.
 
 #include <tuple>
 
@@ -13,7 +13,7 @@ using namespace glb_test;
 
 // ---- EXT_meshopt_compression, KHR_meshopt_compression ------------------------------------------------------------------
 
-/// Version 0 with all differences as whole bytes; at most 256 elements.
+/// Version 0 of the codec with all differences as whole bytes; at most 256 elements.
 std::string compressed_vertices(const std::string& bytes, size_t stride) {
   std::string all = "\xa0";
   const size_t count = bytes.size() / stride, groups = (count + 15) / 16;
@@ -28,7 +28,7 @@ std::string compressed_vertices(const std::string& bytes, size_t stride) {
   return all + std::string(stride < 32 ? 32 - stride : 0, '\0') + bytes.substr(0, stride);
 }
 
-/// Each by its difference from the one before.
+/// Each index is encoded by its difference from the one before.
 std::string compressed_indices(const std::vector<int>& indices) {
   std::string all = "\xd1";
   int last = 0;
@@ -40,7 +40,8 @@ std::string compressed_indices(const std::vector<int>& indices) {
   return all + std::string(4, '\0');
 }
 
-/// A square of two triangles whose views are compressed; buffer 1 stands for what they would be.
+/// A square of two triangles whose buffer views are compressed; buffer 1 is the fallback buffer, which would hold them
+/// uncompressed.
 File meshopt_square(const std::string& extension) {
   File file;
   file.json["extensionsRequired"] = file.json["extensionsUsed"] = {extension, "KHR_mesh_quantization"};
@@ -62,7 +63,7 @@ File meshopt_square(const std::string& extension) {
         "accessors",
         {{"bufferView", view}, {"componentType", component}, {"type", type}, {"count", count}, {"normalized", normalized}});
   };
-  // Places as fractions of 32767, three numbers and a gap; normals on the octahedron, of 8 bits.
+  // Positions as fractions of 32767, three numbers and padding; normals in octahedral encoding, of 8 bits.
   const std::vector<std::int16_t> places{0, 0, 0, 0, 32767, 0, 0, 0, 32767, 32767, 0, 0, 0, 32767, 0, 0};
   const std::vector<std::int8_t> normals{0, 0, 127, 0, 0, 0, 127, 0, 127, 0, 127, 0, 0, 0, 127, 0};
   Json& primitive = file.json["meshes"][0]["primitives"][0];
@@ -97,10 +98,10 @@ TEST(GltfCompression, WhatStandsBesideAMeshoptViewIsReadWhereItIsThere) {
   file.json["buffers"][1]["extensions"]["EXT_meshopt_compression"]["fallback"] = true;
   file.json["buffers"][1]["uri"] = "beside.bin";
   const std::string path = folder.write("square.glb", file.text());
-  EXPECT_EQ(read_mesh(path, "meshes[0].primitives[0]").positions[2], Point3(1, 1, 0));  // it is not there
+  EXPECT_EQ(read_mesh(path, "meshes[0].primitives[0]").positions[2], Point3(1, 1, 0));  // the fallback file does not exist
   file.json["buffers"][1].erase("extensions");
   EXPECT_NE(error_of(folder.write("needed.glb", file.text())).find("beside.bin"), std::string::npos);
-  // Without the mark it is one like any other: all zeros here, so that both triangles are of vertex 0.
+  // Without the `fallback` mark the buffer is read like any other: it holds zeros, so that both triangles use vertex 0 only.
   folder.write("beside.bin", std::string(1000, '\0'));
   EXPECT_EQ(read_mesh(folder.write("beside.glb", file.text()), "meshes[0].primitives[0]").positions.size(), 1u);
 }
@@ -127,9 +128,9 @@ TEST(GltfCompression, WrongMeshoptViewsAreErrorsThere) {
     EXPECT_NE(error.find(words), std::string::npos) << error;
     EXPECT_TRUE(error.starts_with("bufferViews[1]: EXT_meshopt_compression: ")) << error;
   }
-  // Compressed bytes that several views name could become any number of bytes.
+  // Compressed bytes that several views share could expand to any number of bytes.
   File file = meshopt_square(name);
-  std::string zeros = "\xa1";  // version 1 keeps 256 elements of 32 bytes that do not differ in 8
+  std::string zeros = "\xa1";  // version 1 stores 256 equal elements of 32 bytes in 8 bytes
   for (int block = 0; block < 40; ++block) zeros += std::string(8, '\xaa');
   zeros += std::string(40, '\0');
   const Json by{{"buffer", 0},      {"byteOffset", file.put(zeros)}, {"byteLength", zeros.size()}, {"count", 256 * 40},

@@ -19,7 +19,8 @@ TEST(GltfDetails, NormalsOfNegativeScaleTiltTheOtherWay) {
   EXPECT_EQ(number(shader, "strength"), -1.5);
 }
 
-// A tangent is where u grows; bitangent = cross(normal, tangent.xyz) * tangent.w is against the file's v, which runs downwards.
+// A tangent points where u grows; bitangent = cross(normal, tangent.xyz) * tangent.w points against the file's v, which runs
+// downwards.
 TEST(GltfDetails, TangentsThatCoordinatesDoNotGiveAreTold) {
   const TemporaryFolder folder;
   const auto told = [&](float x, float y, float w, bool mapped) {
@@ -87,7 +88,7 @@ TEST(GltfDetails, GlossinessIsTheFactorTimesTheTexture) {
   EXPECT_EQ(to.as<Numbers>()->values, (std::vector<double>{1, 0.75}));
 }
 
-// KHR_lights_punctual: what exporters write for a spot of a hard edge.
+// KHR_lights_punctual: the values that exporters write for a spot with a hard edge.
 TEST(GltfDetails, SpotsMayHaveHardEdges) {
   const TemporaryFolder folder;
   Square square;
@@ -98,7 +99,7 @@ TEST(GltfDetails, SpotsMayHaveHardEdges) {
   EXPECT_EQ(square.import(folder).told(), "");
 }
 
-// EXT_mesh_gpu_instancing shows one mesh many times; its weights are a node's.
+// EXT_mesh_gpu_instancing shows one mesh many times; morph weights belong to a node.
 TEST(GltfDetails, InstancesWithoutTheirMorphAreTold) {
   const TemporaryFolder folder;
   Square square;
@@ -111,7 +112,7 @@ TEST(GltfDetails, InstancesWithoutTheirMorphAreTold) {
   EXPECT_NE(square.import(folder).told().find("without what its morph targets add"), std::string::npos);
 }
 
-// KHR_node_visibility: of what is below an invisible node nothing is shown, but cameras stay.
+// KHR_node_visibility: nothing below an invisible node is shown, but its cameras are kept.
 TEST(GltfDetails, InvisibleNodesAreNotShown) {
   const TemporaryFolder folder;
   Square square;

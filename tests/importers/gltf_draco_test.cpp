@@ -1,4 +1,4 @@
-// Meshes of glTF files that Draco's own encoder compressed.
+// Meshes of glTF files compressed by Draco's own encoder.
 
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace glb_test;
 
-/// A curved sheet of 2 n^2 triangles with normals, surface coordinates and colours of bytes, and its bytes as Draco keeps them.
+/// A curved sheet of 2 n^2 triangles with normals, surface coordinates and byte colours, and its bytes as compressed by Draco.
 struct Sheet {
   explicit Sheet(int n) {
     const auto place = [&](int x, int y) {
@@ -64,7 +64,8 @@ struct Sheet {
   std::vector<std::array<std::array<float, 3>, 3>> triangles;
 };
 
-/// Its numbers of vertices and corners are left to whoever reads it, as some programs do.
+/// The accessors do not state the numbers of vertices and corners, as in files of some programs: the reader has to take them
+/// from Draco's data.
 void add_draco(File& file, size_t view) {
   const auto accessor = [&](int component, const char* type, bool normalized) {
     return file.add("accessors", {{"componentType", component}, {"type", type}, {"count", 3}, {"normalized", normalized}});
@@ -93,7 +94,7 @@ TEST(GltfDraco, MeshesByDraco) {
     const MeshData mesh = read_mesh(path, "meshes[0].primitives[0]");
     ASSERT_EQ(mesh.triangles.size(), sheet.triangles.size());
     ASSERT_EQ(mesh.positions.size(), 36u);
-    // Each triangle is one of the original's, whatever their order.
+    // Each triangle is one of the original's, in any order.
     constexpr float tolerance = 1.0f / (1 << 14);
     std::vector<bool> found(sheet.triangles.size());
     for (const auto& t : mesh.triangles)
@@ -155,7 +156,7 @@ TEST(GltfDraco, WrongMeshesOfDracoAreErrorsThere) {
   EXPECT_NE(error(right, "/attributes/POSITION", 3).find("there is no attribute 3"), std::string::npos);
   EXPECT_NE(error(right, "/attributes/POSITION", 1e12).find("there is no attribute"), std::string::npos);
   EXPECT_NE(error(right, "/bufferView", 99).find("bufferViews[99]"), std::string::npos);
-  // Version 2.2, a mesh kept in sequence, of 4 billion triangles and vertices in four bytes each.
+  // Version 2.2, a sequentially encoded mesh of 4 billion triangles and vertices, in a few bytes.
   const std::string claims =
       std::string("DRACO\2\2\1\0\0\0", 11) + "\xff\xff\xff\xff\x0f\xff\xff\xff\xff\x0f" + std::string(40, '\0');
   EXPECT_NE(error(claims, nullptr, {}), "");

@@ -1,4 +1,4 @@
-// Images of numbers and of normals, colours of vertices and lamps of other shapes on their way into glTF and back.
+// Images of numbers and of normals, vertex colours, and lamps of other shapes, exported to glTF and read back.
 
 #include "components/objects/meshes/mesh_data.h"
 #include "components/scenes/import.h"
@@ -17,7 +17,7 @@ struct Exported {
   std::string told;
 };
 
-/// A job of some objects, as glTF; it is in the folder as out.gltf then.
+/// A job of some objects exported to glTF; the file is out.gltf in the folder.
 Exported exported(const TemporaryFolder& folder, const std::string& objects) {
   Exported result;
   const Ref<Job> job = load_job_text(
@@ -31,7 +31,7 @@ Exported exported(const TemporaryFolder& folder, const std::string& objects) {
   result.json = Json::parse(text);
   return result;
 }
-/// What the file that was exported becomes.
+/// The description of the exported file after it is imported again.
 std::string back(const TemporaryFolder& folder) {
   const mitsuba_test::Imported read = mitsuba_test::import_file(folder / "out.gltf");
   return read.job ? write_description(*read.job) : read.told();
@@ -95,7 +95,7 @@ TEST(GltfExportMaps, ColoursOfVertices) {
   EXPECT_EQ(read.attributes[0].values, (std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 0.5f}));
 }
 
-// What is cut out of a card that shines goes out and comes back.
+// The holes of an emissive card (alpha mask) survive import and export.
 TEST(GltfExportMaps, CardsWithHoles) {
   const TemporaryFolder folder;
   write_rgba(folder, "card.png");
@@ -122,7 +122,7 @@ TEST(GltfExportMaps, CardsWithHoles) {
   EXPECT_NEAR(m["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"].get<double>(), 1, 1e-6);
 }
 
-// A lamp of a shape that glTF has no word for keeps its power.
+// A lamp of a shape that glTF cannot express keeps its power.
 TEST(GltfExportMaps, LampsOfOtherShapes) {
   const TemporaryFolder folder;
   folder.write("lamp.ies",
@@ -134,7 +134,7 @@ TEST(GltfExportMaps, LampsOfOtherShapes) {
   const Json& lights = made.json["extensions"]["KHR_lights_punctual"]["lights"];
   ASSERT_EQ(lights.size(), 2u) << made.told;
   EXPECT_EQ(lights[0]["type"], "point");
-  // In watts: 683.002 lumens for each at the wavelength that is seen best.
+  // From watts: 683.002 lumens for each, at the wavelength where the eye is most sensitive.
   const double even = lights[0]["intensity"].get<double>();
   EXPECT_GT(even, 0);
   EXPECT_NE(made.told.find("IesEmission shines alike in all directions"), std::string::npos) << made.told;

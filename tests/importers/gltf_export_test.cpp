@@ -1,4 +1,4 @@
-// What is exported to glTF is the same scene: read back, it makes the same picture, as far as glTF has what is in it.
+// A scene exported to glTF and read back makes the same picture, as far as glTF can express it.
 
 #include <filesystem>
 
@@ -79,14 +79,14 @@ TEST(GltfExport, MakesTheSamePictureWhenReadBack) {
     }
 }
 
-// An image whose four quarters differ, turned, scaled and shifted, on a square that fills the picture: each pixel is the same.
+// An image whose four quarters differ, rotated, scaled and shifted, on a square that fills the picture: each pixel is the same.
 TEST(GltfExport, LaysImagesWhereTheyWere) {
   const TemporaryFolder folder;
   const test::ImageFile image("quarters.png", {2, 2, 3, NumberType::uint8}, {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0});
   int turn = 0;
   for (const char* placed :
        {"", "scale: [2, 1.5], shift: [0.2, 0.4]", "angle: 30 deg", "scale: [1.3, 0.7], angle: 70 deg, shift: [0.1, 0.3]"}) {
-    // By a name that is no URI, and in one file.
+    // By turns to a file whose name is no URI, and to a single file.
     const bool one_file = turn++ % 2 == 1;
     const std::string described =
         "Job { renderer: DirectRenderer { samples: 256 }\n camera: OrthographicCamera { from: [0, 0, 3] m, to: [0, 0, 0] m, "
@@ -107,7 +107,8 @@ TEST(GltfExport, LaysImagesWhereTheyWere) {
     exported.back.job->image->width = exported.back.job->image->height = 8;
     exported.back.job->image->filter = before->image->filter;
     const Image a = test::rendered(before)->picture(), b = test::rendered(exported.back.job)->picture();
-    // At most 1 / pi is between black and white, so that 256 samples scatter by 0.01; the difference by 0.014.
+    // Values lie between 0 and 1 / pi, so that the mean of 256 samples has a standard deviation of at most 0.01, and the
+    // difference of 0.014.
     for (int y = 0; y < 8; ++y)
       for (int x = 0; x < 8; ++x) EXPECT_NEAR(b.at(x, y, 1), a.at(x, y, 1), 0.06) << placed << " at " << x << ", " << y;
   }
@@ -127,7 +128,8 @@ TEST(GltfExport, TellsWhatItCannotExpress) {
     EXPECT_NE(told.find(words), std::string::npos) << words << " in " << told;
 }
 
-// What is written beside it has no name of a file that is read, and is not there before all is known to be well.
+// Files written beside the export never take the name of a file that is read, and they are written only after the whole export
+// has succeeded.
 TEST(GltfExport, LeavesTheFilesThatAreRead) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "elsewhere");
@@ -161,7 +163,7 @@ TEST(GltfExport, HoldsWhatAnImportHolds) {
   read_imports(*described);
   Exporting exporting(folder / "out.gltf");
   EXPECT_NE(exporter_of("out.gltf")->write(*described, exporting).find("\"meshes\""), std::string::npos);
-  // A file that is not there is told where it is named.
+  // A missing file is reported at the place where it is named.
   const Ref<Job> without = load_job_text(job("Import { file: \"none.obj\" }"), "test.etd", folder.path());
   try {
     read_imports(*without);
@@ -172,7 +174,7 @@ TEST(GltfExport, HoldsWhatAnImportHolds) {
   }
 }
 
-// A weak lamp is one all the same: no studio's lights are added.
+// A weak lamp is still a lamp: no studio lights are added.
 TEST(GltfExport, KeepsWeakLamps) {
   const TemporaryFolder folder;
   export_job(folder, job("Box { shader: wood, emission: DiffuseEmission { radiance: rgb(0.2, 0.1, 0.05) } }"), "out.glb");

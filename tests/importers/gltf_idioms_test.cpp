@@ -1,4 +1,4 @@
-// What real files of glTF do, and what is made of it: grey images, cards with holes that shine, eyes that glow, flat nodes.
+// Idioms of real glTF files: grey images, emissive cards with holes, glowing eyes, flat nodes.
 
 #include "etendue/object_map.h"
 #include "etendue/shader.h"
@@ -17,7 +17,7 @@ void write_clear(const TemporaryFolder& folder, const char* name, float alpha) {
   test::write_image(folder / name, {1, 1, 4, NumberType::uint8}, {1, 1, 1, alpha});
 }
 
-/// The mean luminance of what is seen straight on of the middle of the file's square.
+/// The mean luminance of the middle of the file's square, seen along its normal.
 double seen(const std::string& path, const std::string& more = "") {
   return double(test::measure(load_job_text(test::job_text("PathTracer { samples: 64, max_depth: 2 }",
                                                            "OrthographicCamera { from: [1, 1, 3], to: [1, 1, 0], width: 1 }", 4,
@@ -44,7 +44,7 @@ TEST(GltfIdioms, GreyImagesHaveAllChannels) {
   }
 }
 
-// Alpha is coverage: of what shines, too.
+// Alpha is coverage, also for emission.
 TEST(GltfIdioms, WhatIsCutOutDoesNotShine) {
   for (const auto& [mode, alpha, wanted] :
        {std::tuple{"MASK", 0.0f, 0.0}, {"MASK", 1.0f, 1.0}, {"BLEND", 0.6f, 0.6}, {"OPAQUE", 0.0f, 1.0}})
@@ -84,7 +84,7 @@ TEST(GltfIdioms, WhatMerelyGlowsDoesNotStandForLamps) {
     Square square;
     square.material()["emissiveFactor"] = {1, 1, 1};
     square.material()["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strength}};
-    // The square once as it is, of the second material, and once small: an eye of a robot.
+    // The square at full size with the second material, and a small glowing one, like an eye of a robot.
     square.json()["materials"].push_back({{"pbrMetallicRoughness", {{"metallicFactor", 0}}}});
     Json body = square.json()["meshes"][0];
     body["primitives"][0]["material"] = 1;
@@ -127,7 +127,7 @@ TEST(GltfIdioms, RoughSurfacesAreNoMirrors) {
   EXPECT_TRUE(lobes(0, glass) & specular_transmission);
 }
 
-// glTF 2.0, 3.5.3: one axis of zero makes it flat, all three make nothing of it.
+// glTF 2.0, 3.5.3: a node with one scale of zero is flat, with three of them it is not shown.
 TEST(GltfIdioms, WhatIsFlatIsThere) {
   const TemporaryFolder folder;
   Square square;

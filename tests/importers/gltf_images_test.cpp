@@ -1,4 +1,4 @@
-// Which image a texture of glTF has, by the extensions for other formats.
+// The image that a glTF texture refers to, with the extensions for other image formats.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace {
 
 using namespace gltf_test;
 
-/// A square with an image as its colour, which a texture's extension names too.
+/// A square with an image as its colour; an extension of the texture names the image too.
 Square textured(const char* extension) {
   Square square;
   square.material()["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;

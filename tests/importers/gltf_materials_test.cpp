@@ -7,7 +7,7 @@ namespace {
 
 using namespace gltf_test;
 
-/// A picture of one pixel, white with an alpha of 128/255.
+/// A picture of one white pixel with an alpha of 128/255.
 constexpr const char* half_clear_white =
     "data:image/png;base64,"
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAA"
@@ -43,7 +43,7 @@ TEST(GltfMaterials, SheenRoughnessIsSquaredInImagesToo) {
   EXPECT_EQ(constant(part(shader, "fuzz_roughness"), "exponent"), 2);
 }
 
-// Fibres are never sharper here than an alpha of 0.1.
+// Sheen fibres have an alpha of at least 0.1 here.
 TEST(GltfMaterials, SheenSharperThanThereIsIsTold) {
   const TemporaryFolder folder;
   Square square;
@@ -63,7 +63,7 @@ TEST(GltfMaterials, SpecularIsNotOfMetal) {
   EXPECT_EQ(constant(metal, "specular_weight"), 1);
   EXPECT_EQ(constant(metal, "specular_color"), 1);
 
-  // Where an image says what is metal: F90 = mix(specular, 1, metallic).
+  // With an image of metalness: F90 = mix(specular, 1, metallic).
   extended(square, "KHR_materials_specular") = {{"specularFactor", 0.25}};
   square.material()["pbrMetallicRoughness"]["metallicRoughnessTexture"] = {{"index", 0}};
   const Component& mixed = part(square.shader(folder, told), "specular_weight");
@@ -111,7 +111,7 @@ TEST(GltfMaterials, LeavesLetLightThrough) {
   EXPECT_NE(square.import(folder).told().find("lets no light through"), std::string::npos);
 }
 
-// The colours of vertices tint what goes through as they tint what is reflected: baseColor is their product.
+// Vertex colours tint the transmitted light like the reflected light: baseColor is their product.
 TEST(GltfMaterials, VerticesTintWhatGoesThrough) {
   const TemporaryFolder folder;
   Square square;
@@ -207,7 +207,7 @@ TEST(GltfMaterials, VariantsAreChosenByName) {
   EXPECT_NE(square.import(folder, {{"variant", "silky"}}).told().find("silk"), std::string::npos);
 }
 
-// KHR_materials_anisotropy: the direction of greater roughness, counter-clockwise from the tangent [rad].
+// KHR_materials_anisotropy: the rotation gives the direction of greater roughness, counter-clockwise from the tangent [rad].
 TEST(GltfMaterials, StretchedHighlightsTurn) {
   const TemporaryFolder folder;
   Square square;

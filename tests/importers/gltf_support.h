@@ -1,5 +1,5 @@
 #pragma once
-// A small file of glTF, and what is made of it.
+// A small glTF file and the result of its import.
 
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -63,12 +63,12 @@ class Square {
     }
     return result;
   }
-  /// What its shader is, and what was told.
+  /// The shader of the first object; `told` gets the messages of the import.
   const Component& shader(const TemporaryFolder& folder, std::string& told) const {
     told = import(folder).told();
     return part(object(), "shader");
   }
-  /// Of the last import.
+  /// Object i of the last import.
   const Component& object(size_t i = 0) const {
     if (!scene_) throw Error("it was refused");
     return *scene_->objects.at(i);
@@ -91,7 +91,7 @@ class Square {
   mutable Ref<Scene> scene_;
 };
 
-/// A map that is the same everywhere, as a number.
+/// The value of a constant map, as a number.
 inline double constant(const Component& of, const std::string& member) {
   const Value value = get(part(of, member), "value");
   const Color* color = value.as<Color>();
@@ -106,13 +106,13 @@ inline std::array<double, 3> rgb_of(const SpectralFunction& reflectance) {
              space.from_xyz[3 * i + 2] * double(xyz.z);
   return rgb;
 }
-/// A colour that is the same everywhere, as red, green and blue.
+/// The value of a constant map, as red, green and blue.
 inline std::array<double, 3> color(const Component& of, const std::string& member) {
   const Value value = get(part(of, member), "value");
   const Color* said = value.as<Color>();
   return said ? rgb_of(**said) : std::array<double, 3>{constant(of, member), constant(of, member), constant(of, member)};
 }
-/// The class of what a member is.
+/// The class name of a member's value.
 inline std::string class_of(const Component& of, const std::string& member) { return part(of, member).class_info().name; }
 
 }  // namespace etendue::gltf_test

@@ -1,4 +1,4 @@
-// glTF files made here, byte by byte: what is read of them is known beforehand.
+// glTF files made here byte by byte, whose contents are known.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -134,7 +134,7 @@ TEST_F(GltfTest, StripsAndFansKeepTheirOrientation) {
     double area = 0;
     for (const auto& t : mesh.triangles)
       area += double(cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]).z) / 2;
-    EXPECT_NEAR(area, 2, 1e-6) << mode;  // with the sign of the side they face
+    EXPECT_NEAR(area, 2, 1e-6) << mode;  // signed: both triangles face +z
   }
 }
 
@@ -156,7 +156,7 @@ TEST_F(GltfTest, WhatLiesOutsideIsAnErrorThere) {
   EXPECT_EQ(broken("/asset/generator", "a test"), "");
 }
 
-// Compression that is not required stands beside what is not compressed.
+// Compressed data that is not required stands beside uncompressed data, which is read.
 TEST_F(GltfTest, WhatIsCompressedIsReadWhereItIsNot) {
   std::string binary;
   Json json = square(binary);
@@ -205,7 +205,7 @@ TEST_F(GltfTest, NodesMultiplyDownwardsAndMoveInTime) {
   const auto document = gltf::Document::open(write("moving.glb", glb(json, binary)));
   const auto place = [&](const gltf::Moment& moment) { return gltf::Pose(*document, moment).global(1)(DoublePoint3(1, 0, 0)); };
   EXPECT_EQ(place({}), DoublePoint3(2, 2, 0));  // (1 + 0, 0 + 1) * 2
-  const DoublePoint3 half = place({1, 0});      // turned by 45 degrees, moved by 5
+  const DoublePoint3 half = place({1, 0});      // rotated by 45 degrees, moved by 5
   EXPECT_NEAR(half.x, 2 * (5 + std::sqrt(0.5)), 1e-6);
   EXPECT_NEAR(half.y, 2 * std::sqrt(0.5), 1e-6);
 }
@@ -228,7 +228,7 @@ TEST_F(GltfTest, SkinsBend) {
   json["skins"] = {{{"joints", {1, 2}}}};
   json["scenes"] = {{{"nodes", {0, 1, 2}}}};
   const MeshData mesh = read_mesh(write("skin.glb", glb(json, binary)), "nodes[0].primitives[0]");
-  EXPECT_EQ(mesh.positions[0], Point3(0, 0, 0));  // the skinned node's own place says nothing
+  EXPECT_EQ(mesh.positions[0], Point3(0, 0, 0));  // the skinned node's own transform has no effect
   EXPECT_EQ(mesh.positions[1], Point3(2, 0, 2));
   EXPECT_EQ(mesh.positions[2], Point3(2, 1, 4));
 }

@@ -1,4 +1,4 @@
-// What all importers share: where the files are that a source names, which of them it may read, and what is told.
+// What all importers share: where the files that a source names are, which of them may be read, and the messages.
 
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ TEST_F(ImportingFiles, OutsideOfTheFolderAreRefusedUnlessAllowed) {
   EXPECT_NE(error_of([&] { importing().file(at("secret.png"), {}); }).find("--allow-path"), std::string::npos);
   EXPECT_EQ(fs::canonical(importing({at("common")}).file("../common/shared.ply", {})), fs::canonical(at("common/shared.ply")));
   EXPECT_NE(error_of([&] { importing({at("common")}).file("../secret.png", {}); }).find("--allow-path"), std::string::npos);
-  // A name that begins as an allowed folder's does is another folder's.
+  // A name that begins like an allowed folder's name can be that of another folder.
   fs::create_directories(at("common2"));
   folder.write("common2/x.ply", "");
   EXPECT_NE(error_of([&] { importing({at("common")}).file("../common2/x.ply", {}); }), "");
@@ -112,7 +112,7 @@ TEST(ImportingNotes, AreToldOnceInTheOrderTheyCame) {
   EXPECT_STREQ(notes[2].what(), "the file has no parameter 'sspp'");
 }
 
-/// Gives one box: what a file of a model is.
+/// An importer that returns one box, like a file of a single model.
 class BoxImporter final : public Importer {
  public:
   explicit BoxImporter(bool empty, DoubleVector3 up) : empty_(empty), up_(up) {}
@@ -138,7 +138,7 @@ TEST(ImportedModels, AreSeenWholeAndLit) {
     prepare_tree(job);
     job.camera->set_film(64, 64);
     EXPECT_GE(job.scene->luminaires().size(), 1u);
-    // All corners of the box lie within the picture: found by the rays through its border, which all miss it.
+    // All corners of the box lie within the picture: the rays through the picture's border all miss the box.
     Hit hit;
     for (int i = 0; i < 64; ++i) {
       const float t = float(i) + 0.5f;

@@ -1,10 +1,10 @@
-// include of other programs' files: what the file is by itself, its parts by name, its parameters, and what is wrong in it.
+// `include` of other programs' files: the file as a whole job, its parts by name, its parameters, and its errors.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "components/importers/permissions.h"
+#include "formats/permissions.h"
 #include "mitsuba_support.h"
 #include "support/language_test_support.h"
 
@@ -67,12 +67,12 @@ TEST_F(IncludedScenes, GiveTheirPartsByNameToAJobThatIsWritten) {
   EXPECT_EQ(job->image->width, 7);
   EXPECT_EQ(job->renderer->samples, 3u);
   EXPECT_EQ(&part(*job->scene->objects[3], "shader"), &part(*job->scene->objects[0], "shader"));
-  // The whole scene; and without a name of its own the names of the file alone.
+  // The whole scene by the include's name; and, for an include without a name, the file's own names.
   EXPECT_EQ(load("include \"room.xml\" as r\nJob { camera: r.eye, scene: r.scene }")->scene->objects.size(), 3u);
   const Ref<Job> plain =
       load("include \"room.xml\"\nJob { camera: eye, scene: BvhScene { objects: [Disc { shader: red_wall }] } }");
   EXPECT_EQ(part(*plain->scene->objects[0], "shader").class_info().name, "Lambertian");
-  // Under two names it is read twice.
+  // A file that is included under two names is read twice.
   const Ref<Job> twice = load(
       "include \"room.xml\" as a\ninclude \"room.xml\" as b\n"
       "Job { camera: a.eye, scene: BvhScene { objects: [a.objects[0], b.objects[0]] } }");
@@ -122,7 +122,7 @@ TEST_F(IncludedScenes, TellWhatIsWrongWhereItIs) {
   EXPECT_EQ(errors("include \"room.xml\" as r"), "main.etd: there is no Job: a render description needs one Job { … }\n");
 }
 
-// What is wrong with an include or elsewhere is told; that names of a file which was not read are missing follows from it.
+// Errors in an include or elsewhere are reported; names that are missing because a file was not read are not.
 TEST_F(IncludedScenes, OneErrorBringsNoOthers) {
   const std::string use = " as r\nJob { camera: r.camera, scene: r.scene, image: r.image }";
   const auto lines = [](const std::string& all) { return std::ranges::count(all, '\n'); };
@@ -148,7 +148,7 @@ TEST_F(IncludedScenes, PartsThatNothingUsesBringNoWarning) {
 }
 
 TEST_F(IncludedScenes, AreReadAsTheCommandLineSays) {
-  // A part that is not expressed exactly.
+  // A part that cannot be expressed exactly.
   folder.write("odd.xml",
                "<scene version=\"3.0.0\">\n<sensor type=\"perspective\"/>\n<shape type=\"sphere\"><float name=\"odd\" "
                "value=\"1\"/></shape><emitter type=\"constant\"/></scene>");
@@ -156,7 +156,7 @@ TEST_F(IncludedScenes, AreReadAsTheCommandLineSays) {
   strict.import.strict = true;
   EXPECT_EQ(errors("include \"odd.xml\""), "");
   EXPECT_NE(errors("include \"odd.xml\"", strict).find("odd.xml:3:"), std::string::npos);
-  // Files outside of the folder of the file, though within that of the description.
+  // A file outside the scene file's folder, though within the description's folder.
   std::filesystem::create_directories(folder / "inner");
   folder.write("ball.ply",
                "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
@@ -169,7 +169,7 @@ TEST_F(IncludedScenes, AreReadAsTheCommandLineSays) {
   allowed.import.allowed_folders = {folder.path()};
   EXPECT_EQ(errors("include \"inner/out.xml\"", allowed), "");
 
-  // Import reads when it is prepared, as the one who runs the program allowed.
+  // Import reads its file when it is prepared, with the permissions that the user of the program gave.
   const std::string import = "Import { file: \"" + folder / "inner/out.xml" + "\" }";
   EXPECT_THROW(prepare_tree(*parse_component(import)), Errors);
   set_import_permissions(allowed.import);

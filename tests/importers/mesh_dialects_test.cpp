@@ -1,4 +1,4 @@
-// Dialects of OBJ, MTL and STL: the same words written by different programs for different things.
+// Dialects of OBJ, MTL and STL: the same keywords with different meanings, depending on the program that wrote them.
 
 #include <algorithm>
 
@@ -64,10 +64,10 @@ TEST(MtlDialects, TransparencyIsReadAsItIsMeant) {
       {"", {"Tr 0.25\n"}, {0.75}, ""},
       {"", {"d 0.25\n"}, {0.25}, ""},
       {"", {"Tr 0\n", "Tr 1\n"}, {1, 0}, ""},             // something is opaque, and so something may be invisible
-      {"", {"Tr 1.000000\n"}, {1}, dialect},              // MeshLab without its head
+      {"", {"Tr 1.000000\n"}, {1}, dialect},              // MeshLab without its header line
       {"", {"Tr 1\n", "Tr 0.25\n"}, {1, 0.25}, dialect},  // by 1 - d nothing would be opaque
       {"# Converted by Meshlab Group\n", {"Tr 0.25\n"}, {0.25}, dialect},
-      {"", {"d 1\nTr 1\n", "Tr 0.25\n"}, {1, 0.25}, dialect},  // what d says tells what Tr means
+      {"", {"d 1\nTr 1\n", "Tr 0.25\n"}, {1, 0.25}, dialect},  // d determines the meaning of Tr
       {"", {"d 1\nTr 0\n", "Tr 1\n"}, {1, 0}, ""},
       {"", {"d 0.25\nTr 0.75\n"}, {0.25}, ""},
       {"", {"d 0.25\nTr 0.5\n"}, {0.25}, "contradict"},
@@ -85,11 +85,11 @@ TEST(MtlDialects, TransparencyIsReadAsItIsMeant) {
     else
       EXPECT_EQ(found.told, "") << row.materials[0];
   }
-  // Glass of no opacity is seen.
+  // Glass (illum 4) of opacity 0 is visible: no warning.
   EXPECT_EQ(opacities("", {"illum 4\nTr 1\n"}).told, "");
 }
 
-// Whatever format it came from.
+// The warning does not depend on the format.
 TEST(Transparent, ModelsAreTold) {
   const TemporaryFolder folder;
   const std::string glb = folder.write(
@@ -118,7 +118,7 @@ TEST(ObjDialects, IndicesOfListsThatAreNotThere) {
     EXPECT_EQ(mesh.triangles.size(), 1u);
     EXPECT_NE(said.find(words), std::string::npos) << said;
   }
-  // Where there are some, one that is missing is an error.
+  // If the file has texture coordinates, a missing one is an error.
   EXPECT_THROW(read_mesh(folder.write("e.obj", triangle + "vt 0 0\nf 1/1 2/2 3/1\n")), Error);
 }
 
@@ -168,7 +168,7 @@ TEST(StlDialects, WhatIsNoColourIsNotTakenForOne) {
 
 TEST(StlDialects, ColoursStay) {
   const TemporaryFolder folder;
-  // VisCAM: one colour everywhere; black among others; some triangles without.
+  // VisCAM: one colour everywhere; black among other colours; some triangles without a colour.
   const std::vector<float> blue = colors_of(read_mesh(Stl{"", std::vector<std::uint16_t>(20, 0x801f)}.write(folder)));
   ASSERT_EQ(blue.size(), 60u);
   EXPECT_NEAR(blue[0], 0, 1e-6);
@@ -179,7 +179,7 @@ TEST(StlDialects, ColoursStay) {
   EXPECT_NEAR(mixed[3], 1, 1e-6);
   EXPECT_NEAR(mixed[6], 0.7, 1e-6);
   EXPECT_EQ(colors_of(read_mesh(Stl{"VisCAM", {0x8000}}.write(folder))).size(), 3u) << "who writes so means black";
-  // Magics: the head's colour, which the highest bit, or nothing in any triangle, stands for; else red is lowest.
+  // Magics: the highest bit, or 0 in all triangles, stands for the header's colour; otherwise red is in the lowest bits.
   const std::string head = "COLOR=\xff\x80" + std::string(1, '\0') + "\xff";
   for (const std::uint16_t none : {std::uint16_t(0x8000), std::uint16_t(0xffff), std::uint16_t(0)}) {
     const std::vector<float> all = colors_of(read_mesh(Stl{head, {none, none, none}}.write(folder)));

@@ -1,5 +1,5 @@
-// What meshoptimizer's encoder (1.3.0, as its JavaScript module has it) made of known numbers, and what the filters'
-// definitions in KHR_meshopt_compression say.
+// The output of meshoptimizer's encoder (1.3.0, its JavaScript module) for known numbers, and the filters against their
+// definitions in KHR_meshopt_compression.
 
 #include "components/importers/gltf/compressed/meshopt.h"
 
@@ -45,7 +45,7 @@ void put(std::string& to, T value) {
   to.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Elements of 20 bytes that need every way to keep differences.
+/// Elements of 20 bytes that use every way of encoding differences.
 constexpr MeshoptLayout vertex_layout{MeshoptMode::attributes, MeshoptFilter::none, 40, 20};
 std::string vertices() {
   std::string all;
@@ -60,7 +60,7 @@ std::string vertices() {
   return all;
 }
 
-/// A grid of 3 by 3 squares, and triangles that share nothing with those before.
+/// A grid of 3 by 3 squares, and triangles that share nothing with the triangles before them.
 std::vector<std::uint32_t> corners() {
   std::vector<std::uint32_t> all;
   for (std::uint32_t y = 0; y < 3; ++y)
@@ -96,7 +96,7 @@ TEST(Meshopt, TrianglesAndOtherIndices) {
     std::vector<std::array<std::uint32_t, 3>> found(expected.size() / 3), wanted(found.size());
     std::memcpy(found.data(), wide.data(), wide.size());
     std::memcpy(wanted.data(), expected.data(), wide.size());
-    // A triangle may begin with another of its corners.
+    // The decoder may rotate a triangle's corners.
     for (size_t i = 0; i < found.size(); ++i)
       for (auto* t : {&found[i], &wanted[i]}) std::ranges::rotate(*t, std::ranges::min_element(*t));
     EXPECT_EQ(found, wanted);
@@ -108,7 +108,7 @@ TEST(Meshopt, TrianglesAndOtherIndices) {
   }
 }
 
-// What a stream lacks is missed, and so is a byte too many.
+// A stream with missing bytes is refused, and so is one with a byte too many.
 TEST(Meshopt, WhatIsTooShortOrTooLongIsRefused) {
   const MeshoptLayout of_indices{MeshoptMode::indices, MeshoptFilter::none, corners().size(), 4};
   MeshoptLayout of_triangles = of_indices;
@@ -122,12 +122,12 @@ TEST(Meshopt, WhatIsTooShortOrTooLongIsRefused) {
     EXPECT_NE(error_of(longer, layout), "");
     MeshoptLayout more = layout;
     more.count = 3'000'000'000;
-    EXPECT_NE(error_of(right, more).find("cannot hold"), std::string::npos);  // and takes no memory for it
+    EXPECT_NE(error_of(right, more).find("cannot hold"), std::string::npos);  // and no memory is allocated for it
   }
   std::string kind = bytes_of(vertices_1);
   kind.back() = 3;
   EXPECT_NE(error_of(kind, vertex_layout).find("differences are of kind 3"), std::string::npos);
-  // The first triangle has no edge before it.
+  // The first triangle has no earlier edge to refer to.
   const std::string edge = "\xe1" + std::string("\0", 1) + std::string(16, '\0');
   EXPECT_NE(error_of(edge, {MeshoptMode::triangles, MeshoptFilter::none, 3, 4}).find("before the first"), std::string::npos);
 }
@@ -141,10 +141,10 @@ std::vector<T> undone(MeshoptFilter filter, std::vector<T> values, size_t width)
 TEST(Meshopt, OctahedralVectors) {
   using Bytes = std::vector<std::int8_t>;
   using Words = std::vector<std::int16_t>;
-  // Along each axis; of the lower half of the sphere the corners of the square are its pole.
+  // Along each axis; in the lower half of the sphere, the corners of the square are the pole.
   EXPECT_EQ(undone(MeshoptFilter::octahedral, Bytes{0, 0, 127, 5, 127, 0, 127, 6, 0, -127, 127, 7, 127, 127, 127, 8}, 4),
             (Bytes{0, 0, 127, 5, 127, 0, 0, 6, 0, -127, 0, 7, 0, 0, -127, 8}));
-  // Of 10 bits: 1 is 511.
+  // With 10 bits: 1 is 511.
   const Words tilted = undone(MeshoptFilter::octahedral, Words{170, 170, 511, -3, 400, -300, 511, 9}, 4);
   const float third = 32767 / std::sqrt(3.0f);
   for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(tilted[i], third, 100);
@@ -158,7 +158,8 @@ TEST(Meshopt, OctahedralVectors) {
 
 TEST(Meshopt, QuaternionsWithoutTheirLargestComponent) {
   using Words = std::vector<std::int16_t>;
-  // Of 12 bits: 1 is 2047, which ends in two bits that say which is left out. x, y, z of the formula are what follows it.
+  // With 12 bits: 1 is 2047, whose two lowest bits give the omitted component. x, y, z of the formula are the components after
+  // it, cyclically.
   for (int largest = 0; largest < 4; ++largest) {
     const Words q = undone(MeshoptFilter::quaternion, Words{1000, -500, 200, std::int16_t((2047 & ~3) | largest)}, 4);
     const double scale = 32767 / (2047 * std::numbers::sqrt2);
@@ -186,10 +187,11 @@ TEST(Meshopt, NumbersWithAnExponent) {
 TEST(Meshopt, ColorsAsLumaAndChroma) {
   using Bytes = std::vector<std::uint8_t>;
   using Words = std::vector<std::uint16_t>;
-  // Of 8 bits: red 200, green 100, blue 50, whose Co is 75, Cg -12 and Y 112 or 113; alpha's seven bits below the highest.
+  // With 8 bits: red 200, green 100, blue 50, whose Co is 75, Cg -12 and Y 112 or 113; alpha has the seven bits below the
+  // highest.
   const Bytes eight = undone(MeshoptFilter::color, Bytes{112, 75, std::uint8_t(-12), 128 + 127}, 4);
   EXPECT_EQ(eight, (Bytes{199, 100, 49, 255}));
-  // Of 6 bits: 63 is 1.
+  // With 6 bits: 63 is 1.
   const Words six = undone(MeshoptFilter::color, Words{32, std::uint16_t(-20), 8, 32 + 10}, 4);
   for (const auto& [place, value] : {std::pair{0, 4}, {1, 40}, {2, 44}, {3, 20}})
     EXPECT_NEAR(six[size_t(place)], value * 65535.0 / 63, 1) << place;

@@ -1,4 +1,4 @@
-// Scenes of Mitsuba as they are found, above all of version 0.x: what stands in any order, or not at all.
+// Scenes of Mitsuba as they are found, mostly of version 0.x: with elements in any order, or without them.
 
 #include <cmath>
 
@@ -44,7 +44,7 @@ TEST(MitsubaSurface, AMapMayStandBehindTheBsdfItTilts) {
   EXPECT_TRUE(tells(old_scene("<shape type=\"sphere\"><bsdf type=\"bumpmap\">" + bsdf + "</bsdf></shape>"), "needs a texture"));
 }
 
-// Of these numbers along x, in a box from -1 to 1.
+// Writes a grid of these values along x, in the box from -1 to 1.
 void write_grid(const TemporaryFolder& folder, std::initializer_list<float> values) {
   std::string grid = "VOL\3";
   const auto put = [&](auto number) { grid.append(reinterpret_cast<const char*>(&number), sizeof number); };
@@ -54,7 +54,7 @@ void write_grid(const TemporaryFolder& folder, std::initializer_list<float> valu
     for (const float number : values) put(number);
   folder.write("grid.vol", grid);
 }
-/// The extinction of the medium in the first object, which stands where the world does.
+/// The extinction of the medium in the first object, whose object space is world space.
 float extinction(const Imported& imported, Point3 p) {
   const Ref<Component> interior = *get(imported.object(0), "interior").as<Ref<Component>>();
   prepare_tree(*interior);
@@ -86,7 +86,7 @@ TEST(MitsubaMedium, AGridOfVersion0HasItsValuesInTheCornersOfItsFilesBox) {
   EXPECT_NEAR(extinction(imported("<transform name=\"toWorld\"><translate x=\"10\"/></transform>"), {10.5f, 0, 0}), 8, 1e-3f);
 }
 
-// Mitsuba 3.9.1 shows it: a cube of density 1 that is turned by 45 degrees darkens all of the box around it.
+// As measured in Mitsuba 3.9.1: a grid of density 1 rotated by 45 degrees attenuates light in all of its bounding box.
 TEST(MitsubaMedium, ATurnedGridFillsTheBoxAroundIt) {
   const TemporaryFolder folder;
   write_grid(folder, {1, 3});

@@ -1,4 +1,5 @@
-// What Mitsuba's numbers mean: each convention with a number that follows from its documentation, or was measured with it.
+// The meaning of Mitsuba's numbers: each convention is tested with a number that follows from its documentation, or that was
+// measured with Mitsuba.
 
 #include <cmath>
 
@@ -26,12 +27,12 @@ TEST(MitsubaLight, RgbIsWhiteAndSpectraAreAsTheyAre) {
   const Xyz none = lamp("");  // D65 of luminance 1
   EXPECT_NEAR(none.y, 1, 0.005);
   EXPECT_NEAR(none.z / none.y, 1.0888, 0.01);
-  // A table is 0 beyond its ends: so much of what the eye sees lies below 555 nm.
+  // A table is 0 beyond its ends: this fraction of the luminance lies below 555 nm.
   EXPECT_NEAR(lamp("<spectrum name=\"radiance\" value=\"360:1, 555:1\"/>").y, 0.4654, 0.006);
 }
 
-// Measured in Mitsuba 3.9.1: rays of the camera go on behind hidden emitters, what lies there being lit and shaded by them, and
-// end in black where nothing lies.
+// Measured in Mitsuba 3.9.1: camera rays pass through hidden emitters, whose light and shadows on the objects behind are seen;
+// rays that then hit nothing are black.
 TEST(MitsubaIntegrator, HiddenEmittersLightAndAreNotSeen) {
   const auto seen_of = [](const std::string& content, bool hidden) {
     const std::string hide = hidden ? "<boolean name=\"hide_emitters\" value=\"true\"/>" : "";
@@ -44,15 +45,15 @@ TEST(MitsubaIntegrator, HiddenEmittersLightAndAreNotSeen) {
   EXPECT_NEAR(seen_of(around, false), 0.5, 0.01);
   EXPECT_EQ(seen_of(around, true), 0);
   EXPECT_NEAR(seen_of(around + wall(diffuse("0.5")), true), 0.25, 0.005);
-  // A disc of radius 1 at z = 4 that shines towards the wall: sin^2 = 1 / 2.
+  // A disc of radius 1 at z = 4 that emits towards the wall: sin^2 = 1 / 2.
   const std::string disc =
       "<shape type=\"disk\"><transform name=\"to_world\"><translate z=\"4\"/></transform>"
       "<emitter type=\"area\"><rgb name=\"radiance\" value=\"1\"/></emitter></shape>";
   EXPECT_NEAR(seen_of(disc + wall(diffuse("0.5")), true), 0.25, 0.005);
-  EXPECT_EQ(seen_of(disc + wall(diffuse("0.5")), false), 0);  // its back
+  EXPECT_EQ(seen_of(disc + wall(diffuse("0.5")), false), 0);  // the camera sees its back
 }
 
-// Nothing is prepared while a file is imported or exported: meshes do not know yet whether they are closed.
+// Nothing is prepared while a file is imported or exported, so it is not known yet whether a mesh is closed.
 TEST(MitsubaIntegrator, HiddenEmittersMayBeMeshesOfGlass) {
   const TemporaryFolder folder;
   folder.write("tetrahedron.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
@@ -69,7 +70,7 @@ TEST(MitsubaIntegrator, HiddenEmittersMayBeMeshesOfGlass) {
   EXPECT_TRUE(*get(glass.object(0), "visible_to_camera").as<bool>());
 }
 
-// The wall stands at z = 5. What a file does not state is not clipped.
+// The wall stands at z = 5. A clipping plane that the file does not state does not clip.
 TEST(MitsubaCamera, ClipsWhereTheFileSaysSo) {
   const auto bright = [](const std::string& clip) {
     return seen(import_text(scene(sensor("<float name=\"fov\" value=\"1\"/>" + clip) + integrator(1) +
@@ -98,7 +99,7 @@ TEST(MitsubaLight, ANumberWasWhiteBeforeVersion2) {
 }
 
 TEST(MitsubaLight, PointSpotAndDirectional) {
-  const double half = 0.5 / M_PI;  // of a matt wall of reflectance 0.5
+  const double half = 0.5 / M_PI;  // of a diffuse wall of reflectance 0.5
   const auto lit = [](const std::string& light) { return seen(import_text(seen_scene(wall(diffuse("0.5")) + light)), 256).y; };
   EXPECT_NEAR(lit("<emitter type=\"point\"><point name=\"position\" x=\"0\" y=\"0\" z=\"3\"/><rgb name=\"intensity\" "
                   "value=\"8\"/></emitter>"),
@@ -108,7 +109,7 @@ TEST(MitsubaLight, PointSpotAndDirectional) {
               half * 3, 0.005);
   EXPECT_NEAR(lit("<emitter type=\"directional\"><rgb name=\"irradiance\" value=\"3\"/></emitter>"), half * 3, 0.005);
   EXPECT_EQ(lit("<emitter type=\"directional\"><vector name=\"direction\" value=\"0 0 -1\"/></emitter>"), 0);
-  // The edge falls off linearly in angle, from 15 to 20 degrees: a spot turned by 17.5 has half of its light in the middle.
+  // The edge falls off linearly in angle, from 15 to 20 degrees: a spot rotated by 17.5 has half of its light in the middle.
   const double c = std::cos(17.5 * degree);
   EXPECT_NEAR(lit("<emitter type=\"spot\"><rgb name=\"intensity\" value=\"10\"/><transform name=\"to_world\"><rotate y=\"1\" "
                   "angle=\"17.5\"/></transform></emitter>"),
@@ -150,7 +151,7 @@ TEST(MitsubaSensor, AngleAndHandedness) {
   EXPECT_NEAR(across("<float name=\"fov\" value=\"40\"/><string name=\"fovAxis\" value=\"smaller\"/>", 20, 10, true), 40,
               0.001);
 
-  // To the right is the direction times up: -x, where the camera looks along +z with +y up.
+  // Right is cross(direction, up): -x for a camera that looks along +z with +y up.
   Imported i = import_text(scene(sensor("<float name=\"fov\" value=\"40\"/>", 10, 10) + integrator() + wall(diffuse("0.5"))));
   i.job->camera->prepare();
   i.job->camera->set_film(10, 10);
@@ -177,7 +178,7 @@ TEST(MitsubaTexture, RowsOfImagesBeginWhereVIsZero) {
       "<bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" "
       "value=\"rows.exr\"/><string name=\"filter_type\" value=\"nearest\"/></texture></bsdf>";
   const auto upper_and_lower = [&](const std::string& shape) {
-    // From +z, with +y up: the camera looks at (0, +-0.5, 0).
+    // Seen from +z, with +y up: the camera looks at (0, +-0.5, 0).
     std::vector<double> found;
     for (const char* y : {"0.5", "-0.5"}) {
       const std::string view =
@@ -193,7 +194,7 @@ TEST(MitsubaTexture, RowsOfImagesBeginWhereVIsZero) {
   EXPECT_NEAR(on_rectangle[1], 0.8, 0.02);
   const auto on_obj =
       upper_and_lower("<shape type=\"obj\"><string name=\"filename\" value=\"square.obj\"/>" + picture + "</shape>");
-  EXPECT_NEAR(on_obj[0], 0.8, 0.02);  // OBJ files are turned over
+  EXPECT_NEAR(on_obj[0], 0.8, 0.02);  // OBJ files are flipped
   EXPECT_NEAR(on_obj[1], 0.2, 0.01);
   const std::string not_turned = "<boolean name=\"flip_tex_coords\" value=\"false\"/>";
   const auto as_is = upper_and_lower("<shape type=\"obj\"><string name=\"filename\" value=\"square.obj\"/>" + not_turned +
@@ -265,7 +266,7 @@ TEST(MitsubaMedium, PhaseFunctions) {
     EXPECT_EQ(i.told(), "");
     return part(i.object(0), "interior");
   };
-  // That values are Mitsuba's is PhaseFunction.ValuesAreThoseOfMitsuba.
+  // The values are compared with Mitsuba's in PhaseFunction.ValuesAreThoseOfMitsuba.
   const Imported air = imported("<phase type=\"rayleigh\"/>");
   EXPECT_EQ(part(volume(air), "phase").class_info().name, "RayleighPhase");
   const Imported lobe = imported("<phase type=\"hg\"><float name=\"g\" value=\"0.25\"/></phase>");
@@ -283,7 +284,7 @@ TEST(MitsubaMedium, PhaseFunctions) {
   EXPECT_NE(wrong.told().find("has 1 phase functions and 2 weights"), std::string::npos) << wrong.told();
 }
 
-// The importer once looked at the cube's transform after it was gone, which AddressSanitizer saw.
+// The importer once read the cube's transform after it was destroyed, which AddressSanitizer found.
 TEST(MitsubaMedium, AGridStandsInTheWorldAndNotInItsObject) {
   const TemporaryFolder folder;
   std::string grid = "VOL\3";
@@ -306,7 +307,7 @@ TEST(MitsubaMedium, AGridStandsInTheWorldAndNotInItsObject) {
     EXPECT_EQ(placement.as<Transform>()->exact(), expected.exact());
 }
 
-// Albedos of another place than the densities': each grid is looked up where it stands.
+// The grid of albedos has another transform than the grid of densities: each is looked up in its own space.
 TEST(MitsubaMedium, AlbedosLieWhereTheirGridSays) {
   const TemporaryFolder folder;
   const auto write = [&](const char* name, std::initializer_list<float> values) {
@@ -332,7 +333,7 @@ TEST(MitsubaMedium, AlbedosLieWhereTheirGridSays) {
   const Ref<Component> interior = *get(i.object(0), "interior").as<Ref<Component>>();
   prepare_tree(*interior);
   const auto& volume = dynamic_cast<const VolumeShader&>(*interior);
-  // In the world the border of the two albedos is at x = 1.5; the object's coordinates begin at z = 3.
+  // In world space the border of the two albedos is at x = 1.5; the object's space begins at z = 3.
   for (const auto& [x, albedo] : {std::pair(1.25f, 0.25f), std::pair(1.75f, 0.75f)}) {
     const VolumeCoefficients c = volume.coefficients({x, 0.5f, 0.5f - 3}, 0, Wavelengths());
     EXPECT_NEAR(c.extinction()[0], 3, 1e-5f);
@@ -341,8 +342,8 @@ TEST(MitsubaMedium, AlbedosLieWhereTheirGridSays) {
   EXPECT_EQ(volume.coefficients({-0.1f, 0.5f, -2.5f}, 0, Wavelengths()).extinction()[0], 0);
 }
 
-// As PyPI's mitsuba 3.9.1 evaluates its emitter 'sunsky': z is up, with to_world what that makes of z, and the sun stands where
-// the world says. Mitsuba 0.6 has y for up.
+// As PyPI's mitsuba 3.9.1 evaluates its emitter 'sunsky': up is z, transformed by to_world if there is one, and the sun's
+// direction is in world space. In Mitsuba 0.6 up is y.
 TEST(MitsubaLight, ASkyStandsUprightAndItsSunWhereTheWorldSays) {
   struct Row {
     const char *version, *name, *sun, *to_world, *up;
@@ -380,7 +381,7 @@ TEST(MitsubaLight, AProjectorsPictureKeepsItsShape) {
   const std::string light =
       "<emitter type=\"projector\"><float name=\"fov\" value=\"90\"/><texture name=\"irradiance\" type=\"bitmap\">"
       "<string name=\"filename\" value=\"map.exr\"/></texture></emitter>";
-  // Mitsuba's own numbers, 256 samples: the whole picture is as bright on a wall across the axis.
+  // Mitsuba's own numbers, with 256 samples: the whole picture has the same brightness on a wall perpendicular to the axis.
   for (const auto& [target, expected] : {std::pair("0 0 5", 0.02), std::pair("4 1 5", 0.02), std::pair("0 2 5", 0.0)}) {
     const std::string view =
         std::string("<float name=\"fov\" value=\"1\"/><transform name=\"to_world\"><lookat origin=\"0 0 0\" target=\"") +
@@ -390,11 +391,6 @@ TEST(MitsubaLight, AProjectorsPictureKeepsItsShape) {
         << target;
   }
 }
-
-// Seen from its back, or with its normals turned round, a surface of two sides shows the other one: in blends and masks as
-// well, and in meshes that are mirrored.
-// Rough metal seen 8 degrees above its plane, under even light: what Mitsuba 3.9.1 shows, with an error of 0.1 %. With
-// correlated heights of facets it would be 8 % brighter.
 
 }  // namespace
 }  // namespace etendue::mitsuba_test

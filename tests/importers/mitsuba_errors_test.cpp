@@ -1,4 +1,5 @@
-// What is wrong with a scene of Mitsuba, and what is only not expressed, is told at its place; hostile files do no harm.
+// Errors in scenes of Mitsuba, and features that cannot be expressed, are reported with their location; hostile files do no
+// harm.
 
 #include <zlib.h>
 
@@ -11,7 +12,7 @@
 namespace etendue::mitsuba_test {
 namespace {
 
-/// All that is told of a scene whose second line this is.
+/// All messages about a scene whose second line is `line`.
 std::string told(const std::string& line, const Parameters& parameters = {}) {
   return import_text(scene(line + "\n" + sensor() + integrator()), parameters).told();
 }
@@ -50,7 +51,8 @@ TEST(MitsubaErrors, AreToldAtTheirPlace) {
   EXPECT_EQ(import_text(scene("<shape type=\"a\"/><shape type=\"b\"/>" + sensor() + integrator())).errors.size(), 2u);
 }
 
-// What Disney's model does otherwise than Mitsuba's is told where it is seen: of bright colours, and of partly clear ones.
+// Where Disney's model differs visibly from Mitsuba's, the difference is reported: for bright colours and for partly
+// transmissive surfaces.
 TEST(MitsubaErrors, EnergyOfPrincipledIsTold) {
   const auto principled = [](const std::string& inside) {
     return told("<shape type=\"sphere\"><bsdf type=\"principled\">" + inside + "</bsdf></shape>");
@@ -129,7 +131,7 @@ TEST(MitsubaHostile, FilesDoNoHarm) {
   const TemporaryFolder folder;
   folder.write("b.xml", scene("<include filename=\"scene.xml\"/>"));
   EXPECT_NE(import_text(folder, scene("<include filename=\"b.xml\"/>")).told().find("includes itself"), std::string::npos);
-  // Each file includes the next one twice: 2^16 without bounds.
+  // Each file includes the next one twice: 2^16 files without a limit.
   for (int i = 0; i < 17; ++i) {
     const std::string next = "<include filename=\"n" + std::to_string(i + 1) + ".xml\"/>";
     folder.write("n" + std::to_string(i) + ".xml", scene(next + next));
@@ -204,7 +206,7 @@ TEST(SerializedMesh, BothVersionsAndPrecisions) {
     }
 }
 
-// Mitsuba 3.9: four panes before a white environment show 0.97 by volpath with max_depth 2, and 0.08 by path.
+// Mitsuba 3.9: four panes before a white environment give 0.97 with volpath and max_depth 2, and 0.08 with path.
 TEST(MitsubaNotes, ThatPanesCountAsSegmentsHere) {
   const std::string pane = "<shape type=\"rectangle\"><bsdf type=\"thindielectric\"/></shape>\n<emitter type=\"constant\"/>";
   const auto told = [&](int depth, const char* type) {

@@ -1,5 +1,5 @@
-// What is exported to Mitsuba's XML is the same scene: read back, it makes the same picture. That Mitsuba itself makes it is
-// tried by references/exports.py.
+// A scene exported to Mitsuba's XML and read back makes the same picture. Whether Mitsuba itself renders that picture is tested
+// by references/exports.py.
 
 #include <cstring>
 
@@ -84,7 +84,7 @@ TEST(MitsubaExport, MakesTheSamePictureWhenReadBack) {
     ASSERT_TRUE(exported.back.job) << exported.back.told() << exported.text;
     exported.back.job->outputs.clear();
     const Xyz before = test::measure(job(objects)).mean, after = test::measure(exported.back.job).mean;
-    // Two renders of about 400 000 paths each scatter by up to half a per cent.
+    // Two renders of about 400 000 paths each differ by up to half a per cent.
     EXPECT_NEAR(after.x / before.x, 1, 0.02) << exported.text;
     EXPECT_NEAR(after.y / before.y, 1, 0.02);
     EXPECT_NEAR(after.z / before.z, 1, 0.025);
@@ -103,7 +103,7 @@ TEST(MitsubaExport, ComponentsOfMoreThanOneAreWrittenAsMitsubaTakesThem) {
   }
 }
 
-// What is read as a MapVolume is written as the medium that it was; what Mitsuba has no words for is told.
+// A MapVolume that was read from a medium on a grid is exported as that medium; what Mitsuba cannot express is reported.
 TEST(MitsubaExport, GridsThatAreTurned) {
   const TemporaryFolder folder;
   const auto exported = [&](const std::string& interior) {
@@ -170,7 +170,7 @@ TEST(MitsubaExport, TellsWhatItCannotExpress) {
   EXPECT_NE(told.find("Mitsuba has no shape like Torus"), std::string::npos) << told;
 }
 
-// Whatever an exporter does not ask for is told, at its place, where it says something.
+// Members that an exporter does not read are reported with their location, if they have an effect.
 TEST(MitsubaExport, MembersThatAreLeftOutAreTold) {
   const TemporaryFolder folder;
   const std::string bumps = "BumpShader { shader: Lambertian {}, height: CheckerMap { first: 0, second: 1 } }";
@@ -181,7 +181,7 @@ TEST(MitsubaExport, MembersThatAreLeftOutAreTold) {
                                             "Sphere { shader: MaskShader { shader: " +
                                             bumps + " } }"));
   ASSERT_EQ(e.notes.size(), 2u);
-  // Its own `clipped` normals are Mitsuba's.
+  // The sphere with `clipped` normals is not reported: those are Mitsuba's.
   EXPECT_EQ(std::string(e.notes[0].what()).find("light that tilted normals would send through the surface is lost"), 0u);
   EXPECT_EQ(e.notes[0].location.line, 9);
   EXPECT_STREQ(e.notes[1].what(), "'priority' of Sphere is left out (2 times)");
@@ -199,11 +199,11 @@ TEST(MitsubaExport, NormalsThatAMeshFindsForItself) {
   const char* vertices = ply.data() + ply.find("end_header\n") + 11;
   float first[6];
   std::memcpy(first, vertices, sizeof first);
-  // Between the triangles' own, (0, 0, -1) and (0, -1, 0): both meet there in right angles.
+  // Between the triangles' normals, (0, 0, -1) and (0, -1, 0): both have a right angle there.
   EXPECT_NEAR(first[3], 0, 1e-5f);
   EXPECT_NEAR(first[4], -std::sqrt(0.5f), 1e-5f);
   EXPECT_NEAR(first[5], -std::sqrt(0.5f), 1e-5f);
-  // Corners that there are not are the reader's to refuse.
+  // Indices of vertices that do not exist are left to the reader to refuse.
   const Exported bad = export_job(folder, job("TriangleMesh { positions: [[0, 0, 0], [1, 0, 0]], triangles: [0, 1, 7], smooth: "
                                               "true }"));
   EXPECT_NE(bad.text.find("ply"), std::string::npos);

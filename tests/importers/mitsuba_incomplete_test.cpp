@@ -1,4 +1,4 @@
-// What a scene of Mitsuba leaves out, says twice, or says in words of its own: what is taken instead is told, once for each
+// What a scene of Mitsuba leaves out, states twice, or states in its own terms: the replacement is reported, once for each
 // cause.
 
 #include <cmath>
@@ -75,7 +75,7 @@ TEST(MitsubaIncomplete, OneCauseIsToldOnce) {
       "name=\"lineWidth\" value=\"0.1\"/></texture></bsdf></shape>\n";
   expect_told(with_integrator("<integrator type=\"path\"/>" + shape + shape),
               "4:69: texture 'gridtexture' has no counterpart here: 0.5 stands for it (and at 1 more place)\n");
-  // Of several places the first in the file.
+  // Of several places the first in the file is reported.
   const std::string wide = "<shape type=\"sphere\"><bsdf type=\"diffuse\"><float name=\"width\" value=\"1\"/></bsdf></shape>\n";
   expect_told(with_integrator("<integrator type=\"path\"/>\n" + wide + wide),
               "5:44: 'width' of bsdf 'diffuse' is not used (and at 1 more place)\n");

@@ -1,4 +1,4 @@
-// Red, green and blue of Mitsuba's media become the spectra that they are in its spectral variants: the numbers are what PyPI's
+// Red, green and blue of Mitsuba's media become the spectra of Mitsuba's spectral variants: the numbers are those that PyPI's
 // mitsuba 3.9.1, llvm_ad_spectral, returns from get_scattering_coefficients().
 
 #include "etendue/describe/color.h"
@@ -35,7 +35,7 @@ TEST(MitsubaMediaColors, CoefficientsWithinOneAreSpectraOfSurfaces) {
   expect_spectrum(member(i, "extinction"), ColorUse::coefficient, there, 3e-4);
   i = import_text(medium_scene("homogeneous", sigma_t + "<float name=\"scale\" value=\"4\"/>"));
   expect_spectrum(member(i, "extinction"), ColorUse::coefficient, {4 * there[0], 4 * there[1], 4 * there[2]}, 1.2e-3);
-  // Also where a volume says it, and in a medium of volumes.
+  // Also if a volume states the colour, and in a heterogeneous medium.
   const std::string volume =
       "<volume type=\"constvolume\" name=\"sigma_t\"><rgb name=\"value\" value=\"0.9 0.3 0.1\"/></volume>";
   i = import_text(medium_scene("homogeneous", volume));
@@ -44,7 +44,8 @@ TEST(MitsubaMediaColors, CoefficientsWithinOneAreSpectraOfSurfaces) {
   expect_spectrum(member(i, "extinction"), ColorUse::coefficient, there, 3e-4);
 }
 
-// Which Mitsuba's spectral variants refuse: the shape of the spectrum is that of the colour within 1, the scale its own.
+// Mitsuba's spectral variants refuse coefficients above 1: here the spectrum has the shape of the colour scaled to at most 1,
+// and its own scale.
 TEST(MitsubaMediaColors, CoefficientsAboveOneAreThoseOfEverywhere) {
   const Imported i = import_text(medium_scene("homogeneous", "<rgb name=\"sigma_t\" value=\"1 2 4\"/>"));
   EXPECT_EQ(i.told(), "");
@@ -53,7 +54,7 @@ TEST(MitsubaMediaColors, CoefficientsAboveOneAreThoseOfEverywhere) {
   EXPECT_EQ(color->at(450, ColorUse::coefficient), ours->at(450, ColorUse::coefficient));
 }
 
-// The table of Mitsuba's spectra is coarse there, which light that is scattered often shows.
+// Mitsuba's table of spectra is coarse near white, which matters for light that is scattered many times.
 TEST(MitsubaMediaColors, AlbedosNearWhiteAreThoseOfItsTable) {
   Imported i = import_text(medium_scene("homogeneous", "<rgb name=\"albedo\" value=\"0.99 0.999 0.99\"/>"));
   EXPECT_EQ(i.told(), "");
@@ -63,7 +64,7 @@ TEST(MitsubaMediaColors, AlbedosNearWhiteAreThoseOfItsTable) {
   expect_spectrum(member(i, "albedo"), ColorUse::reflectance, {0.5077, 0.5376, 0.9453}, 3e-4);
 }
 
-// Those of a grid become spectra as radiances and coefficients do, within twice the largest component; albedos end at 1.
+// Albedos of a grid become spectra like radiances and coefficients, within twice the largest component, and are clamped to 1.
 TEST(MitsubaMediaColors, GridsOfAlbedos) {
   const TemporaryFolder folder;
   std::string grid = "VOL\3";
@@ -81,7 +82,7 @@ TEST(MitsubaMediaColors, GridsOfAlbedos) {
       "<volume type=\"gridvolume\" name=\"albedo\"><string name=\"filename\" value=\"albedo.vol\"/></volume>";
   Wavelengths w;
   for (int k = 0; k < spectrum_size; ++k) w.place(k, places[k % 3], 1);
-  // Of a medium whose density is the same everywhere, and of one with a grid of that.
+  // In a medium of constant density, and in one with a density grid of a single value.
   for (const char* sigma_t :
        {"<float name=\"sigma_t\" value=\"2\"/>",
         "<volume type=\"gridvolume\" name=\"sigma_t\"><string name=\"filename\" value=\"density.vol\"/></volume>"}) {
@@ -90,12 +91,13 @@ TEST(MitsubaMediaColors, GridsOfAlbedos) {
     const Ref<Component> interior = *get(i.object(0), "interior").as<Ref<Component>>();
     prepare_tree(*interior);
     const VolumeCoefficients c = dynamic_cast<const VolumeShader&>(*interior).coefficients({0.25f, 0.25f, 0.25f}, 0, w);
-    const double there[] = {0.126472, 0.331720, 1};  // the last is 1.075 there
+    const double there[] = {0.126472, 0.331720, 1};  // the last is 1.075 in Mitsuba
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(double(c.scattering[k]) / double(c.extinction()[k]), there[k], 5e-4) << sigma_t;
   }
 }
 
-// Mitsuba's glass asks nothing of the surface but its shading normal; what reflects diffusely does not let light through there.
+// Mitsuba's glass depends on the shading normal only (`folded`); diffuse reflection transmits no light where the shading normal
+// would send it through the surface (`clipped`).
 TEST(MitsubaMediaColors, GlassOnSmoothMeshesLosesNoLight) {
   const TemporaryFolder folder;
   folder.write("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");

@@ -1,13 +1,11 @@
-// What Mitsuba 2 and 3 make of numbers otherwise than one would think, as comparisons of random scenes have shown
-// (tests/references/differential.py).
+// Unexpected meanings of numbers in Mitsuba 2 and 3, found by comparing random scenes (tests/references/differential.py).
 
 #include "mitsuba_support.h"
 
 namespace etendue::mitsuba_test {
 namespace {
 
-/// Light that two surfaces of reflectance 0.8 and 0.2 return, mixed by a checkerboard of 0 and 1, at the place where u and v
-/// are 0.25.
+/// The light of two surfaces of reflectance 0.8 and 0.2, mixed by a checkerboard of 0 and 1, at the point with u = v = 0.25.
 double mixed_by_checkers(const std::string& version) {
   const std::string view =
       "<float name=\"fov\" value=\"0.1\"/><transform name=\"to_world\"><lookat origin=\"-0.5 -0.5 4\" target=\"-0.5 -0.5 0\" "
@@ -20,7 +18,8 @@ double mixed_by_checkers(const std::string& version) {
   return seen(import_text(scene(sensor(view) + integrator() + "<emitter type=\"constant\"/>" + shape, version)), 4096).y;
 }
 
-// As a colour, "color0" is where both of u and v are below or above a half: MitsubaTexture.CheckersAndTheirPlace.
+// For colours, "color0" is where u and v are both below or both above a half (MitsubaTexture.CheckersAndTheirPlace); for
+// numbers the two are exchanged.
 TEST(MitsubaTexture, CheckersAsNumbersAreExchanged) {
   EXPECT_NEAR(mixed_by_checkers("3.0.0"), 0.2, 0.01);
   EXPECT_NEAR(mixed_by_checkers("0.6.0"), 0.8, 0.01);
@@ -44,13 +43,14 @@ TEST(MitsubaTransform, AnAxisIsTakenAtItsLength) {
   const Transform::DoubleMatrix before = turned("<rotate x=\"0.446\" angle=\"20.198\"/>", "0.6.0").exact();
   EXPECT_NEAR(before[0], 1, 1e-9);
   EXPECT_NEAR(before[6], -0.345265, 1e-5);
-  // Of length 1 it is a rotation in both: x to y about z.
+  // With an axis of length 1 both versions rotate: x to y about z.
   const Transform::DoubleMatrix quarter = turned("<rotate z=\"1\" angle=\"90\"/>", "3.0.0").exact();
   EXPECT_NEAR(quarter[4], 1, 1e-9);
   EXPECT_NEAR(quarter[1], -1, 1e-9);
 }
 
-// About an axis with all three parts: c + (1 - c) a_i a_j and s times the other, c = 0 and s = 1.
+// An axis with three components, not normalized: c + (1 - c) a_i a_j plus or minus s times the remaining component, with c = 0
+// and s = 1.
 TEST(MitsubaTransform, AnAxisOfAnyDirectionIsTakenAtItsLength) {
   const Transform::DoubleMatrix m = turned("<rotate x=\"1\" y=\"2\" z=\"3\" angle=\"90\"/>", "3.0.0").exact();
   const double wanted[12] = {1, -1, 5, 0, 5, 4, 5, 0, 1, 7, 9, 0};

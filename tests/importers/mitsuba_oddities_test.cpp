@@ -1,4 +1,5 @@
-// What scenes of Mitsuba have that is seldom: turns about nothing, grids of distances, entities, skies that go on below.
+// Rare elements of Mitsuba's scenes: rotations about a zero axis, grids of distances, entities, skies that continue below the
+// horizon.
 
 #include <cstring>
 
@@ -18,25 +19,26 @@ TEST(MitsubaOddities, NoTurnAboutNoAxis) {
     const Imported none = ball("0", version);
     ASSERT_TRUE(none.job) << none.told();
     EXPECT_TRUE(none.job->scene->objects.at(0)->transform.still().identity());
-    // Mitsuba 3.9 refuses it, and before it was not finite.
+    // Mitsuba 3.9 refuses such a rotation; before, the result was not finite.
     const Imported some = ball("30", version);
     EXPECT_FALSE(some.job);
     EXPECT_NE(some.told().find("<rotate> needs an axis other than zero"), std::string::npos) << some.told();
   }
 }
 
-/// Mitsuba's format of volumes: a plane at x = 0.25 of the unit cube, in the space between 3 x 2 x 2 points.
+/// A volume in Mitsuba's format: the distance from the plane x = 0.25 of the unit cube, at 3 x 2 x 2 points.
 std::string plane() {
   std::string all = "VOL\3";
   const auto add = [&](auto n) { all.append(reinterpret_cast<const char*>(&n), sizeof n); };
   for (const std::int32_t n : std::initializer_list<std::int32_t>{1, 3, 2, 2, 1}) add(n);
-  for (const float x : std::initializer_list<float>{-7, -7, -7, 9, 9, 9}) add(x);  // a box, which does not count
+  for (const float x : std::initializer_list<float>{-7, -7, -7, 9, 9, 9}) add(x);  // a bounding box, which is ignored
   for (int i = 0; i < 4; ++i)
     for (const float x : std::initializer_list<float>{-0.5f, 0.5f, 1.5f}) add(x);
   return all;
 }
 
-// The values lie in the corners of the unit cube, whose end is no wall, and the front is where they grow.
+// Grid points reach to the corners of the unit cube, the surface is open where the cube ends, and its front is on the side of
+// growing values.
 TEST(MitsubaOddities, GridsOfDistances) {
   const TemporaryFolder folder;
   folder.write("plane.vol", plane());
@@ -83,7 +85,7 @@ TEST(MitsubaOddities, Entities) {
       "&ball;<!-- &ball; --><shape type=\"sphere\"><float name=\"radius\" value=\"1&r;\"/></shape>\n"
       "<shape type=\"sphere\"><float name=\"radius\" value=\"x&r;\"/></shape>",
       head);
-  // Places are those of the file as it is written.
+  // Locations are those in the file as written, before entities are expanded.
   EXPECT_NE(i.told().find("11:50: a number is expected, not 'x2'"), std::string::npos) << i.told();
   const Imported good = scene_of("&ball;<shape type=\"sphere\"><float name=\"radius\" value=\"1&r;\"/></shape>", head);
   EXPECT_NE(good.told().find("3:1: entities that the file declares are put in their places"), std::string::npos) << good.told();

@@ -1,4 +1,4 @@
-// Plugins of Mitsuba that are less common: what they do here, with numbers of Mitsuba 3.9.1 where they do not follow from the
+// Less common plugins of Mitsuba: their import is tested with numbers of Mitsuba 3.9.1 where these do not follow from the
 // scene.
 
 #include <cmath>
@@ -18,7 +18,7 @@ std::string before_sky(const std::string& bsdf) {
   return sky + "<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"10\"/><translate z=\"5\"/></transform>" +
          bsdf + "</shape>";
 }
-/// The mean Y of a picture of which something was told.
+/// The mean Y of a picture; `word` must be in the messages of the import.
 double brightness(const Imported& imported, const std::string& word) {
   EXPECT_NE(imported.told().find(word), std::string::npos) << imported.told();
   if (!imported.job) return -1;
@@ -52,7 +52,7 @@ TEST(MitsubaSensor, WithoutAnUpItHasMitsubasOwn) {
                         integrator() + sky));
   const Value up = get(*read.job->camera, "up");
   ASSERT_TRUE(up.as<Numbers>());
-  // Of n = (2, -1, 2) / 3: 1 - n.x^2 / (1 + n.z), - n.x n.y / (1 + n.z), -n.x.
+  // The up vector for n = (2, -1, 2) / 3: 1 - n.x^2 / (1 + n.z), - n.x n.y / (1 + n.z), -n.x.
   const double expected[] = {1 - 4. / 9 / (5. / 3), 2. / 9 / (5. / 3), -2. / 3};
   for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(up.as<Numbers>()->values[i], expected[i], 1e-6);
 }
@@ -88,7 +88,7 @@ TEST(MitsubaMedium, AVolumelightIsWhatItsMediumAddsPerDistance) {
   EXPECT_NEAR(
       shining("<medium type=\"homogeneous\" name=\"interior\"><float name=\"sigma_t\" value=\"0.5\"/>" + albedo + "</medium>"),
       0.3 * (1 - std::exp(-1.)) / 0.5, 0.01);
-  // One that ends with its box shines there alone.
+  // A medium that ends with its box emits only within it.
   EXPECT_NEAR(shining("<medium type=\"heterogeneous\" name=\"interior\">" + albedo +
                       "<float name=\"scale\" value=\"3\"/><volume type=\"constvolume\" name=\"sigma_t\"><float name=\"value\" "
                       "value=\"0\"/><transform name=\"to_world\"><scale value=\"8\"/><translate x=\"-4\" y=\"-4\" z=\"-3\"/>"
@@ -121,7 +121,7 @@ TEST(MitsubaLight, AProjectorOfOneColourIsASquareOfItsFieldOfView) {
   EXPECT_EQ(lit(red + "<string name=\"focal_length\" value=\"100mm\"/>", "0.8"), 0);
 }
 
-// Mitsuba 3.9.1's own numbers: its x is south, its y west.
+// Mitsuba 3.9.1's own numbers: its x is south, its y is west.
 TEST(MitsubaLight, TheSunStandsWhereItDoesAtAPlaceAndTime) {
   struct Row {
     const char* more;
@@ -178,7 +178,7 @@ TEST(MitsubaSurface, OwnTablesOfMetalsAreExact) {
                             "TiN",      "TiN_palik", "TiO2",       "TiO2_palik", "TiO2-e",     "TiO2-e_palik", "VC",
                             "VC_palik", "V_palik",   "VN",         "VN_palik",   "W",          "none"})
     EXPECT_EQ(told(metal), "") << metal;
-  // Tables that end while much is still visible are a mirror beyond in Mitsuba.
+  // Beyond a table that ends within the visible range, Mitsuba's metal is a perfect mirror.
   for (const char* metal : {"AlSb", "AlSb_palik", "d-C", "d-C_palik", "Se", "Se_palik", "Se-e", "Se-e_palik"})
     EXPECT_NE(told(metal).find("here the last n and k go on"), std::string::npos) << metal;
   for (const char* metal : {"AlAs", "AlAs_palik"}) EXPECT_NE(told(metal).find("n = 0 from 394"), std::string::npos) << metal;
@@ -193,7 +193,7 @@ TEST(MitsubaSurface, UnknownMetalsAreTold) {
       << i.told();
 }
 
-// The reflectance of what Mitsuba's own files say of amorphous carbon, weighed by the eye: not chromium's 0.66.
+// The luminous reflectance that follows from Mitsuba's own files for amorphous carbon: not chromium's 0.66.
 TEST(MitsubaSurface, AmorphousCarbonIsDark) {
   const std::string carbon = "<bsdf type=\"conductor\"><string name=\"material\" value=\"a-C\"/></bsdf>";
   const Imported i = import_text(scene(sensor() + integrator() + before_sky("<bsdf type=\"twosided\">" + carbon + "</bsdf>")));
@@ -218,7 +218,7 @@ TEST(MitsubaSensor, ABatchIsItsFirstSensor) {
   EXPECT_NEAR(number(*read.job->camera, "fov"), 33 * M_PI / 180, 1e-6);
 }
 
-// Where file names do not tell capitals apart, such files work there.
+// On file systems that ignore case, files of such a type work in Mitsuba.
 TEST(MitsubaNames, TypesMayHaveCapitals) {
   const Imported read = import_text(scene(sensor() + integrator() + sky + "<shape type=\"Rectangle\"/>"));
   EXPECT_EQ(read.told(), "");

@@ -10,7 +10,7 @@ namespace {
 
 const std::string sky = "<emitter type=\"constant\"/>";
 
-/// A square of 2 m at z = 5 as a mesh, whose triangles run so that their normals point along +z, away from the camera.
+/// A square of 2 m at z = 5 as a mesh, whose triangles are oriented so that their normals point along +z, away from the camera.
 const std::string square = "v -1 -1 5\nv 1 -1 5\nv 1 1 5\nv -1 1 5\nf 1 2 3\nf 1 3 4\n";
 
 std::string mesh(const std::string& more) {
@@ -27,10 +27,10 @@ TEST(MitsubaMesh, NormalsOfTrianglesAreThoseInTheWorld) {
     return seen(import_text(folder, scene(sensor() + integrator() + mesh(more)))).y;
   };
   EXPECT_NEAR(light(""), 0, 1e-6);
-  EXPECT_NEAR(light(mirror), 1, 0.01);  // the corners run the other way round now
+  EXPECT_NEAR(light(mirror), 1, 0.01);  // the orientation of the triangles is reversed
   EXPECT_NEAR(light(mirror + "<boolean name=\"face_normals\" value=\"true\"/>"), 1, 0.01);
   EXPECT_NEAR(light("<boolean name=\"flip_normals\" value=\"true\"/>"), 1, 0.01);
-  // Normals of vertices are carried along.
+  // Vertex normals are transformed like the surface.
   std::string with_normals = square;
   with_normals.replace(with_normals.find("f 1"), std::string::npos, "vn 0 0 1\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n");
   folder.write("square.obj", with_normals);
@@ -40,7 +40,7 @@ TEST(MitsubaMesh, NormalsOfTrianglesAreThoseInTheWorld) {
 TEST(MitsubaCurve, RadiiAreNotScaled) {
   const TemporaryFolder folder;
   folder.write("curve.txt", "-50 0 5 0.2\n-20 0 5 0.2\n20 0 5 0.2\n50 0 5 0.2\n60 0 5 0.2\n");
-  // Parallel rays over 2 x 2 m meet 0.4 of 2 m: the transform makes the curve shorter, not thinner.
+  // Of parallel rays over 2 x 2 m, those within a width of 0.4 m hit the curve: the transform makes it shorter, not thinner.
   const std::string camera =
       "<sensor type=\"orthographic\"><film type=\"hdrfilm\"><integer name=\"width\" value=\"1\"/><integer name=\"height\" "
       "value=\"1\"/><rfilter type=\"box\"/></film></sensor>";
@@ -80,7 +80,7 @@ TEST(MitsubaCurve, BinaryHair) {
   };
   const Imported whole = imported(bytes);
   ASSERT_TRUE(whole.job) << whole.told();
-  const Value counts = get(whole.object(1), "counts");  // behind the sky
+  const Value counts = get(whole.object(1), "counts");  // object 0 is the sky
   ASSERT_TRUE(counts.as<Numbers>());
   EXPECT_EQ(counts.as<Numbers>()->values, (std::vector<double>{2, 3}));
   EXPECT_NE(imported(bytes.substr(0, bytes.size() - 3)).told().find("ends too early"), std::string::npos);

@@ -14,7 +14,7 @@ struct Imported {
   Ref<Job> job;
   std::vector<Error> notes, errors;
 
-  /// What was told, one a line: "line:column: message".
+  /// The messages, one per line: "line:column: message".
   std::string told() const {
     std::string all;
     for (const auto* list : {&errors, &notes})
@@ -48,7 +48,7 @@ inline Imported import_text(const std::string& text, const Parameters& parameter
   return import_text(folder, text, parameters);
 }
 
-/// Where the camera is and looks; by default from the origin along +z.
+/// A sensor with its transform; by default at the origin, looking along +z.
 inline std::string sensor(const std::string& more = "<float name=\"fov\" value=\"1\"/>", int width = 1, int height = 1) {
   return "<sensor type=\"perspective\">" + more + "<film type=\"hdrfilm\"><integer name=\"width\" value=\"" +
          std::to_string(width) + "\"/><integer name=\"height\" value=\"" + std::to_string(height) +
@@ -76,7 +76,7 @@ inline std::string diffuse(const std::string& reflectance) {
   return "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"" + reflectance + "\"/></bsdf>";
 }
 
-/// The mean of the picture, without a word having been said.
+/// The mean of the picture; there must be no message.
 inline Xyz seen(const Imported& imported, int samples = 0) {
   EXPECT_EQ(imported.told(), "");
   if (!imported.job) return {};

@@ -1,4 +1,5 @@
-// What Mitsuba's surfaces mean: each with a number that follows from its documentation, or was measured with it.
+// The meaning of Mitsuba's surfaces: each is tested with a number that follows from its documentation, or that was measured
+// with Mitsuba.
 
 #include "etendue/describe/color.h"
 #include "mitsuba_support.h"
@@ -18,6 +19,8 @@ TEST(MitsubaSurface, TheTwoSidesOfTwosided) {
   }
 }
 
+// Seen from its back, or with reversed normals, a two-sided surface shows its other BSDF: in blends and masks as well, and in
+// mirrored meshes.
 TEST(MitsubaSurface, NormalsThatAreTurnedRoundExchangeTheSides) {
   const auto both = "<bsdf type=\"twosided\">" + diffuse("0.8") + diffuse("0.2") + "</bsdf>";
   const std::string flip = "<boolean name=\"flip_normals\" value=\"true\"/>";
@@ -42,6 +45,8 @@ TEST(MitsubaSurface, NormalsThatAreTurnedRoundExchangeTheSides) {
   EXPECT_NEAR((*outside.as<Color>())->at(550, ColorUse::coefficient), 1.5, 1e-6);
 }
 
+// Rough metal seen 8 degrees above its plane in a uniform environment: as measured in Mitsuba 3.9.1, with an error of 0.1 %.
+// With height-correlated masking and shadowing it would be 8 % brighter.
 TEST(MitsubaSurface, RoughMetalAtASlant) {
   const std::string camera =
       "<sensor type=\"orthographic\"><transform name=\"to_world\"><scale x=\"0.01\" y=\"0.01\"/><lookat origin=\"0, 1, 7\" "

@@ -1,4 +1,4 @@
-// What real files of OBJ, OFF and PLY hold besides triangles, and lines in them that are odd.
+// What real files of OBJ, OFF and PLY hold besides triangles, and odd lines in them.
 
 #include <algorithm>
 
@@ -76,7 +76,7 @@ TEST(ObjIdioms, OneMaterialFileThatIsNotThereIsToldOnce) {
   EXPECT_EQ(import(folder.write("m.obj", "mtllib My Nice Model.mtl\n" + square + "f 1 2 3\n")).told.size(), 1u);
 }
 
-// A card of which the image's middle is cut out shines with what is left.
+// A card from which an image cuts out a part emits with the remaining part only.
 TEST(ObjIdioms, WhatIsCutOutDoesNotShine) {
   const TemporaryFolder folder;
   test::write_image(folder / "holes.png", {1, 1, 1, NumberType::uint8}, {0.4f});

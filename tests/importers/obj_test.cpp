@@ -74,8 +74,8 @@ TEST_F(ObjTest, WhatIsMissingIsToldAndNotFatal) {
   EXPECT_EQ(lines, (std::vector<int>{2, 3, 9}));  // the texture, the reflections, the material that no file describes
 }
 
-// An image of which the beginning can be read and the rest cannot: the model is there, and whoever opens the image for the
-// picture tells.
+// An image of which only the beginning can be read: the model is read, and the error is reported when the image is opened for
+// rendering.
 TEST_F(ObjTest, ImagesThatAreCutOff) {
   const std::string image = folder_ + "/bumps.tga";
   std::vector<float> texels;
@@ -100,7 +100,8 @@ TEST_F(ObjTest, ErrorsNameTheLine) {
   }
 }
 
-// A roof of two slopes, each 45 degrees: in one smoothing group the ridge's normal is upright, apart or off it is not.
+// A roof of two slopes, each 45 degrees: within one smoothing group the ridge's normal is vertical, with two groups or none it
+// is not.
 TEST_F(ObjTest, SmoothingGroupsBlendNormals) {
   const auto roof = [&](const char* first, const char* second) {
     return read_mesh(write("roof.obj", std::string("v -1 0 0\nv 0 1 0\nv 0 1 1\nv -1 0 1\nv 1 0 0\nv 1 0 1\n") + first +
@@ -140,7 +141,7 @@ TEST_F(ObjTest, BinaryAndTextStlAreTheSame) {
     text += "endloop\nendfacet\n";
   }
   const MeshData a = read_mesh(write("a.stl", binary)), b = read_mesh(write("b.stl", text + "endsolid\n"));
-  EXPECT_EQ(a.positions.size(), 4u);  // corners in one place are one vertex
+  EXPECT_EQ(a.positions.size(), 4u);  // corners at the same position are one vertex
   EXPECT_EQ(a.positions, b.positions);
   EXPECT_EQ(a.triangles, b.triangles);
   binary.resize(binary.size() - 1);

@@ -1,5 +1,5 @@
-// What other programs make of their files, where it is not what this one would do by itself: numbers of Mitsuba 3.9.1 and the
-// formulas of pbrt and of file formats.
+// Other programs' interpretation of their files, where Étendue by itself would read them differently: numbers of Mitsuba 3.9.1
+// and the formulas of pbrt and of file formats.
 
 #include <numbers>
 
@@ -18,7 +18,7 @@ using mitsuba_test::part;
 
 constexpr double pi_exactly = std::numbers::pi;
 
-/// The mean Y of a picture, whatever was told.
+/// The mean Y of a picture, whatever messages there were.
 double brightness(const Imported& imported, int samples) {
   EXPECT_TRUE(imported.errors.empty()) << imported.told();
   if (!imported.job) return 0;
@@ -50,8 +50,8 @@ std::string view(const std::string& type, int size, const std::string& more = {}
 
 // ---- Mitsuba ------------------------------------------------------------------------------------------------------
 
-// A ball of 120 triangles with smooth normals, lit from behind: at its outline Mitsuba loses the light that normals would
-// send through the surface. mitsuba 3.9.1, scalar_rgb, 4096 samples a pixel: 0.0274210 for an irradiance of 3.
+// A ball of 120 triangles with smooth normals, lit from behind: at its silhouette Mitsuba drops the light that shading normals
+// would send through the surface. mitsuba 3.9.1, scalar_rgb, 4096 samples a pixel: 0.0274210 for an irradiance of 3.
 TEST(OtherPrograms, MitsubaLosesLightAtSmoothOutlines) {
   const TemporaryFolder folder;
   constexpr int n = 12, m = 6;
@@ -75,15 +75,15 @@ TEST(OtherPrograms, MitsubaLosesLightAtSmoothOutlines) {
       import_file(folder.write("ball.xml", lit_mesh(view("orthographic", 16), "-1,-.2,.6", "ball.obj", diffuse)));
   EXPECT_EQ(smooth.told(), "");
   EXPECT_NEAR(brightness(smooth, 256), 0.0274210 / 3, 0.01 * 0.0274210 / 3);
-  // Where triangles have their own normals nothing is to be said.
+  // Triangles with face normals lose no light.
   const Imported flat =
       import_file(folder.write("flat.xml", lit_mesh(view("orthographic", 16), "-1,-.2,.6", "ball.obj",
                                                     "<boolean name=\"face_normals\" value=\"true\"/>" + diffuse)));
   EXPECT_EQ(text_of(flat.object(1), "shading_normals"), "folded");
 }
 
-// Coordinates that run mirrored over a square: green tilts along the cross product of the normal and the direction of u.
-// mitsuba 3.9.1, shadowing function off: 0.0546621 for green and 0.0739546 for red.
+// Surface coordinates mirrored over a square: green tilts the normal along the cross product of the normal and the direction of
+// u. mitsuba 3.9.1, without the shadowing function: 0.0546621 for green and 0.0739546 for red.
 TEST(OtherPrograms, MitsubaTiltsGreenAcrossU) {
   const TemporaryFolder folder;
   folder.write("square.obj",
@@ -100,15 +100,15 @@ TEST(OtherPrograms, MitsubaTiltsGreenAcrossU) {
                      lit_mesh(view("perspective", 1, "<float name=\"fov\" value=\"1\"/>"), "-.3,-.5,-.8", "square.obj", bsdf)));
   };
   const std::string off = "<boolean name=\"use_shadowing_function\" value=\"false\"/>";
-  // Eight bits are not 0.5, 0.8 and 0.9 exactly, which is a part in a hundred of the light.
+  // Eight bits do not represent 0.5, 0.8 and 0.9 exactly, which changes the light by one per cent.
   const Imported green = seen("green", "\x80\xcc\xe6", off), red = seen("red", "\xcc\x80\xe6", off);
   EXPECT_EQ(green.told(), "");
   EXPECT_NEAR(brightness(green, 64), 0.0546621, 0.02 * 0.0546621);
   EXPECT_NEAR(brightness(red, 64), 0.0739546, 0.02 * 0.0739546);
 }
 
-// What Mitsuba gives to tilted normals since 3.7.1: light at a slant is dimmed, and who looks at a slope from behind sees the
-// opposite one. mitsuba 3.9.1: 0.1148296 (0.1306420 without), and 0.1499672 (nothing without).
+// Since 3.7.1 Mitsuba treats tilted normals like microfacets: slanted light is attenuated (shadowing function), and a viewer
+// behind the tilted normal sees the flipped one. mitsuba 3.9.1: 0.1148296 (0.1306420 without), and 0.1499672 (nothing without).
 TEST(OtherPrograms, MitsubasTiltedNormalsAreSlopes) {
   const TemporaryFolder folder;
   folder.write("square.obj",
@@ -163,7 +163,7 @@ TEST(OtherPrograms, PbrtsDisksHaveCoordinatesAroundThem) {
   }
 }
 
-// v3's PlanarMapping2D takes the place in the world as it is (texture.cpp), v4's the place in the texture's coordinates.
+// v3's PlanarMapping2D uses the point in world space (texture.cpp), v4's the point in texture space.
 TEST(OtherPrograms, PbrtsThirdVersionProjectsPlacesOfTheWorld) {
   const TemporaryFolder folder;
   const auto seen = [&](const char* before, const char* kind) {
@@ -183,7 +183,7 @@ TEST(OtherPrograms, PbrtsThirdVersionProjectsPlacesOfTheWorld) {
   EXPECT_EQ(fourth, 0);
 }
 
-// lights.cpp of pbrt-v4: "scale" is multiplied by power / (power of what the light is), so that both count.
+// lights.cpp of pbrt-v4: "scale" is multiplied by power / (the light's own power), so that both count.
 TEST(OtherPrograms, PbrtsScaleCountsBesidePower) {
   const TemporaryFolder folder;
   folder.write("white.ppm", "P6\n2 2\n255\n" + std::string(12, '\xff'));
@@ -201,7 +201,8 @@ TEST(OtherPrograms, PbrtsScaleCountsBesidePower) {
   EXPECT_NEAR(amount(slide + "\"float scale\" 3", "scale") / beam, 3, 1e-6);
 }
 
-// A name stands for numbers of Jensen et al. 2001, table 1; they are reduced already, so that g is not used (materials.cpp).
+// A name stands for the coefficients of Jensen et al. 2001, table 1, which are reduced ones, so that g is not used
+// (materials.cpp).
 TEST(OtherPrograms, PbrtsSubsurfaceMaterialsMayBeNamed) {
   const TemporaryFolder folder;
   const auto made = [&](const std::string& material) {
@@ -260,7 +261,7 @@ TEST(OtherPrograms, ColoursOfFacesAreSeen) {
       "list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n"
       "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n"));
   EXPECT_EQ(text_of(part(part(*ply.scene->objects[0], "shader"), "base_color"), "name"), "face_color");
-  // Two triangles: one red, by the bits of either habit, and one without a colour of its own.
+  // Two triangles: one red, by the bits of either dialect, and one without a colour of its own.
   const auto stl = [&](const std::string& head, std::uint16_t first, std::uint16_t second) {
     std::string file = head + std::string(80 - head.size(), ' ') + std::string("\2\0\0\0", 4);
     for (const std::uint16_t bits : {first, second}) {

@@ -1,4 +1,4 @@
-// What scenes of pbrt that are found in the wild have, and its readers take without a word.
+// Elements of pbrt scenes found in the wild that pbrt's readers accept without a warning.
 
 #include "pbrt_support.h"
 
@@ -23,14 +23,14 @@ TEST(PbrtAsFound, RoughnessHasNoUpperEnd) {
   EXPECT_TRUE(told(disney, "'metallic' of a Disney material is kept")) << disney.told();
 }
 
-// Version 3 smooths nothing but glass of 0 along both directions: elsewhere 0 is 0.001, of which alpha is
+// In version 3 only glass with roughness 0 along both directions is smooth: elsewhere 0 is read as 0.001, whose alpha is
 // 1.62142 + 0.819955 x + 0.1734 x^2 + 0.0171201 x^3 + 0.000640711 x^4 at x = log(0.001), 0.0473.
 TEST(PbrtAsFound, NoRoughnessOfVersion3) {
   EXPECT_NEAR(number(shader(import_text(v3("Material \"metal\" \"float roughness\" 0" + sphere))), "roughness"), 0.0473, 1e-3);
   EXPECT_EQ(number(shader(import_text(v3("Material \"glass\"" + sphere))), "roughness"), 0);
   const Imported along = import_text(v3("Material \"glass\" \"float vroughness\" 0.1" + sphere));
   EXPECT_NEAR(number(shader(along), "roughness"), 0.0473, 1e-3);
-  // Glass knows no "roughness"; uber's v is u where only that is given.
+  // Glass has no parameter "roughness"; uber's v roughness equals that along u if only the latter is given.
   const Imported glass = import_text(v3("Material \"glass\" \"float roughness\" 0.2" + sphere));
   EXPECT_EQ(number(shader(glass), "roughness"), 0);
   EXPECT_TRUE(told(glass, "'roughness' of Material \"glass\" is not used")) << glass.told();
@@ -53,12 +53,12 @@ TEST(PbrtAsFound, MetalsThatReflectAll) {
 }
 
 TEST(PbrtAsFound, OddTransforms) {
-  // Of a matrix with a perspective directions know the upper left alone.
+  // For directions, only the upper left part of a matrix with perspective is used.
   const Imported turned = import_text(
       v4("AttributeBegin ConcatTransform [-0.224951 0 -0.97437 0 -0.97437 0 0.224951 0 0 1 0 8.87 0 0 0 1] LightSource "
          "\"infinite\" \"rgb L\" [1 1 1] AttributeEnd"));
   EXPECT_TRUE(turned.job && told(turned, "the last row of a matrix")) << turned.told();
-  // What cannot be inverted matters where something stands in it.
+  // A transform that cannot be inverted matters only if an object uses it.
   const Imported nothing = import_text(v4("AttributeBegin Scale 1 1 0 AttributeEnd" + sphere));
   EXPECT_TRUE(nothing.job && nothing.told().empty()) << nothing.told();
   const Imported flat = import_text(v4("AttributeBegin Scale 1 1 0" + sphere + "AttributeEnd" + sphere));
@@ -147,7 +147,7 @@ TEST(PbrtAsFound, ColoursWhereNumbersAreNeeded) {
                           sphere)),
            "the amount of a mixture that differs between colours is their brightness"));
   EXPECT_TRUE(told(import_text(v3("Material \"matte\" \"rgb Kd\" [1.5 1 1]" + sphere)), "'Kd' is at most 1 here"));
-  // An environment's scale of three numbers multiplies its colour, of which a pixel is the same.
+  // An environment's scale of three numbers multiplies its colour; the pixel is that of the product.
   const Xyz sky = seen(import_text(v3("LightSource \"infinite\" \"rgb L\" [1 1 1] \"rgb scale\" [.2 .4 .8]")), 256);
   const Xyz direct = seen(import_text(v3("LightSource \"infinite\" \"rgb L\" [.2 .4 .8]")), 256);
   EXPECT_NEAR(sky.x, direct.x, 0.01 * direct.x);
@@ -191,7 +191,7 @@ TEST(PbrtAsFound, PlasticKeepsItsColour) {
   const Imported i = import_text(v3("Material \"plastic\" \"rgb Kd\" [.8 .1 .1] \"rgb Ks\" [.1 .1 .1]" + sphere));
   const Value color = get(part(shader(i), "first"), "color");
   EXPECT_EQ((*color.as<Ref<Component>>())->class_info().name, "ConstantMap");  // which exporters can write
-  // Shares of 2/3 and 1/3: a spectrum times 1.5 would exceed 1 in the red, where that of a colour of 0.9 does not.
+  // Weights of 2/3 and 1/3: a spectrum scaled by 1.5 would exceed 1 in the red, while the spectrum of a colour of 0.9 does not.
   const Imported red = import_text(v3("Material \"plastic\" \"rgb Kd\" [.6 .1 .1] \"rgb Ks\" [.3 .3 .3]" + sphere));
   ASSERT_TRUE(red.job) << red.told();
   EXPECT_NO_THROW(prepare_tree(*red.job));

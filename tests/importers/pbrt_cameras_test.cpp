@@ -12,7 +12,7 @@ using V = DoubleVector3;
 V times(double s, const V& v) { return {s * v.x, s * v.y, s * v.z}; }
 V unit(const V& v) { return times(1 / std::sqrt(dot(v, v)), v); }
 
-/// pbrt's camera, which LookAt places: to the right, up and forward.
+/// The axes of pbrt's camera placed by LookAt: right, up and forward.
 struct Axes {
   V origin, right, up, forward;
   V world(const V& v) const {
@@ -20,7 +20,7 @@ struct Axes {
     return {a.x + b.x + c.x, a.y + b.y + c.y, a.z + b.z + c.z};
   }
 };
-/// "LookAt from to up", after a "Scale -1 1 1" if mirrored, which turns its right to the left.
+/// "LookAt from to up", after a "Scale -1 1 1" if mirrored, which flips its right to the left.
 Axes look_at(const V& from, const V& to, const V& up, bool mirrored) {
   Axes a;
   a.origin = from;
@@ -33,7 +33,7 @@ Axes look_at(const V& from, const V& to, const V& up, bool mirrored) {
 
 const std::string look = "LookAt 1 2 3  2 4 2.5  0.1 0.2 1\n";
 
-/// Rays of a camera against those of a function of (u, v), from 0 to 1, in pbrt's camera coordinates: origin and direction.
+/// Compares a camera's rays with a function of (u, v) in [0, 1]^2 that returns origin and direction in pbrt's camera space.
 template <class F>
 void expect_rays(const std::string& camera, bool v3, const F& expected, const std::string& film = "",
                  const std::string& before = "") {
@@ -65,12 +65,12 @@ void expect_rays(const std::string& camera, bool v3, const F& expected, const st
   }
 }
 
-// (u, v) are angles of spherical coordinates whose pole is y: Pharr, Jakob & Humphreys, 5.3 and, of version 3, 6.3.
+// (u, v) are the angles of spherical coordinates whose pole is y: Pharr, Jakob & Humphreys, 5.3 and, for version 3, 6.3.
 std::pair<V, V> sphere(double u, double v) {
   const double theta = M_PI * v, phi = 2 * M_PI * u;
   return {{}, {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)}};
 }
-// Clarberg's square, whose third axis is y: section 3.8.3.
+// Clarberg's equal-area square, whose third axis is y: section 3.8.3.
 std::pair<V, V> square(double u, double v) {
   const double a = 2 * u - 1, b = 2 * v - 1, distance = 1 - (std::abs(a) + std::abs(b)), r = 1 - std::abs(distance);
   const double phi = (r == 0 ? 1 : (std::abs(b) - std::abs(a)) / r + 1) * M_PI / 4, ring = r * std::sqrt(2 - r * r);
@@ -85,7 +85,7 @@ TEST(PbrtCamera, SphericalOnes) {
   expect_rays("Camera \"environment\"", true, sphere);
 }
 
-// The screen window is what is seen of a screen at the distance 1 / tan(fov / 2), upwards.
+// The screen window is the visible part of a screen at the distance 1 / tan(fov / 2); v runs upwards.
 TEST(PbrtCamera, WindowsBesideTheMiddle) {
   const double x0 = -0.75, x1 = 3.75, y0 = -2.5, y1 = 0.5;
   const auto at = [&](double u, double v) { return V{x0 + u * (x1 - x0), y1 + v * (y0 - y1), 0}; };
@@ -97,8 +97,8 @@ TEST(PbrtCamera, WindowsBesideTheMiddle) {
   });
 }
 
-// Film of 36 mm by 24 mm at the origin, a lens of 100 mm that makes 2 m sharp, and a stop so small that it is a pinhole. The
-// film's right half sees what is to the left of the lens. A second time in a world twice as large.
+// Film of 36 mm by 24 mm at the origin, a lens of 100 mm focused at 2 m, and a stop so small that it is a pinhole. The film's
+// right half sees the scene to the left of the lens. Tested also in a world twice as large.
 TEST(PbrtCamera, RealisticOnes) {
   const double image = (2 - std::sqrt(4 - 4 * 0.1 * 2)) / 2;  // 1 / s + 1 / s' = 1 / f, s + s' = 2
   for (const double scale : {1.0, 2.0})
@@ -109,7 +109,7 @@ TEST(PbrtCamera, RealisticOnes) {
         "\"float diagonal\" 43.2666", fmt::format("Scale {0} {0} {0}\n", 1 / scale));
 }
 
-// The irradiance of the film under even light: pi sin^2 of the stop's angle, for a shutter of 1 s and ISO 100.
+// The irradiance of the film in a uniform environment: pi sin^2 of the stop's angle, for a shutter of 1 s and ISO 100.
 TEST(PbrtCamera, RealisticOnesMeasureIrradiance) {
   const TemporaryFolder folder;
   folder.write("thin.dat", "100 1e-6 1.5 40\n-100 1e-6 1 40\n0 0 0 40\n");

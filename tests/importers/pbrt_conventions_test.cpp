@@ -1,4 +1,4 @@
-// What pbrt's numbers mean: each convention with a number that follows from its documentation.
+// The meaning of pbrt's numbers: each convention is tested with a number that follows from its documentation.
 
 #include "etendue/describe/color.h"
 #include "pbrt_support.h"
@@ -6,7 +6,7 @@
 namespace etendue::pbrt_test {
 namespace {
 
-/// A light that fills the view; the camera looks at its front (+z of a disk turned towards it).
+/// A light that fills the view; the camera sees its front (+z of a disk rotated towards it).
 std::string lamp(const std::string& light) {
   return "AreaLightSource \"diffuse\" " + light + "\nTranslate 0 0 5 Rotate 180 0 1 0 Shape \"disk\" \"float radius\" 10\n";
 }
@@ -27,7 +27,7 @@ TEST(PbrtLight, SpectraOfVersion4HaveLuminanceOne) {
 }
 
 TEST(PbrtLight, BlackBodyOfVersion3HasAPeakOfOne) {
-  // By Planck's law at 1 nm, over the observer's: the mean of B / B_max as the eye weighs it.
+  // Planck's law in steps of 1 nm: the mean of B / B_max, weighted by the observer's ybar.
   const auto planck = [](double nm) { return 1 / (std::pow(nm, 5) * (std::exp(1.438777e7 / (nm * 5000)) - 1)); };
   double sum = 0, weights = 0;
   for (int nm = 360; nm <= 830; ++nm) {
@@ -43,11 +43,11 @@ TEST(PbrtLight, ASpectrumOfVersion3IsAsItIs) {
 }
 
 TEST(PbrtLight, PowerIsSharedOverArea) {
-  // L = power / (area pi), where a luminance of 1 is a pixel of 1.
+  // L = power / (area pi); a luminance of 1 gives a pixel of 1.
   EXPECT_NEAR(seen(import_text(v4(lamp("\"float power\" 1000"))), 4096).y, 1000 / (100 * M_PI * M_PI), 0.02);
 }
 
-/// Of a matt floor of reflectance 0.5 seen from above, at 2 m below the light: E / (2 pi).
+/// A diffuse floor of reflectance 0.5 seen from above, 2 m below the light: its radiance is E / (2 pi).
 std::string floor_under(const std::string& light) {
   return light +
          "\nMaterial \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5] Translate 0 0 5 Shape \"disk\" \"float radius\" 50\n";
@@ -73,7 +73,7 @@ TEST(PbrtLight, PointSpotAndDistant) {
 }
 
 TEST(PbrtLight, TheFrontIsWhereNormalsPoint) {
-  // Both triangles run so that +z is in front, but the normals of the second point to -z, at the camera.
+  // Both triangles are oriented so that +z is in front, but the normals of the second point to -z, at the camera.
   const auto mesh = [](const std::string& more) {
     return v4("AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\nShape \"trianglemesh\" \"point3 P\" [-9 -9 5 9 -9 5 0 9 5] " +
               more);
@@ -85,7 +85,7 @@ TEST(PbrtLight, TheFrontIsWhereNormalsPoint) {
       v4("AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\nReverseOrientation Shape \"trianglemesh\" \"point3 P\" [-9 -9 5 9 -9 "
          "5 0 9 5]");
   EXPECT_GT(seen(import_text(reversed), 64).y, 0.5);
-  // A mirroring transform turns nothing over.
+  // A mirroring transform does not flip the front.
   const auto mirrored = v4(
       "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\nScale -1 1 1 Shape \"trianglemesh\" \"point3 P\" [-9 -9 5 9 -9 5 0 9 5]");
   EXPECT_LT(seen(import_text(mirrored), 64).y, 0.5);
@@ -101,7 +101,7 @@ TEST(PbrtMaterial, RoughnessBecomesAlpha) {
   EXPECT_NEAR(alpha(v4("Material \"dielectric\" \"float uroughness\" 0.09 \"float vroughness\" 0.04")), 0.3, 1e-6);
   EXPECT_NEAR(alpha(v4("Material \"dielectric\" \"float uroughness\" 0.09 \"float vroughness\" 0.04"), "roughness_v"), 0.2,
               1e-6);
-  // RoughnessToAlpha of v3's TrowbridgeReitzDistribution at 0.1 and 0.3, computed apart.
+  // RoughnessToAlpha of v3's TrowbridgeReitzDistribution at 0.1 and 0.3, computed separately.
   const std::string metal = v3("");
   const auto v3_scene = [](const std::string& material) {
     return "Camera \"perspective\" Film \"image\" WorldBegin\n" + material;
@@ -111,8 +111,9 @@ TEST(PbrtMaterial, RoughnessBecomesAlpha) {
 }
 
 TEST(PbrtMaterial, DiffuseAndPlastic) {
-  // In light of 1 from everywhere a matt surface shows its reflectance; v3's default plastic shows Kd and Ks times the
-  // dielectric's reflectance seen from above, ((n - 1) / (n + 1))^2 = 0.04, at a roughness of nearly nothing.
+  // In a uniform environment of radiance 1 a diffuse surface has the radiance of its reflectance; v3's default plastic has Kd
+  // plus Ks times the dielectric's reflectance at normal incidence, ((n - 1) / (n + 1))^2 = 0.04, at a roughness of nearly
+  // nothing.
   const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
   const std::string disk = "Translate 0 0 5 Shape \"disk\" \"float radius\" 50\n";
   EXPECT_NEAR(seen(import_text(v4(sky + "Material \"diffuse\" \"rgb reflectance\" [0.3 0.3 0.3]\n" + disk)), 1024).y, 0.3,
@@ -126,7 +127,8 @@ TEST(PbrtMaterial, DiffuseAndPlastic) {
               0.4 + 0.5 * 0.04, 0.01);
 }
 
-// v3's plastic takes the Fresnel reflectance of light from within: beyond asin(1 / 1.5), which is 42 degrees, all is reflected.
+// v3's plastic uses the Fresnel reflectance of light from inside: beyond asin(1 / 1.5), which is 42 degrees, all of it is
+// reflected.
 TEST(PbrtMaterial, PlasticIsSeenFromWithin) {
   EXPECT_NEAR(seen(import_text(v3("LightSource \"infinite\" \"rgb L\" [1 1 1]\nMaterial \"plastic\" \"rgb Kd\" [0.4 0.4 0.4] "
                                   "\"rgb Ks\" [0.5 0.5 0.5] \"float roughness\" 0.01 \"bool remaproughness\" "
@@ -181,7 +183,7 @@ TEST(PbrtIntegrator, DepthCountsScattering) {
 }
 
 TEST(PbrtMotion, ATransformAtTwoTimes) {
-  // From x = -6 at 0 to x = +6 at 1: in the middle of the view (1 pixel of nearly nothing) at half the time.
+  // From x = -6 at 0 to x = +6 at 1: it is in the middle of the view (1 pixel of nearly no size) half of the time.
   const std::string world =
       "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool twosided\" true\nTranslate 0 0 5\n"
       "ActiveTransform StartTime Translate -6 0 0 ActiveTransform EndTime Translate 6 0 0 ActiveTransform "

@@ -1,4 +1,4 @@
-// Where the directions of environment maps lie.
+// The directions of the texels of environment maps.
 
 #include "etendue/describe/color.h"
 #include "pbrt_support.h"
@@ -18,7 +18,7 @@ std::vector<float> ramps(int width, int height) {
   return rgb;
 }
 
-/// Red and green in a direction.
+/// Red and green seen in a direction.
 std::array<double, 2> towards(const TemporaryFolder& folder, bool v4, const std::array<double, 3>& d) {
   const std::string up = std::abs(d[1]) > 0.9 ? "1 0 0" : "0 1 0";
   char look[200];
@@ -35,7 +35,7 @@ std::array<double, 2> towards(const TemporaryFolder& folder, bool v4, const std:
 TEST(PbrtEnvironment, EqualAreasOfVersion4) {
   const TemporaryFolder folder;
   test::write_image(folder / "map.exr", {size, size, 3, NumberType::single}, ramps(size, size));
-  // Clarberg's mapping the other way, from the square to the sphere.
+  // Clarberg's mapping, from the square to the sphere.
   for (const auto& [u, v] : {std::pair(0.5, 0.5), {0.3, 0.4}, {0.6, 0.35}, {0.8, 0.55}, {0.1, 0.2}, {0.85, 0.9}, {0.4, 0.9}}) {
     const double a = 2 * u - 1, b = 2 * v - 1, distance = 1 - (std::abs(a) + std::abs(b)), r = 1 - std::abs(distance);
     const double phi = (r == 0 ? 1 : (std::abs(b) - std::abs(a)) / r + 1) * M_PI / 4, ring = r * std::sqrt(2 - r * r);
@@ -60,7 +60,7 @@ TEST(PbrtEnvironment, LongitudeAndLatitudeOfVersion3) {
   }
 }
 
-/// A matt floor of reflectance 0.5 that faces +z, seen from above: E / (2 pi).
+/// The radiance of a diffuse floor of reflectance 0.5 that faces +z, seen from above: E / (2 pi).
 double floor_under(const TemporaryFolder& folder, const std::string& light) {
   return seen(import_text(folder,
                           "LookAt 0 0 5 0 0 0 0 1 0\n" + v4("LightSource \"infinite\" " + light +
@@ -69,7 +69,7 @@ double floor_under(const TemporaryFolder& folder, const std::string& light) {
       .y;
 }
 
-// Of a constant light pbrt makes the illuminance that is asked for, of an image twice as much: it weighs texels by 2 pi.
+// With a constant light pbrt gives the requested illuminance, with an image twice as much: it weights texels by 2 pi.
 TEST(PbrtEnvironment, Illuminance) {
   const TemporaryFolder folder;
   test::write_image(folder / "map.exr", {size, size, 3, NumberType::single}, std::vector<float>(size * size * 3, 0.5f));
@@ -77,7 +77,7 @@ TEST(PbrtEnvironment, Illuminance) {
   EXPECT_NEAR(floor_under(folder, "\"string filename\" \"map.exr\" \"float illuminance\" 5"), 10 / (2 * M_PI), 0.03);
 }
 
-// The light of a portal without an image is not divided by its luminance: a black body's highest value is 1.
+// The light of a portal without an image is not divided by its luminance: a black body's maximum is 1.
 TEST(PbrtEnvironment, LightOfPortals) {
   const TemporaryFolder folder;
   const std::string light = "\"blackbody L\" 3000 ";

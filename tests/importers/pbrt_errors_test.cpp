@@ -1,4 +1,4 @@
-// Files that are wrong: what is said, and where.
+// Faulty files: the messages and their locations.
 
 #include "pbrt_support.h"
 
@@ -43,7 +43,7 @@ TEST(PbrtErrors, AllAreTold) {
   EXPECT_EQ(i.errors.size(), 3u) << i.told();
 }
 
-// pbrt looks for a parameter from the last one given backwards.
+// pbrt searches parameters backwards, from the last one given.
 TEST(PbrtErrors, TheLastOfTwoParametersCounts) {
   const Imported i = import_text("Film \"rgb\"\nWorldBegin\nShape \"sphere\" \"float radius\" 2\n\"float radius\" 3\n");
   ASSERT_TRUE(i.job) << i.told();

@@ -1,4 +1,4 @@
-// What is exported to pbrt-v4 and imported again is the same scene.
+// A scene exported to pbrt-v4 and imported again is the same scene.
 
 #include "etendue/exporter.h"
 #include "pbrt_support.h"
@@ -19,7 +19,7 @@ Exported exported(const Ref<Job>& job, const std::string& path) {
   return result;
 }
 
-/// A job with a camera that sees all of it, and its picture's mean with as many samples as make it good to half a per cent.
+/// A job whose camera sees all of it, with enough samples for the picture's mean to be good to half a per cent.
 Ref<Job> job_of(const std::string& objects, const std::string& camera = "from: [1, 2, 6] m, to: [0, 0, 0] m, fov: 40 deg") {
   return load_job_text(
       "Job {\n tone_map: ExposureToneMap {}\n renderer: PathTracer { samples: 1024, max_depth: 6 }\n camera: " +
@@ -30,7 +30,7 @@ Ref<Job> job_of(const std::string& objects, const std::string& camera = "from: [
       "test.etd");
 }
 
-/// Exports, imports and compares pixel by pixel: relative to the brightest, within noise.
+/// Exports, imports and compares pixel by pixel: relative to the brightest pixel, within noise.
 void expect_same(const std::string& objects, const std::string& told = "",
                  const std::string& camera = "from: [1, 2, 6] m, to: [0, 0, 0] m, fov: 40 deg", double tolerance = 0.02) {
   const TemporaryFolder folder;
@@ -56,7 +56,7 @@ void expect_same(const std::string& objects, const std::string& told = "",
 
 const std::string sky = "Environment { emission: DiffuseEmission { radiance: rgb(0.4, 0.5, 0.6) } }\n";
 
-// Squares, where pbrt's disk has sectors of rings; and what goes around goes around.
+// A Disc's uv cells are squares, where pbrt's disk has sectors of rings; only `coordinates: around` is exported as a disk.
 TEST(PbrtExport, TexturesOfDiscs) {
   const std::string squares = "shader: Lambertian { color: CheckerMap { first: 0.1, second: 0.9, repeat: [3, 5, 1] } } }\n";
   expect_same("Disc { radius: 2 m, transform: rotate(-60, \"x\"), " + squares + sky,
@@ -158,7 +158,7 @@ TEST(PbrtExport, WhatCannotBeExpressedIsTold) {
   const TemporaryFolder folder;
   const Exported e = exported(job_of("Torus { shader: PhongShader {} }\n"), folder / "scene.pbrt");
   EXPECT_NE(e.told.find("pbrt has no shape like Torus"), std::string::npos) << e.told;
-  // Members that nobody asked for.
+  // Members that the exporter does not read.
   const Exported f = exported(job_of("Sphere { priority: 1, visible_to_camera: false }\n"), folder / "scene.pbrt");
   EXPECT_NE(f.told.find("'priority' of Sphere is left out"), std::string::npos) << f.told;
   EXPECT_NE(f.told.find("'visible_to_camera' of Sphere is left out"), std::string::npos) << f.told;

@@ -1,4 +1,5 @@
-// Which side of a shape is pbrt's front: what is inside of a body, where light goes, and what holes do to it.
+// Which side of a shape is its front in pbrt: it determines the inside of a body, the side that emits, and the effect of holes
+// (alpha).
 
 #include "pbrt_support.h"
 #include "support/image_file.h"
@@ -8,7 +9,7 @@ namespace {
 
 const std::string sky = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
 
-// A bubble: where the orientation is reversed glass is outside. Its index against the other side is the inverse.
+// A bubble: with reversed orientation the glass is outside, and its index relative to the other side is the inverse.
 TEST(PbrtFront, ReversedQuadricsHaveTheirIndexOutside) {
   const auto shader = [](const std::string& world) -> const Component& {
     static Imported i;
@@ -23,7 +24,7 @@ TEST(PbrtFront, ReversedQuadricsHaveTheirIndexOutside) {
   const Component& turned = shader(glass + "ReverseOrientation Shape \"cylinder\"");
   EXPECT_EQ(number(turned, "ior"), 1);
   EXPECT_NEAR(number(turned, "exterior"), 1.7, 1e-6);
-  // Both of one material, one within a mixture.
+  // Two shapes of one material, one of them through a mixture.
   const Imported both = import_text(
       v4("MakeNamedMaterial \"g\" \"string type\" \"dielectric\"\nMakeNamedMaterial \"m\" \"string type\" \"mix\" \"string "
          "materials\" [\"g\" \"g\"]\nNamedMaterial \"m\" Shape \"sphere\" ReverseOrientation Shape \"sphere\"\n"));
@@ -32,10 +33,9 @@ TEST(PbrtFront, ReversedQuadricsHaveTheirIndexOutside) {
   EXPECT_NEAR(number(part(part(object(both, 1), "shader"), "first"), "exterior"), 1.5, 1e-6);
 }
 
-// The boundary of glass and water within a glass: its index is the quotient, which it stays.
+// The boundary of glass and water within a glass: its index is the quotient, which is kept.
 TEST(PbrtFront, IndicesAreAgainstTheOtherSide) {
-  // Light straight through three boundaries of 1.5, 1.2 and 1 / (1.5 * 1.2) and back again: nearly nothing is lost at each but
-  // (n - 1)^2 / (n + 1)^2.
+  // Light at normal incidence through boundaries of 1.5 and 1.2: at each only (n - 1)^2 / (n + 1)^2 is lost.
   const auto disk = [](double z, double eta, const char* more = "") {
     char text[200];
     std::snprintf(text, sizeof text,
@@ -45,14 +45,15 @@ TEST(PbrtFront, IndicesAreAgainstTheOtherSide) {
     return std::string(text);
   };
   const auto passes = [](double n) { return 1 - std::pow((n - 1) / (n + 1), 2); };
-  // The camera looks along +z; disks turned so that their front is towards it.
+  // The camera looks along +z; the disks are rotated so that their front faces it.
   const char* facing = "Rotate 180 0 1 0";
   const std::string lamp =
       "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool twosided\" true Translate 0 0 90 Shape \"disk\" \"float radius\" "
       "50";
   const Imported i =
       import_text("Integrator \"volpath\" \"integer maxdepth\" 2\n" + v4(disk(1, 1.5, facing) + disk(2, 1.2, facing) + lamp));
-  // No path that is reflected within is as short as that, so what passes is the product, by n^2 of the last medium.
+  // Paths with internal reflections are too long for maxdepth, so the radiance is the product of the transmittances, divided by
+  // the square of the last medium's index.
   EXPECT_NEAR(seen(i, 16384).y, passes(1.5) * passes(1.2) / std::pow(1.5 * 1.2, 2), 0.01);
 }
 
@@ -70,7 +71,7 @@ TEST(PbrtFront, ReversedQuadricsExchangeTheirMedia) {
   EXPECT_NEAR(through("\"\" \"a\" ReverseOrientation"), std::exp(-1.0), 0.01);
 }
 
-// A file whose triangles run against its normals: the front of glass is where these point.
+// A file whose triangles are oriented against its normals: the front of glass is where the normals point.
 TEST(PbrtFront, NormalsOfFilesSayWhereGlassIs) {
   const TemporaryFolder folder;
   folder.write("a.ply",
@@ -112,7 +113,7 @@ TEST(PbrtFront, ReversedBumpsAreHollows) {
   EXPECT_EQ(part(part(object(i, 1), "shader"), "height").class_info().name, "FormulaMap");
 }
 
-/// A light of 1 before the camera.
+/// The radiance seen of a light of 1 before the camera.
 double lamp(const TemporaryFolder& folder, bool v4_file, const std::string& before, const std::string& more,
             Imported* told = {}) {
   const std::string world =
@@ -142,8 +143,8 @@ TEST(PbrtAlpha, LightsOfZeroLightAndAreNotSeen) {
   Imported told;
   EXPECT_EQ(lamp(folder, true, "", "\"float alpha\" 0", &told), 0);
   EXPECT_NE(told.told().find("a light whose alpha is 0 is left out of what the camera sees"), std::string::npos) << told.told();
-  // A square lamp before a matt wall of 0.5: the wall is lit, and seen through the lamp, whatever that is made of. With half
-  // its width the distance, a radiance of 1 gives the wall's middle the irradiance 4 s atan(s), s = 1 / sqrt(2): pi times four
+  // A square lamp before a diffuse wall of 0.5: the wall is lit, and seen through the lamp, whatever its material. If half its
+  // width is the distance, a radiance of 1 gives the wall's middle the irradiance 4 s atan(s), s = 1 / sqrt(2): pi times four
   // quarters, each seen from below its corner (Howell, A catalog of radiation heat transfer configuration factors, B-3).
   const auto ceiling = [&](const std::string& alpha) {
     const std::string wall =
@@ -168,7 +169,8 @@ TEST(PbrtAlpha, Version3HasHolesWhereItIsZeroAlone) {
   EXPECT_EQ(opacity("\"float alpha\" 0"), 0);
 }
 
-// Looking for glass in mixtures takes no longer than there are materials, and ends in those of themselves.
+// The search for glass in mixtures takes time proportional to the number of materials, and terminates for mixtures that contain
+// themselves.
 TEST(PbrtFront, MixturesOfOneAnother) {
   const std::string turned = "ReverseOrientation Shape \"sphere\"";
   const Imported itself =

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int size = 16;
 
-/// Grey, different everywhere.
+/// Grey values, different everywhere.
 std::vector<float> values(int width, int height) {
   std::vector<float> rgb;
   for (int i = 0; i < width * height; ++i)
@@ -21,7 +21,7 @@ struct Light {
   Ref<Job> job;
   SurfacePoint point;
   const EmissionShader& emission() const { return *job->scene->objects.at(0)->emission; }
-  /// Its intensity over that of another light that shines alike everywhere.
+  /// Its intensity over that of another light, which is the same in all directions.
   double over(const Light& other, const Vector3& direction) const {
     const Wavelengths w = test::wavelengths();
     return double(emission().radiance(point, direction, w)[1] / other.emission().radiance(other.point, direction, w)[1]);
@@ -46,7 +46,7 @@ Vector3 world(const DoubleVector3& d, bool mirrored) {
   return normalize(t(Vector3(d)));
 }
 
-// The square's third axis is the light's y, its second the light's z: section 12.2.3. Texels have nothing between.
+// The square's third axis is the light's y, its second the light's z: section 12.2.3. Texels are not interpolated.
 TEST(PbrtGoniometric, SquaresOfVersion4) {
   const TemporaryFolder folder;
   const std::vector<float> rgb = values(size, size);
@@ -83,7 +83,7 @@ TEST(PbrtGoniometric, LongitudeAndLatitudeOfVersion3) {
   }
 }
 
-// "power" is that of the light with its image, times "scale"; without an image the light is a point.
+// "power" is that of the light with its image, times "scale"; without an image the light is a point light.
 TEST(PbrtGoniometric, PowerIsThatOfTheImage) {
   const TemporaryFolder folder;
   test::write_image(folder / "map.exr", {size, size, 3, NumberType::single}, values(size, size));
@@ -111,8 +111,8 @@ TEST(PbrtSpot, FallsOffAsInItsVersion) {
   }
 }
 
-// Even over directions, the image's right towards +x and its top towards -y; "power" is the integral over directions:
-// 12.2.2. Of a white half and a grey one of 60 degrees across, seen from the middle: I = power / (mean * solid angle).
+// Uniform over directions, the image's right towards +x and its top towards -y; "power" is the integral over directions:
+// 12.2.2. An image, 60 degrees across, of a white half and a grey one, at its middle: I = power / (mean * solid angle).
 TEST(PbrtProjection, IsEvenOverDirections) {
   const TemporaryFolder folder;
   std::vector<float> rgb;

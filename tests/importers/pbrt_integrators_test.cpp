@@ -1,4 +1,4 @@
-// Integrators of pbrt, by pictures that follow from what they are.
+// pbrt's integrators, tested with pictures that follow from their definitions.
 
 #include "pbrt_support.h"
 
@@ -10,7 +10,7 @@ const std::string diffuse = "Material \"matte\" \"rgb Kd\" [.5 .5 .5]\n",
                   mirror = "Material \"mirror\" \"rgb Kr\" [.9 .9 .9]\n";
 
 std::string ball(double z) { return "AttributeBegin Translate 0 0 " + std::to_string(z) + " Shape \"sphere\" AttributeEnd\n"; }
-/// A triangle across the z axis, of about this size.
+/// A triangle perpendicular to the z axis, of about this size.
 std::string plate(double z, double size) {
   const std::string s = std::to_string(size), at = std::to_string(z);
   return "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [-" + s + " -" + s + " " + at + " " + s + " -" + s +
@@ -26,15 +26,15 @@ double brightness(const std::string& integrator, const std::string& world) {
   return seen(i, 1024).y;
 }
 
-// Both of version 3 find the direct light of all luminaires, with an extent or without: of the albedo 0.5 under a white sky
-// half of it comes back, of a point of intensity 10 at distance 5 along the normal 10 / 25 * 0.5 / pi.
+// Both integrators of version 3 compute the direct light of all luminaires, delta lights included: with the albedo 0.5 under a
+// white sky half of the light is reflected, from a point of intensity 10 at distance 5 along the normal 10 / 25 * 0.5 / pi.
 TEST(PbrtIntegrators, WhittedAndDirectLightingSeeAllLuminaires) {
   for (const std::string integrator : {"\"whitted\"", "\"directlighting\"", "\"directlighting\" \"string strategy\" \"one\""}) {
     EXPECT_NEAR(brightness(integrator, sky + diffuse + ball(5)), 0.5, 0.005) << integrator;
     EXPECT_NEAR(brightness(integrator, "LightSource \"point\" \"rgb I\" [10 10 10]\n" + diffuse + plate(5, 1)),
                 10.0 / 25 * 0.5 / M_PI, 0.001)
         << integrator;
-    // A luminous sphere all around.
+    // A luminous sphere around the scene.
     EXPECT_NEAR(brightness(integrator,
                            "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] ReverseOrientation Shape \"sphere\" "
                            "\"float radius\" 50 AttributeEnd\n" +
@@ -44,7 +44,7 @@ TEST(PbrtIntegrators, WhittedAndDirectLightingSeeAllLuminaires) {
   }
 }
 
-// Depths count surfaces that are seen: the first one alone is no mirror, and of glass what is reflected first.
+// The depth counts surfaces along the path: at depth 1 a mirror is black, and at depth 2 glass shows its first reflection only.
 TEST(PbrtIntegrators, MirrorsAndGlassAreFollowed) {
   const std::string behind = sky + diffuse + plate(-5, 5) + mirror + plate(5, 0.2);
   const std::string glass = sky + "Material \"glass\" \"float eta\" 1.5\n" + ball(5);
@@ -56,13 +56,13 @@ TEST(PbrtIntegrators, MirrorsAndGlassAreFollowed) {
     EXPECT_NEAR(brightness(integrator + " \"integer maxdepth\" 3", glass), 0.04 + 0.96 * 0.96, 0.002) << integrator;
     EXPECT_NEAR(brightness(integrator, glass), 1, 0.002) << integrator;
   }
-  // What surfaces send each other is not found.
+  // Light reflected between surfaces is not found.
   EXPECT_EQ(brightness("\"whitted\"", "LightSource \"point\" \"rgb I\" [1 1 1] \"point from\" [0 9 0]\n" + diffuse +
                                           plate(5, 1) + "Translate 0 9 0\n" + ball(0)),
             0);
 }
 
-// Version 3 has not divided by pi; where nothing is seen it is dark.
+// Version 3 does not divide by pi; pixels without a hit are black.
 TEST(PbrtIntegrators, AmbientOcclusion) {
   EXPECT_NEAR(brightness("\"ambientocclusion\"", ball(5)), M_PI, 0.01);
   EXPECT_EQ(brightness("\"ambientocclusion\"", ""), 0);
@@ -73,7 +73,7 @@ TEST(PbrtIntegrators, AmbientOcclusion) {
   EXPECT_EQ(v4_seen(""), 0);
 }
 
-// Multiplexed Metropolis (pbrt-v3, MLTIntegrator), with a shutter that is open for a while as pbrt's is by itself.
+// Multiplexed Metropolis (pbrt-v3, MLTIntegrator), with a shutter that is open for some time, as it is in pbrt by default.
 TEST(PbrtIntegrators, MetropolisIsTheSame) {
   const Imported i =
       by("\"mlt\" \"integer maxdepth\" 4 \"float largestepprobability\" .4 \"float sigma\" .02 \"integer chains\" 64 "
@@ -87,7 +87,7 @@ TEST(PbrtIntegrators, MetropolisIsTheSame) {
   EXPECT_NEAR(number(r, "large_steps"), 0.4, 1e-6);
   EXPECT_NEAR(number(r, "deviation"), 0.02, 1e-6);
   EXPECT_EQ(number(r, "chains"), 64);
-  EXPECT_EQ(number(r, "samples") * number(r, "mutations_per_sample"), 12);  // not fewer than 10
+  EXPECT_EQ(number(r, "samples") * number(r, "mutations_per_sample"), 12);  // at least 10
   EXPECT_NE(by("\"mlt\" \"float largestepprobability\" 0", ball(5)).told().find("'largestepprobability' becomes 0.01, not 0"),
             std::string::npos);
   const double seen_by_paths = brightness("\"path\"", sky + diffuse + ball(5));

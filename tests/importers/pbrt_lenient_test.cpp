@@ -1,11 +1,11 @@
-// What version 3 of pbrt warns of and goes on: read as it does, and told; version 4 stops there.
+// Errors of which version 3 of pbrt only warns: they are read as it reads them, and reported; version 4 stops at them.
 
 #include "pbrt_support.h"
 
 namespace etendue::pbrt_test {
 namespace {
 
-/// A scene of version 3 whose third line begins with this.
+/// A scene of version 3 whose third line begins with `world`.
 Imported lenient(const std::string& world) {
   return import_text("Film \"image\" \"integer xresolution\" 1 \"integer yresolution\" 1\nWorldBegin\n" + world +
                      "\nWorldEnd\n");
@@ -28,7 +28,7 @@ TEST(PbrtLenient, WhatStandsBehindNumbers) {
   const Imported strict = import_text("Film \"rgb\"\nWorldBegin\nShape \"sphere\" \"float radius\" [2,]\n");
   EXPECT_FALSE(strict.job);
   EXPECT_NE(strict.told().find("3:32: \"float radius\" needs a finite number, not '2,'"), std::string::npos) << strict.told();
-  EXPECT_FALSE(import_text("Film \"image\"\nWorldBegin\nShape \"sphere\" \"float radius\" [1 , 2]\n").job);  // nor there
+  EXPECT_FALSE(import_text("Film \"image\"\nWorldBegin\nShape \"sphere\" \"float radius\" [1 , 2]\n").job);  // nor in version 3
 }
 
 TEST(PbrtLenient, UnknownThings) {
@@ -87,14 +87,14 @@ TEST(PbrtLenient, ValuesThatDoNotFit) {
   EXPECT_EQ(objects(beyond), 1u);
 }
 
-// Files that are not there; version 4 ends without them.
+// Missing files; version 4 stops at them.
 TEST(PbrtLenient, MissingFiles) {
   const std::string mesh = "Shape \"plymesh\" \"string filename\" \"gone.ply\"\n";
   const Imported i = lenient(mesh + "LightSource \"point\" \"spectrum I\" \"gone.spd\"\n" + sphere);
   EXPECT_TRUE(tells(i, "there is no file 'gone.ply': it is left out, as by version 3 of pbrt"));
   EXPECT_TRUE(tells(i, "4:21: there is no file 'gone.spd': 'I' is black, as by version 3 of pbrt"));
   EXPECT_GE(objects(i), 1u);
-  // An index of 0 would be none: a metal without its files is copper.
+  // An index of 0 would be meaningless: a metal without its files is copper.
   const Imported metal =
       lenient("Material \"metal\" \"spectrum eta\" \"gone.eta.spd\" \"spectrum k\" \"gone.k.spd\"\n" + sphere);
   EXPECT_TRUE(tells(metal, "there is no file 'gone.eta.spd': that of copper is taken"));
@@ -103,7 +103,7 @@ TEST(PbrtLenient, MissingFiles) {
   EXPECT_NE(strict.told().find("there is no file 'gone.ply'"), std::string::npos) << strict.told();
 }
 
-// A lamp whose matte Kd is its emission.
+// A lamp whose diffuse Kd holds its emission.
 TEST(PbrtLenient, SpectraThatReflectMoreThanArrives) {
   const Imported i = lenient("Material \"matte\" \"spectrum Kd\" [400 0 500 8 600 15.6 700 18.4]\n" + sphere);
   EXPECT_TRUE(tells(i, "3:18: 'Kd' is at most 1 here: more light would leave than arrives"));
@@ -112,7 +112,7 @@ TEST(PbrtLenient, SpectraThatReflectMoreThanArrives) {
   EXPECT_EQ((*inner.as<Color>())->at(600, ColorUse::reflectance), 1);
 }
 
-// One value more than pairs is left out, and wavelengths may stand in any order.
+// A last value without a partner is left out, and wavelengths may be in any order.
 TEST(PbrtLenient, OddSpectra) {
   const auto kd = [](const Imported& i, float nm) {
     const Value v = get(part(object(i, 0), "shader"), "color");
@@ -128,7 +128,7 @@ TEST(PbrtLenient, OddSpectra) {
   EXPECT_NEAR(kd(unsorted, 370), 0.2f, 1e-3f);
 }
 
-// What a shape says of its material counts before the material's own, for it alone.
+// A shape's parameters override those of its material, for this shape alone.
 TEST(PbrtLenient, ShapesChangeTheirMaterial) {
   const Imported i = lenient("Material \"matte\" \"rgb Kd\" [.2 .2 .2]\nShape \"sphere\" \"rgb Kd\" [.6 .6 .6]\n" + sphere +
                              "Shape \"sphere\" \"rgb Kd\" [.6 .6 .6]\nTexture \"t\" \"float\" \"constant\" \"float value\" 20\n"

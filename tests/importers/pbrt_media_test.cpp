@@ -1,4 +1,4 @@
-// Media of pbrt that differ from place to place, each by a number.
+// Heterogeneous media of pbrt, each tested with a number.
 
 #include <fmt/format.h>
 
@@ -25,10 +25,10 @@ Imported medium(const std::string& text, const std::string& before = "") {
   return import_text(v4(before + "MakeNamedMedium \"m\" " + text + "\n" + sphere));
 }
 
-/// What a grid of ones, 4 cells along 2 m, is at a distance: at its borders it has faded to a half.
+/// The density of a grid of ones, 4 cells along 2 m, at a distance: at its borders it falls to a half.
 double ones(double x) { return std::min({1.0, 0.5 + 2 * x, 0.5 + 2 * (2 - x)}); }
 
-/// Light of a medium along the 2 m through its middle: int s(x) L(x) exp(-int_0^x s) dx.
+/// The radiance of a medium along the 2 m through its middle: int s(x) L(x) exp(-int_0^x s) dx.
 template <class Absorption, class Light>
 double along(const Absorption& absorption, const Light& light) {
   constexpr int points = 4000;
@@ -51,7 +51,7 @@ TEST(PbrtMedium, GridsOfRgbAbsorbAndShine) {
   // pbrt divides the spectra of lights by the luminance of a spectrum of 1, which is 106.856917 there, but not media's.
   const double light = 106.856917 * along([](double x) { return 0.5 * ones(x); }, [](double x) { return 3 * ones(x); });
   EXPECT_NEAR(seen(shining, 65536).y, light, 0.01 * light);
-  // Of absorption and scattering one may be left out: it is 1 then, within the box alone.
+  // Either absorption or scattering may be left out: it is 1 then, within the box alone.
   const Imported one = medium("\"string type\" \"rgbgrid\" " + box + "\"rgb sigma_s\" " + cells("1 2 3"));
   EXPECT_EQ(number(part(object(one, 0), "interior"), "absorption"), 1);
   EXPECT_NE(medium("\"string type\" \"rgbgrid\" " + box + "\"rgb sigma_s\" " + cells("1 2 3") + "\"rgb Le\" " + cells("1 1 1"))
@@ -70,12 +70,12 @@ TEST(PbrtMedium, ShinesByAGridOfItsOwn) {
   EXPECT_NEAR(seen(scaled, 65536).y, along([](double x) { return 0.5 * ones(x); }, [](double x) { return 6 * ones(x); }), 0.03);
 }
 
-// pbrt's black bodies have a highest value of 1 at all temperatures; what is seen is their luminance.
+// pbrt's black bodies have a maximum of 1 at all temperatures; the picture shows their luminance.
 TEST(PbrtMedium, ShinesByTemperature) {
   const auto luminance = [](double kelvin) {
     double sum = 0;
     for (int nm = 360; nm <= 830; ++nm) sum += double(observer(float(nm)).y) * planck(nm, kelvin) / highest_planck(kelvin);
-    return sum;  // which pbrt leaves as it is, here as in GridsOfRgbAbsorbAndShine
+    return sum;  // pbrt does not divide it, as in GridsOfRgbAbsorbAndShine
   };
   const Imported hot = medium("\"string type\" \"uniformgrid\" " + box + "\"spectrum sigma_a\" [300 .5 900 .5] " +
                               flat_nothing + "\"float density\" " + cells("1") + "\"float temperature\" " + cells("30") +
@@ -108,7 +108,7 @@ TEST(PbrtMedium, CornersOfBoxes) {
   EXPECT_NEAR(placed(false), 0.5, 1e-6);
 }
 
-// What a homogeneous medium is when nothing is said, and by its name.
+// The coefficients of a homogeneous medium by default, and by the name of a preset.
 TEST(PbrtMedium, DefaultsAndPresets) {
   const auto absorbs = [](bool v4_file, const std::string& text) {
     const std::string world =
@@ -122,7 +122,7 @@ TEST(PbrtMedium, DefaultsAndPresets) {
   EXPECT_NEAR(absorbs(false, "\"string preset\" \"Espresso\" \"spectrum sigma_a\" [300 2 900 2]"), 2, 1e-4);
 }
 
-// Below its foot, in -y of the coordinates of its directive, a cloud is solid; only within its box.
+// Below its base, towards -y of the directive's coordinate system, a cloud is solid; only within its box.
 TEST(PbrtMedium, CloudsAreSolidBelow) {
   const auto through = [](const char* place) {
     const Imported cloud =
@@ -136,8 +136,8 @@ TEST(PbrtMedium, CloudsAreSolidBelow) {
   EXPECT_NEAR(through("0 -2 5"), 1, 0.01);
 }
 
-// Eight cells of the file's density along z are 7.5, half a metre wide each; of the last half cell at either end, where they
-// fade to a half, 3/8 of a cell counts.
+// The file's density is 7.5 in eight cells along z, each half a metre wide; the outermost half cell at either end, where it
+// falls to a half, counts as 3/8 of a cell.
 TEST(PbrtMedium, NanoVdbIsTakenFromItsFile) {
   const TemporaryFolder folder;
   std::filesystem::copy_file(ETENDUE_SOURCE_DIR "/tests/volumes/three_grids.nvdb", folder / "three_grids.nvdb");

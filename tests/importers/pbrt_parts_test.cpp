@@ -1,4 +1,4 @@
-// Media, textures and shapes of pbrt, each by a number.
+// Media, textures and shapes of pbrt, each tested with a number.
 
 #include "pbrt_support.h"
 #include "support/image_file.h"
@@ -30,7 +30,7 @@ TEST(PbrtMedium, AbsorbsByBeer) {
 }
 
 TEST(PbrtMedium, ShinesByItsAbsorption) {
-  // A medium that only absorbs and emits shows Le (1 - exp(-absorption x distance)): here of 2 m.
+  // A medium that only absorbs and emits has the radiance Le (1 - exp(-absorption x distance)): here over 2 m.
   const std::string sphere =
       "AttributeBegin\nMaterial \"interface\" MediumInterface \"m\" \"\" Translate 0 0 5 Shape \"sphere\"\nAttributeEnd\n";
   const std::string medium =
@@ -40,7 +40,7 @@ TEST(PbrtMedium, ShinesByItsAbsorption) {
   EXPECT_NEAR(seen(import_text(v4(medium + sphere)), 65536).y, 3 * (1 - std::exp(-1.0)), 0.02);
 }
 
-/// What a matt rectangle from (-1, -1) to (1, 1) shows at a place, in light of 1 from everywhere.
+/// The colour of a diffuse rectangle from (-1, -1) to (1, 1) at a point, in a uniform environment of radiance 1.
 Xyz at(const TemporaryFolder& folder, const std::string& before, const std::string& texture, double x, double y) {
   char place[100];
   std::snprintf(place, sizeof place, "Translate %g %g 0\n", -x, -y);
@@ -63,7 +63,7 @@ TEST(PbrtTexture, ImagesStandWithTheirTopAtVOne) {
   EXPECT_NEAR(at(folder, "", image, -0.5, -0.5).y, 0.3, 0.002);
   EXPECT_NEAR(at(folder, "", image + " \"float scale\" 2", 0.5, -0.5).y, 0.8, 0.004);
   EXPECT_NEAR(at(folder, "", image + " \"bool invert\" true", 0.5, -0.5).y, 0.6, 0.004);
-  // Twice as often, half a turn of u further: u = 0.25 looks at 2 * 0.25 + 0.5 = 1.
+  // Repeated twice and shifted by half of u: u = 0.25 looks up 2 * 0.25 + 0.5 = 1.
   EXPECT_NEAR(at(folder, "", image + " \"float uscale\" 2 \"float udelta\" 0.5", -0.4, 0.5).y, 0.1, 0.002);
   EXPECT_NEAR(at(folder, "", image + " \"float uscale\" 2 \"float udelta\" 0.5", -0.6, 0.5).y, 0.2, 0.002);
 }
@@ -75,7 +75,7 @@ TEST(PbrtTexture, Patterns) {
   EXPECT_NEAR(at(folder, "", checks, -0.5, -0.5).y, 0.2, 0.002);
   EXPECT_NEAR(at(folder, "", checks, 0.5, -0.5).y, 0.7, 0.002);
   const std::string cubes = "\"checkerboard\" \"integer dimension\" 3 \"rgb tex1\" [.2 .2 .2] \"rgb tex2\" [.7 .7 .7]";
-  // The rectangle moves with the texture: what is seen is at (-0.5, -0.5, 5.3) of its coordinates, then at (0.5, -0.5, 5.3).
+  // The rectangle moves together with the texture: the point seen is (-0.5, -0.5, 5.3) in texture space, then (0.5, -0.5, 5.3).
   EXPECT_NEAR(at(folder, "Translate 0.5 0.5 0.5", cubes, 0, 0).y, 0.7, 0.002);
   EXPECT_NEAR(at(folder, "Translate -0.5 0.5 0.5", cubes, 0, 0).y, 0.2, 0.002);
   const std::string ramp =
@@ -93,7 +93,8 @@ TEST(PbrtTexture, Patterns) {
 }
 
 TEST(PbrtShape, AreaOfPartsOfQuadrics) {
-  // Seen from far along z, a light of 1 that fills a part of one pixel: its share is the area across the view over the pixel's.
+  // Seen from far along z, a light of radiance 1 that fills a part of one pixel: the pixel is its area perpendicular to the
+  // view over the pixel's area.
   const auto share = [](const std::string& shape) {
     const Imported i = import_text(
         "Camera \"orthographic\" \"float screenwindow\" [-2 2 -2 2]\nFilm \"rgb\" \"integer xresolution\" 1 \"integer "

@@ -15,7 +15,7 @@ struct Imported {
   std::vector<Error> notes;
   std::vector<Error> errors;
 
-  /// What was told, one a line: "line:column: message".
+  /// The messages, one per line: "line:column: message".
   std::string told() const {
     std::string all;
     for (const auto* list : {&errors, &notes})
@@ -48,7 +48,7 @@ inline Imported import_text(const std::string& text) {
   return import_text(folder, text);
 }
 
-/// Film of one pixel, a camera at the origin that looks along +z with +x to the right.
+/// A film of one pixel, and a camera at the origin that looks along +z with +x to the right.
 inline std::string v4(const std::string& world, const std::string& film = "", const std::string& camera = "\"float fov\" 1",
                       const std::string& before = "") {
   return before + "Camera \"perspective\" " + camera + "\nFilm \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1 " +
@@ -83,7 +83,7 @@ inline double number(const Component& of, const std::string& member) {
   const Number* found = value.as<Number>();
   if (found) return found->value;
   if (const Color* color = value.as<Color>(); color && *color) return double((*color)->at(550, ColorUse::coefficient));
-  // A map that is a number.
+  // A map that is a constant number.
   const Ref<Component>* map = value.as<Ref<Component>>();
   if (!map || !*map) return -1e30;
   const Value inner = get(**map, "value");

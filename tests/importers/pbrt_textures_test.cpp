@@ -1,4 +1,4 @@
-// What textures of pbrt are as numbers and as colours.
+// pbrt's textures as numbers and as colours.
 
 #include "pbrt_support.h"
 #include "support/image_file.h"
@@ -12,7 +12,7 @@ const std::string wall =
     "0 "
     "1 1 0 1]\n";
 
-/// What a matt wall shows whose reflectance is 0.8 times a texture of numbers.
+/// The radiance of a diffuse wall whose reflectance is 0.8 times a texture of numbers.
 double as_number(const TemporaryFolder& folder, const std::string& image) {
   return seen(import_text(folder, v4(sky + "Texture \"n\" \"float\" \"imagemap\" " + image +
                                      "\nTexture \"t\" \"spectrum\" \"scale\" \"rgb tex\" [.8 .8 .8] \"texture scale\" "
@@ -38,7 +38,7 @@ TEST(PbrtTexture, NumbersOfImages) {
 TEST(PbrtTexture, ImagesOfVersion3AreLuminances) {
   const TemporaryFolder folder;
   test::write_image(folder / "red.png", {1, 1, 3, NumberType::uint8}, {1, 0, 0});
-  // y of what the file holds, decoded then: 0.212671 is 0.0371 linearly.
+  // The luminance of the values in the file is decoded afterwards: 0.212671 becomes 0.0371.
   const Imported i = import_text(
       folder, v3("Texture \"n\" \"float\" \"imagemap\" \"string filename\" \"red.png\"\nTexture \"t\" \"color\" \"mix\" \"rgb "
                  "tex1\" [0 0 0] \"rgb tex2\" [1 1 1] \"texture amount\" \"n\"\n" +
@@ -48,7 +48,7 @@ TEST(PbrtTexture, ImagesOfVersion3AreLuminances) {
   EXPECT_NEAR(seen(i, 4096).y, std::pow((0.212671 + 0.055) / 1.055, 2.4), 0.002);
 }
 
-// pbrt multiplies red, green and blue and cuts them at 1 before they become a spectrum.
+// pbrt multiplies red, green and blue, and clamps them to 1, before they become a spectrum.
 TEST(PbrtTexture, ScaledColours) {
   const TemporaryFolder folder;
   test::write_image(folder / "rgb.exr", {1, 1, 3, NumberType::single}, {.5f, .25f, .1f});
@@ -63,7 +63,7 @@ TEST(PbrtTexture, ScaledColours) {
   EXPECT_NEAR(inverse.y, 0.212671 * 0.5 + 0.71516 * 0.75 + 0.072169 * 0.9, 0.01);
 }
 
-// |n . d| of the first and the rest of the second; d is in the directive's coordinates.
+// |n . d| of the first and the rest of the second; d is in the directive's coordinate system.
 TEST(PbrtTexture, MixturesByDirection) {
   const auto shown = [](const std::string& dir) {
     return seen(
@@ -96,7 +96,7 @@ TEST(PbrtTexture, CoordinatesOfVersion3) {
   EXPECT_EQ(i.told(), "");
 }
 
-// v3's textures are those of their names where the material is given.
+// In v3 a texture's name refers to its definition at the point where the material is given.
 TEST(PbrtTexture, Version3MayGiveANameAgain) {
   const auto texture = [](const char* value) {
     return std::string("Texture \"t\" \"color\" \"constant\" \"rgb value\" ") + value + "\n";

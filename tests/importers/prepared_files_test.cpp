@@ -1,5 +1,5 @@
-// Files that Assimp cannot read, or dies of, until they are made ready for it (src/assimp/prepared.h): Collada with blanks, in
-// UTF-16 and Latin-1, LightWave's old format, 3MF with images. What its process says when it ends by a fault all the same.
+// Files that Assimp cannot read, or crashes on, until they are prepared for it (src/assimp/prepared.h): Collada with blanks, in
+// UTF-16 and Latin-1, LightWave's old format, 3MF with images; and the messages when its process crashes nevertheless.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ Bounds3 bounds(const Scene& scene) {
   return all;
 }
 
-/// A triangle of a colour, from (0, 0, 0) to (1, 2, 0).
+/// A triangle with a colour, from (0, 0, 0) to (1, 2, 0).
 std::string collada(const std::string& declaration, const std::string& color, const std::string& name = "t") {
   return declaration +
          "<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n<!-- <color> -->"
@@ -81,7 +81,7 @@ TEST(PreparedFiles, BlanksAroundNumbersOfCollada) {
     expect_triangle(model(folder.write("t.dae", collada("<?xml version=\"1.0\"?>", color))), color);
 }
 
-// A camera's angle is read whether it has a name or an identifier alone.
+// A camera's angle is read whether it has a name or only an identifier.
 TEST(PreparedFiles, CamerasOfColladaWithoutAName) {
   const TemporaryFolder folder;
   const auto angle = [&](const std::string& name) {
@@ -101,7 +101,7 @@ TEST(PreparedFiles, CamerasOfColladaWithoutAName) {
   EXPECT_NEAR(angle(""), 40, 1e-3);
 }
 
-// Exporters that write a transparency of 0, which by the letter leaves nothing to be seen.
+// Exporters that write a transparency of 0, which taken literally leaves nothing visible.
 TEST(PreparedFiles, WhatIsWhollyTransparentInColladaIsOpaque) {
   const TemporaryFolder folder;
   std::string text = collada("<?xml version=\"1.0\"?>", "0.5 0.25 0.125 1");
@@ -140,7 +140,7 @@ std::string chunk(const std::string& kind, const std::string& content, int bytes
 }
 std::string name(std::string text) { return text.append(text.size() % 2 ? 1 : 2, '\0'); }
 
-// Four faces of a pyramid in two surfaces, the first of which has another face upon it.
+// Four faces of a pyramid in two surfaces; the first face carries a further face.
 TEST(PreparedFiles, LightWavesOldFormat) {
   const TemporaryFolder folder;
   std::string points, faces, half;
@@ -175,7 +175,7 @@ TEST(PreparedFiles, LightWavesOldFormat) {
   EXPECT_FALSE(model(folder.write("cut.lwo", whole.substr(0, whole.size() - 9))).error.empty());
 }
 
-// As clusters have them and as crashes are: nothing is said against the file.
+// A missing reader, as on clusters, and a crash of the reader are not blamed on the file.
 TEST(PreparedFiles, AReaderThatDiesSaysNothingOfTheFile) {
   const TemporaryFolder folder;
   const std::string python = folder.write("python", "#!/bin/sh\nkill -SEGV $$\n");

@@ -1,5 +1,5 @@
-// A factor times a texture: red, green and blue on their own, as glTF 2.0 (3.9.2), MTL and UsdPreviewSurface mean it. What is
-// seen is compared with the product of the numbers; and pictures that lie in a model come along when it is exported.
+// A factor times a texture: red, green and blue are multiplied separately, as glTF 2.0 (3.9.2), MTL and UsdPreviewSurface
+// define it. The picture is compared with the product of the numbers; and images embedded in a model are exported with it.
 
 #include <array>
 #include <cstring>
@@ -19,7 +19,7 @@ using Rgb = std::array<double, 3>;
 
 constexpr Rgb texel{0.8, 0.4, 0.9}, factor{1, 0.5, 0.2}, vertex{0.5, 1, 0.75};
 
-/// A square that faces +z, of one texel, with its material as given, in a .glb.
+/// A square that faces +z, with a texture of one texel and the given material, in a .glb.
 std::string model(const TemporaryFolder& folder, const Json& material, bool colored) {
   const test::ImageFile picture("texel.png", {1, 1, 3, NumberType::uint16}, {0.9063f, 0.6655f, 0.9547f});  // encoded sRGB
   const std::string image = read_regular_file(picture.path);
@@ -67,7 +67,7 @@ std::string model(const TemporaryFolder& folder, const Json& material, bool colo
   return folder.write("model.glb", all + std::string("BIN\0", 4) + bytes);
 }
 
-/// The mean of what is seen of a file's square in white light from everywhere, in linear sRGB.
+/// The mean colour of a file's square in a uniform white environment, in linear sRGB.
 Rgb seen(const std::string& path, bool dark) {
   const Ref<Job> job =
       load_job_text(test::job_text("PathTracer { samples: 256, max_depth: 2 }",
@@ -151,8 +151,7 @@ TEST(RgbProducts, OfMtl) {
   expect_near(seen(path, false), times({0.1 + 0.5 * texel[0], 0.1 + 0.5 * texel[1], 0.1 + 0.5 * texel[2]}, factor), 0.012);
 }
 
-// A picture that lies in a model is written beside what is exported, and so is a product that the other program has no words
-// for.
+// An image embedded in a model is written beside the exported file, and so is a product that the other program cannot express.
 TEST(RgbProducts, AreExportedWithTheirPictures) {
   for (const char* name : {"out.xml", "out.pbrt", "out.gltf", "out.glb"}) {
     SCOPED_TRACE(name);
@@ -169,7 +168,7 @@ TEST(RgbProducts, AreExportedWithTheirPictures) {
     Importing importing(path, {});
     const Ref<Scene> scene = ref_cast<Scene>(importer_of(path)->import(importing));
     ASSERT_TRUE(scene);
-    // The matte part alone, which all of them have.
+    // The diffuse part alone, which all formats have.
     for (const Ref<SceneObject>& object : scene->objects) {
       const Ref<Component> matte = importing.make("Lambertian", importing.at());
       const Value shader = get(*object, "shader");

@@ -1,4 +1,4 @@
-// Media around cameras of pbrt and Mitsuba: by Beer's law, by Mitsuba's own numbers, and where they are a body's already.
+// Media around the cameras of pbrt and Mitsuba: by Beer's law, by Mitsuba's own numbers, and where a body holds them already.
 
 #include <fmt/format.h>
 
@@ -97,19 +97,19 @@ TEST(MediumAroundTheCamera, IsToldWhereItIsNotTheSame) {
   const auto says = [](const std::string& told, const char* words) { return told.find(words) != std::string::npos; };
   for (const std::string& told : {mitsuba(sky_m).told(), pbrt(sky_p).told()})
     EXPECT_TRUE(says(told, "twice the radius")) << told;
-  // A body of it that does not hold the camera.
+  // A body of the medium that does not contain the camera.
   for (const std::string& told : {mitsuba(m_lamp(4) + m_ball(2, 1, null_bsdf, interior)).told(),
                                   pbrt(p_lamp(4) + p_ball(2, 1, "\"interface\"", "\"fog\" \"\"")).told()})
     EXPECT_TRUE(says(told, "goes on for ever")) << told;
-  // Integrators without media.
+  // Integrators that ignore media.
   for (const std::string& told : {mitsuba(m_lamp(4), "<ref id=\"fog\"/>", "path").told(), pbrt(p_lamp(4), "path").told()})
     EXPECT_TRUE(says(told, "is left out, as")) << told;
-  // A medium that is nowhere.
+  // A medium that is used nowhere.
   EXPECT_TRUE(says(mitsuba(m_lamp(4) + m_ball(2, 1, null_bsdf, exterior), "").told(), "neither around the sensor"));
 }
 
 TEST(MediumAroundTheCamera, OnAGridFillsTheBoxOfTheGrid) {
-  // Density 1 in a box from z = 1 to z = 3, which the ray goes through.
+  // Density 1 in a box from z = 1 to z = 3, through which the ray passes.
   const TemporaryFolder folder;
   std::string grid = "VOL\3";
   for (const std::int32_t number : {1, 1, 1, 1, 1}) grid.append(reinterpret_cast<const char*>(&number), 4);

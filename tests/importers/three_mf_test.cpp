@@ -1,4 +1,4 @@
-// 3MF: printed things stand on the xy plane, in the unit that the file states.
+// 3MF: printed objects stand on the xy plane, in the unit that the file states.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ void append(std::string& to, std::initializer_list<std::pair<std::uint32_t, size
   for (const auto& [value, size] : numbers) to.append(reinterpret_cast<const char*>(&value), size);
 }
 
-/// An archive of ZIP whose entries are not compressed.
+/// A ZIP archive whose entries are not compressed.
 std::string archive(const std::vector<std::pair<std::string, std::string>>& entries) {
   std::string all, list;
   for (const auto& [name, bytes] : entries) {
@@ -57,7 +57,7 @@ std::string archive(const std::vector<std::pair<std::string, std::string>>& entr
   return all;
 }
 
-/// A package of a tetrahedron of 10, 20 and 30 units, and of what else there is.
+/// A package of a tetrahedron of 10, 20 and 30 units, and further contents.
 std::string package(const std::string& attributes, const std::string& resources = "",
                     const std::vector<std::pair<std::string, std::string>>& more = {}, const std::string& triangle = "") {
   std::vector<std::pair<std::string, std::string>> entries = more;
@@ -100,7 +100,7 @@ TEST(ThreeMf, StandsUprightInItsUnit) {
   }
 }
 
-// Most programs put a picture of the thing into the package, which Assimp frees before it looks at it.
+// Most programs put a thumbnail into the package, which Assimp frees before it uses it.
 TEST(ThreeMf, PicturesInThePackageDoNoHarm) {
   const TemporaryFolder folder;
   const std::string path = folder.write("p.3mf", package("", "",

@@ -1,4 +1,4 @@
-// Lights of USD: what UsdLux says in words and formulas, against what is seen.
+// Lights of USD: the words and formulas of UsdLux, against rendered values.
 
 #include "usd_support.h"
 
@@ -52,10 +52,10 @@ TEST_F(UsdLights, WhatLightsSendToAPatchBelow) {
                     ball = "float inputs:radius = 0.1\nfloat inputs:intensity = 100\n",
                     cone = "float inputs:shaping:cone:angle = 20\n";
   const Row rows[] = {
-      // A disc and a sphere over a patch: L sin^2 of the half angle under which they are seen.
+      // A disc and a sphere over a patch: L sin^2 of the half angle that they subtend.
       {light("DiskLight", "float inputs:radius = 1\nfloat inputs:intensity = 5", 2), 5.0 / 5, 0.01},
       {light("SphereLight", "float inputs:radius = 1\nfloat inputs:intensity = 5", 2), 5.0 / 4, 0.0125},
-      // As a point it has the intensity pi r^2 L, and the patch receives that over the square of the distance.
+      // Treated as a point it has the intensity pi r^2 L, and the patch receives that over the square of the distance.
       {light("SphereLight", "float inputs:radius = 1\nfloat inputs:intensity = 5\nbool treatAsPoint = 1", 2), 5.0 / 4, 0.01},
       // The sun of UsdLux' defaults: 50000 cd/m^2 from a disc of 0.53 degrees.
       {"def DistantLight \"l\" {\n}\n", 50000 * std::pow(std::sin(0.265 * double(pi) / 180), 2), 0.02},
@@ -87,7 +87,7 @@ TEST_F(UsdLights, WhatLightsSendToAPatchBelow) {
 
 TEST_F(UsdLights, IesFilesMultiplyTheLuminanceByTheirCandelas) {
   folder_.write("lamp.ies", "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n300 200 0\n");
-  // Linear in the angle up to 45 degrees, and from there on: its lumens by the midpoint rule.
+  // Linear in the angle up to 45 degrees, and again from there on; the lumens by the midpoint rule.
   double lumens = 0;
   constexpr int n = 10000;
   for (int i = 0; i < n; ++i) {

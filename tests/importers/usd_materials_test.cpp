@@ -1,4 +1,4 @@
-// Materials of USD: what UsdPreviewSurface says in words and formulas, against what is seen.
+// Materials of USD: the words and formulas of UsdPreviewSurface, against rendered values.
 
 #include "usd_support.h"
 
@@ -46,8 +46,8 @@ TEST_F(UsdMaterials, TexturesAreScaledBiasedMovedAndMultipliedInRgb) {
             square("A"));
   ASSERT_TRUE(s) << error_;
   const Image image = picture(s, "OrthographicCamera { from: [0, 0, 3], to: [0, 0, 0], width: 2 }", 8, 256);
-  // A quarter of the side is a texel's middle. It is shifted by half, so that left and right are exchanged. Over the four
-  // pixels around it the neighbours have an eighth along each axis.
+  // A quarter of the side is the centre of a texel. The texture is shifted by half, so that left and right are exchanged. In
+  // the mean over the four pixels around the centre, the neighbouring texels have a weight of an eighth along each axis.
   const std::array<double, 3> green{0.5, 0.5, 0}, red{2.5, 0, 0}, white{2.5, 0.5, 0.25}, blue{0.5, 0, 0.25};
   const auto middle = [&](int x, int y, const auto& own, const auto& beside, const auto& above, const auto& across) {
     for (size_t k = 0; k < 3; ++k) {

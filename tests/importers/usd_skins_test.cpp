@@ -1,4 +1,4 @@
-// Skins of USD with normals of their own: as joints bend them, as blend shapes turn them, and in instances.
+// Skins of USD with stated normals: bent by joints, rotated by blend shapes, and in instances.
 
 #include "usd_support.h"
 
@@ -8,8 +8,8 @@ namespace {
 using test::y_up;
 using UsdSkins = test::UsdTest;
 
-/// A quad of two joints' skeleton, of which the first holds all of it and is turned by 90 degrees about y: x goes to -z and z
-/// to x.
+/// A quad with a skeleton of two joints, the first of which has all the weight and is rotated by 90 degrees about y: x goes to
+/// -z and z to x.
 std::string skinned(const std::string& normals, const std::string& more = "", const std::string& influences = "") {
   const std::string vertex =
       "int[] primvars:skel:jointIndices = [0, 1, 0, 1, 0, 1, 0, 1] (\nelementSize = 2\ninterpolation = \"vertex\"\n)\n"
@@ -38,8 +38,8 @@ void expect_normals(const MeshData& mesh, const Vector3& wanted, const std::stri
   for (const Normal3& n : mesh.normals) EXPECT_LT(length(Vector3(n) - normalize(wanted)), 1e-4f) << what;
 }
 
-// A mesh that its geomBindTransform makes twice as long along x: of a normal the part along x becomes half as much, and then
-// all is turned.
+// A mesh that its geomBindTransform makes twice as long along x: a normal's component along x is halved, and then everything is
+// rotated.
 TEST_F(UsdSkins, StatedNormalsAreBentWithTheSurface) {
   const std::string bind =
       "matrix4d primvars:skel:geomBindTransform = ((2, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))\n";
@@ -53,7 +53,7 @@ TEST_F(UsdSkins, StatedNormalsAreBentWithTheSurface) {
     for (const char* name : {"normals", "primvars:normals"})
       for (const char* method : {"classicLinear", "dualQuaternion"})
         for (const std::string& influences : {std::string(), rigid}) {
-          // Rigid skins and the other method with one kind are enough.
+          // Rigid skins and the other skinning method are tested with one kind of normals only.
           if ((!influences.empty() || method[0] == 'd') && std::string(how) != "vertex") continue;
           std::string one = skinned(std::string("normal3f[] ") + name + " = [" + list("(0.6, 0, 0.8)", count) +
                                         "] (interpolation = \"" + how + "\")\n",
@@ -78,8 +78,8 @@ TEST_F(UsdSkins, StatedNormalsAreBentWithTheSurface) {
   }
 }
 
-// Half of an offset is added to a normal before it is bent. Of a shape that states none the normal leans as the surface does,
-// which this one takes from +z to +x by 45 degrees: it lifts two corners by half of -2 along z.
+// Half of an offset is added to a normal before it is bent. For a blend shape without normal offsets the normal follows the
+// surface, which the shape tilts from +z to +x by 45 degrees: it lifts two corners by half of -2 along z.
 TEST_F(UsdSkins, BlendShapesTurnNormals) {
   const std::string normals =
       "normal3f[] normals = [(0, 0, 1), (0, 0, 1), (0, 0, 1), (0, 0, 1)] (interpolation = \"vertex\")\n";
@@ -102,7 +102,7 @@ TEST_F(UsdSkins, BlendShapesTurnNormals) {
   expect_normals(mesh_of(*turned->objects.at(0)), {1, 0, -1}, "without offsets of normals");
 }
 
-// Each has its own skeleton's pose; what they share is written once.
+// Each instance has its own skeleton's pose; shared data is written once.
 TEST_F(UsdSkins, SkinsInInstancesAreBentToo) {
   folder_.write(
       "one.usda", y_up + "def Xform \"w\" {\n" + [] {

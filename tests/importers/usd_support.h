@@ -1,5 +1,5 @@
 #pragma once
-// USD scenes in tests: read, and looked at. They need usd-core; without it only its message is tested
+// USD scenes in tests: reading and rendering them. They need usd-core; without it only the message about it is tested
 // (foreign_models_test.cpp).
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ class UsdTest : public testing::Test {
     if (std::system(check.c_str()) != 0) GTEST_SKIP() << "usd-core is not installed";
   }
 
-  /// The scene of a file, or none and its error.
+  /// The scene of a file; or null, with the message in error_.
   Ref<Scene> scene(const std::string& text, ImportOptions options = {}) {
     return scene_of(folder_.write("scene" + std::to_string(++number_) + ".usda", text), std::move(options));
   }
@@ -54,7 +54,7 @@ class UsdTest : public testing::Test {
     return std::ranges::any_of(notes_, [&](const std::string& n) { return n.find(words) != std::string::npos; });
   }
 
-  /// What a camera sees of a scene and further objects.
+  /// The picture that a camera takes of a scene and further objects.
   Image picture(const Ref<Scene>& scene, const std::string& camera, int size, int samples = 1, const std::string& more = "") {
     const Ref<Job> job = load_job_text(
         test::job_text("PathTracer { samples: " + std::to_string(samples) + ", max_depth: 2 }", camera, size, more), "t.etd");
@@ -67,7 +67,7 @@ class UsdTest : public testing::Test {
       for (int x = 0; x < image.width; ++x) sum += image.at(x, y, 1);
     return sum / (double(image.width) * image.height);
   }
-  /// What is seen of each of several objects of one file on its own, which are all called "l".
+  /// A value of each of several objects of one file, computed for each alone; they are all called "l".
   std::vector<double> of_each(const std::string& head, const std::vector<std::string>& objects,
                               const std::function<double(const Ref<Scene>&)>& look) {
     std::string text = head;
@@ -89,7 +89,7 @@ class UsdTest : public testing::Test {
     }
     return seen;
   }
-  /// The luminance of a white matte patch at the origin that faces +z under each: what it receives, over pi.
+  /// The luminance of a white diffuse patch at the origin that faces +z under each light: its illuminance over pi.
   std::vector<double> lit(const std::vector<std::string>& lights) {
     return of_each(y_up, lights, [&](const Ref<Scene>& s) {
       return mean(
@@ -117,7 +117,7 @@ class UsdTest : public testing::Test {
   int number_ = 0;
 };
 
-/// Of one pixel, red, green and blue of linear sRGB.
+/// One pixel as red, green and blue of linear sRGB.
 inline std::array<double, 3> rgb(const Image& image, int x, int y) {
   const double X = image.at(x, y, 0), Y = image.at(x, y, 1), Z = image.at(x, y, 2);
   return {3.2404542 * X - 1.5371385 * Y - 0.4985314 * Z, -0.9692660 * X + 1.8760108 * Y + 0.0415560 * Z,

@@ -54,8 +54,8 @@ TEST_F(UsdObjects, ShapesSmoothSurfacesAndCurvesAreThemselves) {
       {"def Cone \"l\" {\nuniform token axis = \"X\"\ndouble height = 4\n}\n", {2, 1, 1}, 1e-5f},
       {"def Cylinder \"l\" {\nuniform token axis = \"Y\"\ndouble height = 6\ndouble radius = 0.5\n}\n", {0.5f, 3, 0.5f}, 1e-5f},
       {"def Plane \"l\" {\ndouble width = 2\ndouble length = 8\n}\n", {1, 4, 0}, 1e-5f},
-      // The middle of a face of a cube's cage m goes to (16 m + 4 (e1 + ... + e4) + p1 + ... + p4) / 36, with p the middles of
-      // the faces around, as it is a point of four faces after one division: 5/6 and less.
+      // The middle m of a face of a cube's cage goes to (16 m + 4 (e1 + ... + e4) + p1 + ... + p4) / 36, with p the middles of
+      // the faces around, because after one subdivision it is a vertex of four faces: 5/6 and less.
       {cube + "}\n", {0.8333f, 0.8333f, 0.8333f}, 0.02f},
       {cube + "uniform token subdivisionScheme = \"none\"\n}\n", {1, 1, 1}, 1e-5f},
       // Sharp corners stay.
@@ -63,12 +63,12 @@ TEST_F(UsdObjects, ShapesSmoothSurfacesAndCurvesAreThemselves) {
            "int[] cornerIndices = [0, 1, 2, 3, 4, 5, 6, 7]\nfloat[] cornerSharpnesses = [10, 10, 10, 10, 10, 10, 10, 10]\n}\n",
        {1, 1, 1},
        1e-4f},
-      // A sharp edge around the upper face: a plane B-spline there, (23 + 23 - 1 - 1) / 48 wide in the middle of a side.
+      // A sharp edge around the upper face: a planar B-spline there, (23 + 23 - 1 - 1) / 48 wide in the middle of a side.
       {cube + "int[] creaseIndices = [4, 5, 6, 7, 4]\nint[] creaseLengths = [5]\nfloat[] creaseSharpnesses = [10]\n}\n",
        {0.9167f, 0.9167f, 1},
        0.01f},
-      // A spline from the second to the third point, where it is parallel to the line between their neighbours: y = 4 t^3 - 6
-      // t^2 + 2 t rises to 1 / (3 sqrt 3); an eighth of a unit around it.
+      // A spline from the second to the third point, where its tangents are parallel to the line between the neighbouring
+      // points: y = 4 t^3 - 6 t^2 + 2 t rises to 1 / (3 sqrt 3); its radius is an eighth of a unit.
       {"def BasisCurves \"l\" {\nint[] curveVertexCounts = [4]\npoint3f[] points = [(0, -4, 0), (1, 0, 0), (2, 0, 0), (3, 4, "
        "0)]\nfloat[] widths = "
        "[0.25] (interpolation = \"constant\")\nuniform token basis = \"catmullRom\"\n}\n",
@@ -102,7 +102,7 @@ TEST_F(UsdObjects, WhatMovesIsReadAtItsTimeAndKeepsItInItsName) {
       "{ int[] faceVertexCounts = [3]\nint[] faceVertexIndices = [0, 1, 2]\npoint3f[] points.timeSamples = { 0: [(0, 0, 0), "
       "(1, 0, 0), (0, "
       "1, 0)], 48: [(0, 0, 0), (5, 0, 0), (0, 1, 0)] }\nuniform token subdivisionScheme = \"none\"\n}\n";
-  const std::string path = folder_.write("moving.usda", text);  // once: what was read of it is kept for its other times
+  const std::string path = folder_.write("moving.usda", text);  // one file: it is cached for its other times
   const auto widest = [&](double time) {
     ImportOptions options;
     options.time = time;
@@ -118,7 +118,8 @@ TEST_F(UsdObjects, WhatMovesIsReadAtItsTimeAndKeepsItInItsName) {
 }
 
 TEST_F(UsdObjects, SkinsAreBentByTheirSkeletons) {
-  // A joint that moves by 10 along z in a second: after half of that the mesh, all of whose weight is on it, has moved by 5.
+  // A joint that moves by 10 along z in a second: after half of that time the mesh, whose whole weight is on the joint, has
+  // moved by 5.
   const std::string text =
       "#usda 1.0\n( upAxis = \"Y\"\n metersPerUnit = 1\n startTimeCode = 0\n endTimeCode = 24\n timeCodesPerSecond = 24 )\ndef "
       "SkelRoot "
@@ -221,12 +222,12 @@ TEST_F(UsdObjects, WhatIsDamagedIsRefusedByItsPlace) {
   EXPECT_NE(error_.find("/m"), std::string::npos) << error_;
   EXPECT_FALSE(scene(""));
   EXPECT_FALSE(scene("#usda 1.0\n( metersPerUnit = 0 )\ndef Sphere \"s\" {}\n"));
-  // What is not there is told, and the rest shown.
+  // Missing files are reported, and the rest is read.
   EXPECT_TRUE(scene(y_up + "def Sphere \"s\" {}\ndef \"w\" ( prepend references = @gone.usda@ ) {}\n")) << error_;
   EXPECT_TRUE(told("gone.usda"));
 }
 
-// Hydra shows prototypes that are defined below an 'over'.
+// Hydra renders prototypes that are defined below an 'over'.
 TEST_F(UsdObjects, PrototypesMayStandBelowAnOver) {
   const auto instanced = [&](const std::string& around) {
     return scene(y_up +

@@ -1,4 +1,5 @@
-// USD with parts that are not read: layers of other formats, values of unexpected types, and a reader with less memory.
+// USD files with parts that are not read: layers of other formats, values of unexpected types; and a reader with limited
+// memory.
 
 #include <fstream>
 #include <sstream>
@@ -16,8 +17,8 @@ TEST_F(UsdUnusual, LayersThatCannotBeReadAreLeftOut) {
   folder_.write("m.mtlx", "<?xml version=\"1.0\"?><materialx version=\"1.38\"></materialx>");
   folder_.write("x.abc", "none");
   folder_.write("broken.usda", "#usda 1.0\ndef Sphere {\n");
-  // As sublayers, references, payloads, and in a variant that is chosen and one that is not; what is chosen would be told again
-  // by whoever puts the stage together.
+  // As sublayers, references, payloads, and in a selected and an unselected variant; for the selected one USD itself would
+  // report the layer again when it composes the stage.
   std::string sublayers, rest;
   for (const std::string name : {"m.mtlx", "x.abc", "broken.usda"}) {
     const std::string layer = "@" + name + "@", prim = std::string(1, name[0]);
@@ -67,7 +68,7 @@ std::string text_of(const std::string& path) {
   return all.str();
 }
 
-// As clusters limit it: the limits of the process cannot be raised.
+// With limits as on clusters: the process's limits cannot be raised.
 TEST_F(UsdUnusual, ALimitOfMemoryIsKept) {
   const char* chosen = std::getenv("ETENDUE_PYTHON");
   const std::string python = chosen && *chosen ? chosen : "python3";
@@ -81,7 +82,7 @@ TEST_F(UsdUnusual, ALimitOfMemoryIsKept) {
   EXPECT_EQ(text_of(out).substr(0, 4), "glTF");
 }
 
-// Whichever of the two packages is missing, both are named.
+// Whichever of the two packages is missing, the message names both.
 TEST(UsdPackages, AreBothNamed) {
   const TemporaryFolder folder;
   const std::string file = folder.write("s.usda", y_up), said = folder / "said";

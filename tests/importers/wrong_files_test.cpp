@@ -1,4 +1,4 @@
-// Files of an ending that is not read, and files that hold something else than their names say: told in one line.
+// Files with an extension that cannot be read, and files whose contents are not what their names say: reported in one line.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace etendue {
 namespace {
 
-/// What is wrong with a job's file, one a line.
+/// The errors of a job's file, one per line.
 std::string errors(const std::string& path) {
   try {
     const Ref<Job> job = load_job(path);
@@ -49,7 +49,7 @@ TEST(WrongFiles, EndingsThatAreNotRead) {
     EXPECT_TRUE(has(included, "files ending in .dxf are not read")) << included;
     EXPECT_EQ(lines(included), 1u) << included;
   }
-  // A description by any other name is one, and its mistakes are told.
+  // A render description may have any file name, and its errors are reported.
   EXPECT_EQ(errors(folder.write("scene.txt", "# mine\nJob { camera: PerspectiveCamera {}, scene: BvhScene {} }\n")), "");
   EXPECT_TRUE(has(errors(folder.write("scene.txt", "Job { camera: PerspectiveCamera {}, scene: BvhScen {} }\n")), "BvhScen"));
   folder.write("parts.inc", "param white = 0.8\n");
@@ -80,7 +80,7 @@ TEST(WrongFiles, OtherContents) {
     expect(name, lfs, "it is a pointer of Git LFS, not the file itself; 'git lfs pull' brings the file");
   expect("p.xml", "# made by hand\nLookAt 0 0 1 0 0 0 0 1 0\nCamera \"perspective\"\nWorldBegin\n", "it is a scene of pbrt");
   expect("q.pbrt", "Job {\n}\n", "it is a render description, whose files end in .etd");
-  // Wherever they are named.
+  // Wherever such files are named.
   folder.write("mesh.ply", lfs);
   folder.write("map.exr", page);
   const std::string inner = errors(folder.write(
@@ -103,7 +103,7 @@ TEST(WrongFiles, KindsByTheirBeginnings) {
   EXPECT_EQ(kind("OFF\n3 1 0\n"), "an OFF mesh");
   EXPECT_EQ(kind("# x\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n"), "an OBJ mesh");
   EXPECT_EQ(kind("\xff\xfe" + std::string("<\0s\0c\0e\0n\0e\0/\0>\0", 16)), "a scene of Mitsuba (XML)");
-  // What may be a description is nothing else.
+  // A text that may be a render description is not taken for anything else.
   for (const char* text : {"", "solid = Lambertian {}\nfacet = 3\n", "v = 3\n", "ply = 1\n", "x = [1, 2]\n", "OFF = 1\nx = 2\n",
                            "Film = 3", "\x1", "usemtl = 3\n"})
     EXPECT_EQ(kind(text), "") << text;

@@ -1,4 +1,4 @@
-// Drives a render from a program of one's own: looks at it, edits it while it goes on, keeps its state, writes its pictures.
+// Drives a render from a program: reads its state while it runs, edits it, saves its state and writes its images.
 #include <cstdio>
 #include <fstream>
 #include <future>
@@ -13,25 +13,26 @@ int drive(const std::string& file, const std::string& folder) {
   Render render(job, {.on_progress = [](const Progress& p) { std::printf("%3.0f %%\n", 100 * p.fraction); }});
   std::future<Ended> running = std::async(std::launch::async, [&] { return render.run(); });
 
-  // From any other thread, at any time: what there is, as a display would show it.
+  // From any other thread, at any time: a copy of the current image, as a display would show it.
   const RenderSnapshot now = render.snapshot();
   const Image shown = render.display(now.picture());
   std::printf("%d x %d pixels after %.1f s\n", shown.width, shown.height, now.progress.seconds);
 
-  // Another exposure loses nothing; another colour begins anew, with the scene as it is; a shape is built anew, alone.
+  // Another exposure keeps all samples; another colour starts over with the scene unchanged; of shapes only the edited one is
+  // rebuilt.
   render.edit(*job->tone_map, "stops", parse_value("1"));
   render.edit(*job->camera, "fov", parse_value("35 deg"));
   try {
     render.edit(*job->camera, "fov", parse_value("-1 deg"));
-  } catch (const Error& error) {  // and nothing has changed
+  } catch (const Error& error) {  // the job is unchanged
     std::printf("refused: %s\n", error.what());
   }
 
-  running.get();  // throws what went wrong, if anything did
-  render.run();   // if the last edit came after its end: goes on, or returns at once
+  running.get();  // throws the render's error, if there was one
+  render.run();   // if the last edit came after the end: continues, or returns at once
   render.save(folder + "/state");
 
-  // Another process takes the state over. So might another machine, which renders other steps that are added here.
+  // Another process loads the state and continues. So could another machine, which renders other steps that are merged here.
   Render other(load_job(file));
   for (const char* member : {"tone_map", "camera"}) other.edit(other.job(), member, get(*job, member));
   other.load(folder + "/state");

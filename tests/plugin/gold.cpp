@@ -17,7 +17,7 @@ class GoldScatter final : public Scatter {
     return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
   }
   bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
-    // Uniform points of the unit disc, lifted to the hemisphere: density cos/pi.
+    // Uniform points of the unit disc, lifted to the hemisphere: the pdf is cos / pi [1/sr].
     const float r = std::sqrt(u.x), phi = 2 * pi * u.y, z = safe_sqrt(1 - u.x);
     s.in = {r * std::cos(phi), r * std::sin(phi), std::copysign(z, out.z)};
     s.lobe = diffuse_reflection;

@@ -1,4 +1,4 @@
-// A shader with textures, out of tree: a dusty surface after Minnaert 1941, darker towards its rim than a matt one.
+// A shader with textures, out of tree: a dusty surface after Minnaert 1941, darker towards its rim than a Lambertian one.
 #include "etendue/core/warp.h"
 #include "etendue/describe/description.h"
 #include "etendue/object_map.h"
@@ -6,8 +6,8 @@
 
 using namespace etendue;
 
-// f = c (k + 1) / (2 pi) (cos_out cos_in)^(k - 1) [1/sr], k >= 1. It does not change when the directions are exchanged, and the
-// integral of f cos_in over the hemisphere is c cos_out^(k - 1). Directions are drawn with density (k + 1) / (2 pi) cos_in^k.
+// f = c (k + 1) / (2 pi) (cos_out cos_in)^(k - 1) [1/sr], k >= 1. It is reciprocal, and the integral of f cos_in over the
+// hemisphere is c cos_out^(k - 1). Directions are sampled with the pdf (k + 1) / (2 pi) cos_in^k [1/sr].
 class MinnaertScatter final : public Scatter {
  public:
   MinnaertScatter(const SurfacePoint& p, Spectrum color, float k) : Scatter(p, diffuse_reflection), color_(color), k_(k) {}

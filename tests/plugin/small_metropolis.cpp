@@ -1,11 +1,11 @@
-// Metropolis light transport in the space of numbers, in one file, out of tree: it holds any renderer inside.
+// Metropolis light transport in primary sample space, in one file, out of tree, around any inner renderer.
 //
-// A path is a function of numbers u in [0, 1); F(u) is all that it brings to the film, and I(u) the luminance of that. A chain
-// whose density is I / b, b being the integral of I, adds b F(u) / I(u) for each of its states, so that brightness is found as
-// often as it is bright (Kelemen et al. 2002, "A simple and robust mutation strategy for the Metropolis light transport
-// algorithm"). A chain begins with one of M independent paths, chosen in proportion to I, and has the mean of their I for b:
-// then its mean is exact from the first state on (Veach 1997, section 11.3.1). Instead of choosing between the states before
-// and after a proposal with acceptance a, both are added, weighted by 1 - a and a.
+// A path is a function of primary samples u in [0, 1); F(u) is its contribution to the film, and I(u) the luminance of F(u). A
+// chain samples u with the pdf I / b, b being the integral of I, and adds b F(u) / I(u) to the film for each of its states
+// (Kelemen et al. 2002, "A simple and robust mutation strategy for the Metropolis light transport algorithm"). Each chain
+// starts with one of M independent paths, chosen in proportion to I, and uses the mean of their I for b: then its mean is exact
+// from the first state on (Veach 1997, section 11.3.1). Both the state before a proposal and the proposal are added, weighted
+// by 1 - a and a, the acceptance probability being a (expected values instead of the accepted state alone).
 #include "etendue/render/renderer.h"
 #include "etendue/transport/primary_sample_vectors.h"
 
@@ -36,7 +36,7 @@ class MetropolisProcess final : public RenderProcess {
   const SmallMetropolis& settings_;
   const std::unique_ptr<RenderProcess> inner_;
 
-  /// F(u): what one path brings, each part with its place on the film, and I(u).
+  /// F(u), with the film point of each part, and I(u).
   struct Contribution {
     std::vector<Splat> parts;
     double brightness = 0;
@@ -55,7 +55,7 @@ class MetropolisProcess final : public RenderProcess {
     if (!std::isfinite(f.brightness)) f.brightness = 0;
   }
 
-  /// One chain of so many states.
+  /// Runs one chain of so many states.
   void run(std::uint64_t chain, std::uint64_t states, ImageTile& tile, Arena& arena, const std::atomic<bool>* abort) const {
     const auto bits = [&](std::uint64_t n) { return mix_bits(context.seed ^ mix_bits(chain + 0x5bd1e995u * (n + 1))); };
     const auto uniform = [&](std::uint64_t n) { return double(bits(n) >> 11) * 0x1p-53; };
@@ -82,7 +82,7 @@ class MetropolisProcess final : public RenderProcess {
           tile.splat(part.film, int(part.film.x), int(part.film.y), 0, part.value * float(weight * b / f.brightness),
                      part.wavelengths, part.length);
     };
-    double held = 0;  // of the current state, not added yet
+    double held = 0;  // the weight of the current state that is not added yet
     for (std::uint64_t i = 0; i < states; ++i) {
       if (abort && abort->load(std::memory_order_relaxed)) return;
       if (uniform((2u << 20) + 2 * i) < double(settings_.large_steps))
@@ -126,7 +126,7 @@ class MetropolisProcess final : public RenderProcess {
     const std::uint64_t all =
         std::uint64_t(image.width) * std::uint64_t(image.height) * (step.samples.end - step.samples.begin);
     schedule.film(chains, [&](std::uint64_t item, ImageTile& tile, Arena& arena) {
-      tile.begin(image, {});  // splats alone
+      tile.begin(image, {});  // the tile has splats only
       run(step.samples.begin * chains + item, all / chains + (item < all % chains), tile, arena, schedule.abort);
     });
   }

@@ -1,12 +1,11 @@
 // A photon mapper, in one file, out of tree.
 //
-// Photons are walks from luminaires that leave at each smooth surface what they carry there, the flux phi [W/nm]. Where the
-// camera's walk first meets such a surface, photons within a radius r tell the light that comes there:
-//     L = 1 / (N pi r^2)  sum f phi                                          (Jensen 1996, "Global illumination using photon
-//     maps").
-// Each step has N new photons and a smaller radius, r_{i+1}^2 = r_i^2 (i + alpha) / (i + 1), so the mean over steps goes to the
-// truth (Knaus & Zwicker 2011, "Progressive photon mapping: a probabilistic approach"). All paths of a step have the same
-// wavelengths, so that photons and what they light are of one colour.
+// Light subpaths store a photon with the flux phi [W/nm] at each surface with smooth (non-delta) lobes. At the first such
+// surface of a camera subpath, the photons within a radius r estimate the reflected radiance
+//     L = 1 / (N pi r^2)  sum f phi          (Jensen 1996, "Global illumination using photon maps").
+// Each step has N new photons and a smaller radius, r_{i+1}^2 = r_i^2 (i + alpha) / (i + 1), so the mean over steps converges
+// to the true value (Knaus & Zwicker 2011, "Progressive photon mapping: a probabilistic approach"). All paths of a step share
+// the same wavelengths, so that photons and camera subpaths have spectra at the same wavelengths.
 #include <unordered_map>
 
 #include "etendue/render/renderer.h"
@@ -49,10 +48,10 @@ class SmallPhotonMapper final : public Renderer, public ShrinkingBias {
 class PhotonProcess final : public RenderProcess {
   struct Photon {
     Point3 position;
-    Vector3 direction;  ///< to where it came from
+    Vector3 direction;  ///< to the previous vertex of the light subpath
     Spectrum flux;
     int length = 0;
-    bool single = false;
+    bool hero_only = false;
   };
   const SmallPhotonMapper& settings_;
   std::vector<Photon> photons_;
@@ -87,7 +86,7 @@ class PhotonProcess final : public RenderProcess {
         for (size_t i = 1; i < walk.size(); ++i)
           if (walk[i].scatters_smoothly())
             out.push_back({walk[i].point.position, walk[i].out, walk[i].throughput / float(settings_.photons), int(i) + 1,
-                           walk[i].single});
+                           walk[i].hero_only});
       }
     });
     cells_.clear();
@@ -139,10 +138,10 @@ class PhotonProcess final : public RenderProcess {
             if (length > settings_.max_depth || !(cosine > 0) ||
                 length_squared(p.position - v.point.position) > square(radius_))
               continue;
-            Spectrum f = v.scatter->evaluate(v.out, p.direction) / cosine;  // that of the photon is in its density
-            if (p.single)  // the photon holds the hero alone, and made up for the others: once is enough
+            Spectrum f = v.scatter->evaluate(v.out, p.direction) / cosine;  // the photon density contains the cosine
+            if (p.hero_only)  // it carries the hero alone, times the number of wavelengths: a factor that may count only once
               for (int i = 1; i < spectrum_size; ++i) f.set(i, 0);
-            if (p.single && walk.sample.wavelengths.single()) f /= float(spectrum_size);
+            if (p.hero_only && walk.sample.wavelengths.single()) f /= float(spectrum_size);
             add(length, walk.throughput * f * p.flux / (pi * square(radius_)));
           }
         }

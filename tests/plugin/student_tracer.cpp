@@ -16,11 +16,11 @@ class StudentTracer final : public Renderer {
 
   PathClasses finds() const override { return all_paths & ~(delta_caustics | delta_caustics_in_mirrors); }
 
-  // L = sum over the vertices x_k of a random walk of T_k (L_e(x_k) + light straight from luminaires, scattered at x_k).
+  // L = sum over the vertices x_k of a random walk of T_k (L_e(x_k) + direct light scattered at x_k).
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
     CameraWalk walk(context.scene, sample, ray, max_depth);
-    // Light that the walk meets by itself. Behind a mirror nobody has sampled it; elsewhere it is found in two ways, and the
-    // balance heuristic says how much of it this one counts for.
+    // The weight of an emitter hit. After a specular vertex it is 1, since next event estimation cannot find such paths;
+    // elsewhere both strategies find the same light and are combined by the balance heuristic.
     const auto weight = [&](const SurfacePoint& luminaire) {
       if (walk.specular) return 1.0f;
       const float sampled = next_event_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire);

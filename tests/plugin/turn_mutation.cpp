@@ -1,8 +1,9 @@
-// A mutation of one's own for PathSpaceMetropolis, in one file, out of tree: the direction in which light goes on from some
-// vertex turns a little, and where that leads takes the place of the next vertex.
+// A mutation for PathSpaceMetropolis, in one file, out of tree: it rotates the direction from one vertex of a path to the next
+// a little, and the surface point that this direction hits replaces the next vertex.
 //
-// The vertex, and the direction among those at the same angle, are alike likely both ways, so T(x -> y) is the density per area
-// of y_i for a uniform direction from x_{i-1}: the solid angle of an area at y_i, seen from there, over the area.
+// The choices of the vertex and of the rotation have the same probability in both directions, so T(x -> y) is in proportion to
+// the pdf per area [1/m^2] of y_i for directions from x_{i-1}: the solid angle of an area at y_i, seen from there, over the
+// area.
 #include "etendue/transport/mutation.h"
 
 using namespace etendue;

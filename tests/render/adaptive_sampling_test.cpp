@@ -1,4 +1,4 @@
-// Adaptive sampling: no bias where rare samples are bright, less error where noise is local, the same bits however it is run.
+// Adaptive sampling: no bias where bright samples are rare, less error where noise is local, the same bits for any threads.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,8 @@
 namespace etendue {
 namespace {
 
-/// Light of known mean 1: constant but in one square of 8 x 8 pixels, or nowhere, where it comes in one sample of `rarity`.
+/// Radiance of known mean 1: constant, except in a square of 8 x 8 pixels (or everywhere), where one sample in `rarity` has it
+/// all.
 class RareLight final : public Renderer {
  public:
   int rarity = 4;
@@ -41,7 +42,7 @@ class RareLight final : public Renderer {
 };
 
 Ref<Job> job(const std::string& renderer, int samples) {
-  static const Register<RareLight> registered;  // only here: tests of all renderers must not get one
+  static const Register<RareLight> registered;  // only once this test runs: other tests go through all renderers
   const Ref<Job> made =
       load_job_text(test::job_text(renderer, "PerspectiveCamera { from: [0, 0, 0] m, to: [0, 0, 1] m, fov: 90 deg }", 32,
                                    "Sphere { centre: [0, 0, -9] m }"),
@@ -53,7 +54,7 @@ const std::string adaptive =
                       "AdaptiveSampling { sampler: IndependentSampler {}, inner: RareLight { rarity: 512, everywhere: true } }",
                   uniform = "RareLight { sampler: IndependentSampler {}, rarity: 512, everywhere: true }";
 
-/// Mean of Y over the picture, and the mean squared error of pixels against 1.
+/// The mean of Y over the image, and the mean squared error of pixels against 1.
 struct Outcome {
   double mean = 0, error = 0;
 };
@@ -68,7 +69,7 @@ Outcome outcome(const Image& image) {
   return o;
 }
 
-/// Of many renders, as the mean and its standard error, over seeds.
+/// Over renders with different seeds: the mean of the images' means, its standard error, and the mean squared error of pixels.
 struct Statistics {
   double mean = 0, deviation = 0, error = 0;
 };
@@ -86,9 +87,9 @@ Statistics over_seeds(const std::string& renderer, int samples, int renders) {
   return {mean, std::sqrt((squares / renders - mean * mean) / (renders - 1)), error};
 }
 
-// In the first step, 25 pixels and 8 samples of each have no bright one in two of three cases. Where there is one they then
-// have many samples, else few: if all samples counted alike, bright ones would be averaged away. 4 standard errors: a chance of
-// 6e-5.
+// In the first step, the 25 pixels of an estimate have 8 samples each, with no bright one in two of three cases. Pixels with a
+// bright sample then get many samples, the others few: if all samples had the same weight, bright samples would be averaged
+// away. A deviation of 4 standard errors has the probability 6e-5.
 TEST(AdaptiveSampling, MeansAreTheTruthWhereBrightSamplesAreRare) {
   const Statistics found = over_seeds(adaptive, 32, 60), even = over_seeds(uniform, 32, 60);
   EXPECT_NEAR(found.mean, 1, 4 * found.deviation) << "standard error " << found.deviation;
@@ -100,10 +101,10 @@ TEST(AdaptiveSampling, ErrorsAreLessWhereNoiseIsLocal) {
   const std::string numbers = "sampler: IndependentSampler {}", often = "RareLight { rarity: 4 }";
   const Statistics found = over_seeds("AdaptiveSampling { " + numbers + ", inner: " + often + " }", 64, 8),
                    even = over_seeds("RareLight { rarity: 4, " + numbers + " }", 64, 8);
-  // A sixteenth of the picture has all the noise: up to 8 times the samples there. The first of 8 steps is even: with
-  // weights 1/8 each, the variance is (1/8 + 7/8 / 8) / 8 ... of that of even samples, 0.03 + 0.10 in all.
+  // A sixteenth of the image has all the noise and gets up to 8 times the samples. The first of 8 steps is uniform. With
+  // weights 1/8 each, the variance is 1/8 + 7/8 / 8 = 0.23 of that of uniform samples.
   EXPECT_LT(found.error, 0.4 * even.error) << found.error << " " << even.error;
-  // Switched off it is what it was.
+  // With most: 1 all pixels get the same number of samples, and the error is that of uniform sampling.
   const Statistics off = over_seeds("AdaptiveSampling { most: 1, " + numbers + ", inner: " + often + " }", 64, 8);
   EXPECT_NEAR(off.error / even.error, 1, 0.3);
 }
@@ -124,7 +125,8 @@ TEST(AdaptiveSampling, TheErrorThatIsToldIsTheErrorThatIsMade) {
   std::ranges::sort(corners);
   EXPECT_GT(corners[3], 3 * 256) << "where the noise is";
   EXPECT_LT(corners[2], 256) << "where none is";
-  // 64 noisy pixels, of each of which the square of a normal error counts: 18 %, and the spread of 32 steps.
+  // `made` is a sum of 64 squared normal errors, with a relative deviation of 18 %; `told` varies with the variance of 32
+  // steps.
   EXPECT_NEAR(told / made, 1, 0.6);
 }
 

@@ -1,4 +1,4 @@
-// What renderers cannot find.
+// Advice: the light in a scene that a renderer cannot find, and the renderers that can.
 
 #include "app/advice.h"
 
@@ -16,7 +16,7 @@ TEST(AdviceText, names_what_can) {
   EXPECT_EQ(advice_text("A", {delta_light, "x", {}}), "A cannot find x; no known renderer can");
 }
 
-// What a class is called, what it is for people, and what it is in a scene that has everything.
+// Each path class has a name, a description and a bit of its own; a scene with every trait has paths of all classes.
 TEST(AdviceText, every_kind_of_light_has_its_words) {
   SceneTraits all;
   for (std::vector<std::string>* list :
@@ -38,7 +38,7 @@ TEST(AdviceText, every_kind_of_light_has_its_words) {
 TEST(AdviceText, a_path_tracer_loses_caustics_of_a_point_light_through_glass) {
   const Ref<Job> job = prepared(point_scene("PathTracer {}", {floor_disc, "lamp", "ball"}));
   const std::vector<std::string> lines = advice_lines(*job);
-  ASSERT_EQ(lines.size(), 2u);  // caustics, and what mirrors show of them
+  ASSERT_EQ(lines.size(), 2u);  // caustics, and caustics seen in mirrors
   EXPECT_TRUE(lines[0].starts_with("PathTracer cannot find ")) << lines[0];
   for (const char* part : {"caustics", "'lamp'", "'ball'"}) EXPECT_TRUE(has(lines[0], part)) << lines[0];
   EXPECT_TRUE(has(lines[0], "; BidirectionalPathTracer") && lines[0].ends_with(" can")) << lines[0];

@@ -1,4 +1,4 @@
-// Renders in parts: what is merged, and what is refused.
+// Renders in parts: which checkpoints are merged, and which are refused.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ TEST_F(CheckpointTest, parts_merge_in_any_order_to_what_one_process_makes) {
   expect_same(merged, *straight);
   for (const auto& order : {std::vector{c, b, a}, {b, a, c}, {c, a, b}})
     EXPECT_TRUE(merge_checkpoints(order).state.image == merged.state.image);
-  // Merging merged ones, and going on from there with what is missing.
+  // Checkpoints that are merged already are merged again, and a render continues from one with the missing samples.
   write_checkpoint(merge_checkpoints({c, a}), folder / "ac");
   EXPECT_EQ(read_checkpoint(folder / "ac").done, (std::vector<IndexRange>{{0, 2 * step}, {3 * step, std::uint32_t(samples)}}));
   const auto filled = continued(job_of(text, samples), folder / "ac");
@@ -48,7 +48,7 @@ TEST_F(CheckpointTest, what_does_not_belong_together_is_not_merged) {
   EXPECT_TRUE(has(reasons({a, d}), "max_depth: 4")) << reasons({a, d});
   EXPECT_TRUE(has(reasons({a, folder / "absent"}), "there is no such file"));
   EXPECT_TRUE(has(reasons({}), "nothing to merge"));
-  // A wide range and two within it: every overlap is told.
+  // A wide range and two ranges within it: every overlap is reported.
   Checkpoint wide = read_checkpoint(a);
   wide.done = {{0, 100}};
   write_checkpoint(wide, folder / "wide");
@@ -77,11 +77,11 @@ TEST_F(CheckpointTest, another_render_is_not_continued) {
   EXPECT_TRUE(has(from(ball_text("PathTracer { max_depth: 3 }", "width: 2", "0.6")), "color: 0.6"));
   EXPECT_TRUE(has(from(ball_text("PathTracer { max_depth: 3 }", "width: 2", "0.5", "seed: 4")),
                   "the seed differs: 0 in the checkpoint, 4"));
-  // What does not change the samples may change.
+  // Members that do not affect the samples may change.
   EXPECT_EQ(from("# a comment\n" + ball_text("PathTracer { max_depth: 3 }", "width: 2", "0.5",
                                              "tone_map: SchlickToneMap {}\n outputs: [ NpyOutput {} ]\n time_limit: 1000")),
             "");
-  // A refusal changes nothing.
+  // After a refusal the render is unchanged.
   const Ref<Job> reseeded = ball(2 * step);
   reseeded->seed = 3;
   const auto render = rendered(reseeded, two_threads);
@@ -129,7 +129,7 @@ TEST_F(CheckpointTest, files_count_by_their_contents) {
   const auto reason = [&](const std::string& path) { return complaint([&] { continued(load(path), folder / "state"); }); };
   EXPECT_EQ(reason(file), "");
 
-  // The same files elsewhere, and newer, are the same.
+  // Copies of the files in another folder, with newer dates, count as the same.
   std::filesystem::create_directory(folder / "moved");
   for (const char* name : {"scene.etd", "grey.csv", "a.ply"})
     folder.write("moved/" + std::string(name), file_text(folder / name));
@@ -175,7 +175,7 @@ TEST_F(CheckpointTest, images_in_tiles_count_by_their_contents) {
 }
 
 TEST_F(CheckpointTest, damage_is_found_wherever_it_is) {
-  part(ball(step + 100), "state");  // with a state from before a short pass
+  part(ball(step + 100), "state");  // contains the state before the short last step, too
   const std::string good = file_text(folder / "state");
   ASSERT_GT(good.size(), 500u);
   const std::string path = folder / "bad";

@@ -1,4 +1,4 @@
-// Renders that are stopped and continued.
+// Checkpoints: renders that are stopped and continued.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ TEST_F(CheckpointTest, a_render_that_was_stopped_and_continued_has_the_same_bits
   EXPECT_EQ(last.samples, std::uint32_t(samples));
   EXPECT_EQ(fractions.back(), 1);
 
-  // What is finished stays as it is, and the render can begin anew.
+  // A finished render that is loaded is not changed by run(), and can be restarted.
   second->load(folder / "state");
   EXPECT_EQ(second->run(), Ended::samples);
   EXPECT_TRUE(film(*second) == film(*straight));
@@ -80,7 +80,7 @@ TEST_F(CheckpointTest, a_render_that_was_stopped_and_continued_has_the_same_bits
   EXPECT_TRUE(film(*second) == film(*straight));
 }
 
-/// What a render says of which the passes begin late.
+/// The Error of a render whose first step is not step 0.
 std::string late_complaint(const Ref<Job>& job, IndexRange passes) {
   return complaint([&] { rendered(job, {.threads = 2, .steps = passes}); });
 }
@@ -94,7 +94,7 @@ TEST_F(CheckpointTest, every_renderer_continues_to_the_same_bits_and_merges) {
     const int own_step = int(described(1)->renderer->samples_per_step(std::uint32_t(step)));
     const auto fresh = [&] { return described(2 * own_step); };
     std::unique_ptr<Render> straight;
-    if (!complaint([&] { straight = rendered(fresh(), two_threads); }).empty()) continue;  // not for this scene
+    if (!complaint([&] { straight = rendered(fresh(), two_threads); }).empty()) continue;  // the renderer refuses this scene
     ++tried;
     part(fresh(), "a", IndexRange{0, 1});
     EXPECT_TRUE(film(*continued(fresh(), folder / "a")) == film(*straight));
@@ -108,7 +108,7 @@ TEST_F(CheckpointTest, every_renderer_continues_to_the_same_bits_and_merges) {
   EXPECT_GE(tried, 1);
 }
 
-/// Brightens what it sees with each step.
+/// Returns more radiance with each step.
 class LearningProcess final : public RenderProcess {
  public:
   using RenderProcess::RenderProcess;
@@ -145,13 +145,13 @@ class LearningRenderer final : public Renderer {
 };
 
 TEST_F(CheckpointTest, what_a_renderer_learned_is_kept_and_not_torn_apart) {
-  static const Register<LearningRenderer> registered;  // only once this test runs: others go through all renderers
+  static const Register<LearningRenderer> registered;  // only once this test runs: other tests go through all renderers
   const auto fresh = [](int samples) { return job_of(ball_text("LearningRenderer {}"), samples); };
   const auto straight = rendered(fresh(3 * step), two_threads);
   part(fresh(3 * step), "a", IndexRange{0, 2});
   EXPECT_TRUE(film(*continued(fresh(3 * step), folder / "a")) == film(*straight));
 
-  // Also from before a short pass.
+  // Also from the state before a short last step.
   part(fresh(step + 7), "short");
   EXPECT_TRUE(film(*continued(fresh(3 * step), folder / "short")) == film(*straight));
 
@@ -168,7 +168,7 @@ TEST_F(CheckpointTest, more_samples_continue_a_finished_render_to_the_same_bits)
   part(ball(few), "state");
   EXPECT_TRUE(read_checkpoint(folder / "state").before_short_pass.has_value());
 
-  // Finished already: nothing is rendered, and what came before the short pass stays.
+  // Already finished: nothing is rendered, and the state before the short last step is kept.
   continued(ball(few), folder / "state", {.threads = 2, .checkpoint_file = folder / "copy"});
   EXPECT_TRUE(read_checkpoint(folder / "copy").before_short_pass.has_value());
 
@@ -176,7 +176,7 @@ TEST_F(CheckpointTest, more_samples_continue_a_finished_render_to_the_same_bits)
   EXPECT_EQ(longer->samples_done(), (std::vector<IndexRange>{{0, std::uint32_t(many)}}));
   EXPECT_TRUE(film(*longer) == film(*straight));
 
-  // Without that state the short pass is completed by another: the same samples in another order.
+  // Without that state the short step is completed by a further one: the same samples in another order.
   Checkpoint c = read_checkpoint(folder / "state");
   c.before_short_pass.reset();
   write_checkpoint(c, folder / "without");

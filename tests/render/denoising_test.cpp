@@ -1,4 +1,4 @@
-// Denoising: what guides are, where pictures go, and whether they come nearer to the truth.
+// Denoising: the guide images, the paths of the denoised images, and the reduction of error.
 
 #include "render/denoising.h"
 
@@ -35,7 +35,7 @@ TEST(Denoising, WrappedOutputsWriteThePictureWhereItWasToGo) {
   EXPECT_EQ(wrapped.at(0)->tone_map->class_info().name, "NoToneMap");
   EXPECT_TRUE(wrapped.at(0)->for_display());
   EXPECT_EQ(wrapped.at(1).get(), nullptr);
-  // No twice.
+  // An output is not wrapped twice.
   EXPECT_EQ(with_denoising(wrapped).at(0).get(), wrapped.at(0).get());
   EXPECT_EQ(output->path("stem"), "folder/a.png") << "the one that was given was changed";
 }
@@ -46,7 +46,7 @@ struct Guides {
   Vector3 albedo, normal;  ///< means over all pixels
 };
 
-/// Those of a picture of 8 x 8 pixels from the origin towards +z, nearly along the axis.
+/// Guides of an image of 8 x 8 pixels seen from the origin towards +z, with rays nearly parallel to the axis.
 Guides guides_of(const std::string& objects) {
   const Ref<Job> job = load_job_text(
       test::job_text("PathTracer {}", "PerspectiveCamera { from: [0, 0, 0] m, to: [0, 0, 1] m, fov: 4 deg }", 8, objects),
@@ -61,17 +61,17 @@ Guides guides_of(const std::string& objects) {
   return {{float(sums[3]), float(sums[4]), float(sums[5])}, {float(sums[6]), float(sums[7]), float(sums[8])}};
 }
 
-/// A large sheet across the axis.
+/// A large rectangle perpendicular to the axis.
 std::string sheet(const std::string& z, const std::string& material) {
   return "Rectangle { corner: [-50, -50, " + z + "] m, edge_u: [100, 0, 0] m, edge_v: [0, 100, 0] m, " + material + " }\n";
 }
 const std::string paint = "shader: Lambertian { color: rgb(0.7, 0.4, 0.2) }";
 
-/// `share` of the paint, and light from elsewhere that is white.
+/// Expects a mean albedo of `share` of the paint plus `white`, and a mean normal.
 void expect_guides(const std::string& objects, float share, float white, const Vector3& normal) {
   SCOPED_TRACE(objects);
   const Guides g = guides_of(objects);
-  // 16384 samples of 8 wavelengths each: their colours' noise is under 0.004.
+  // 16384 samples of 8 wavelengths each: the colour noise is below 0.004.
   EXPECT_NEAR(g.albedo.x, 0.7f * share + white, 0.015f);
   EXPECT_NEAR(g.albedo.y, 0.4f * share + white, 0.015f);
   EXPECT_NEAR(g.albedo.z, 0.2f * share + white, 0.015f);
@@ -79,15 +79,15 @@ void expect_guides(const std::string& objects, float share, float white, const V
 }
 
 TEST(Denoising, GuidesAreOfTheFirstSurfaceThatScattersToAllSides) {
-  // From the other side of the sheet its normal is turned to the viewer.
+  // A surface seen from its back: the normal is flipped towards the viewer.
   expect_guides(sheet("3", paint), 1, 0, {0, 0, -1});
-  // A mirror shows the wall behind the camera: weakened, and with that one's normal.
+  // A mirror has the guides of the wall behind the camera: the albedo times 0.8, and the wall's normal.
   expect_guides(sheet("2", "shader: PerfectSpecular { color: 0.8 }") + sheet("-3", paint), 0.8f, 0, {0, 0, 1});
-  // A pane reflects R = 2 r / (1 + r) of light along its normal, with Fresnel's r = 0.04 of one boundary, and lets the rest
-  // pass (Stokes 1862); what it reflects comes from nowhere, which is black.
+  // A pane reflects R = 2 r / (1 + r) of light along its normal, with Fresnel's r = 0.04 of one boundary, and transmits the
+  // rest (Stokes 1862); the reflected rays leave the scene, which counts as black.
   const float passed = 1 - 2 * 0.04f / 1.04f;
   expect_guides(sheet("2", "shader: ThinDielectric {}") + sheet("3", paint), passed, 0, {0, 0, -passed});
-  // A slab of glass does the same, by all reflections within.
+  // A slab of glass reflects and transmits the same, by all its internal reflections.
   expect_guides("Box { centre: [0, 0, 1.25] m, size: [100, 100, 0.5] m, shader: Dielectric {} }\n" + sheet("3", paint), passed,
                 0, {0, 0, -passed});
 }
@@ -96,7 +96,7 @@ TEST(Denoising, LuminairesAreWhiteAndNothingIsBlack) {
   expect_guides(sheet("3", "emission: DiffuseEmission { radiance: 7 }"), 0, 1, {0, 0, -1});
   expect_guides(sheet("-3", paint), 0, 0, {0, 0, 0});
   expect_guides("Environment { emission: DiffuseEmission { radiance: rgb(3, 1, 1) } }", 0, 1, {0, 0, 0});
-  // Between two mirrors a path ends somewhere: at its 32nd vertex, on the mirror behind the camera.
+  // Between two mirrors a path ends at its 32nd vertex, on the mirror behind the camera.
   expect_guides(sheet("2", "shader: PerfectSpecular { color: 0.5 }") + sheet("-2", "shader: PerfectSpecular { color: 0.5 }"), 0,
                 0, {0, 0, 1});
 }
@@ -118,7 +118,7 @@ TEST(Denoising, GuidesOfACropAreThoseOfTheWhole) {
 
 // ---- the picture ------------------------------------------------------------------------------------------------------------
 
-/// Halves the light and says so.
+/// Halves the radiance, and reports a worker.
 class HalvingDenoiser final : public Denoiser {
  public:
   std::string worker() const override { return "a pencil"; }
@@ -179,7 +179,7 @@ TEST(Denoising, OpenImageDenoiseComesNearerToTheTruth) {
   // Measured: see docs/denoising.md.
   EXPECT_LT(error(with), error(picture) / 4);
   EXPECT_LT(error(with), error(without));
-  // Light is neither made nor lost beyond a little.
+  // The mean is preserved to 2 %.
   EXPECT_NEAR(compare(with, picture).channels.at(1).ratio, 1, 0.02);
 }
 

@@ -1,4 +1,4 @@
-// The samples that brought most light.
+// Fireflies: the list of the brightest samples.
 
 #include "app/fireflies.h"
 
@@ -10,7 +10,7 @@
 namespace etendue::replay_test {
 namespace {
 
-/// A render with all its samples, of which the film kept those that brought most light.
+/// A render with all its samples, whose film stores the brightest ones.
 std::unique_ptr<Render> rendered_keeping(size_t largest, const Ref<Job>& job) {
   auto render = std::make_unique<Render>(job);
   render->film().keep_largest(largest);
@@ -65,7 +65,7 @@ TEST(Fireflies, places_in_a_crop_and_of_splats) {
     EXPECT_NEAR(l.ratio, l.luminance / value, 1e-3 * l.ratio);
     EXPECT_DOUBLE_EQ(replay_sample(*render, l.x, l.y, l.sample).paths[0].splatted, largest[i].luminance);
   }
-  // All splats of the picture, each a 4th of what it counts for, make the pixel they all fall into.
+  // All splats of the image fall into one pixel, whose value is their sum over 4 samples.
   double sum = 0, own = 0;
   std::uint64_t bad = 0;
   for (int y = 3; y < 13; ++y)

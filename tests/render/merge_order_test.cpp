@@ -1,4 +1,4 @@
-// Partial renders, merged in any order: the bytes of one process.
+// Partial renders that are merged in any order have the bytes of a single render.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace etendue::checkpoint_test {
 namespace {
 
-/// Passes of a picture of more than 2^18 pixels are one sample of each.
+/// With an image of more than 2^18 pixels, a step has one sample of each.
 constexpr const char* image =
     "width: 521, height: 504, path_lengths: 3, "
     "layers: [\"albedo\", \"normal\", \"depth\", \"object\", \"variance\", \"samples\"]";
@@ -24,7 +24,7 @@ bool same_picture(const Image& a, const Image& b) { return a.channels == b.chann
 
 class MergeOrderTest : public CheckpointTest {
  protected:
-  /// Renders the parts, and expects of them in three orders, and two at a time, what one process makes.
+  /// Renders the parts, and expects that merging them, in three orders and also two at a time, equals a single render.
   void expect_same_in_any_order(const std::string& renderer, const std::string& crop, const std::vector<IndexRange>& passes,
                                 int samples) {
     SCOPED_TRACE(renderer + crop);
@@ -35,7 +35,7 @@ class MergeOrderTest : public CheckpointTest {
     std::mt19937 random(11);
     for (int order = 0; order < 3; ++order) {
       std::ranges::shuffle(files, random);
-      // merge_checkpoints sorts what it is given, so films are added by hand as well.
+      // merge_checkpoints sorts its arguments, so film states are also added directly in this order.
       Film sum(*straight->job().image);
       for (const std::string& file : files) sum.add_state(read_checkpoint(file).state.image);
       EXPECT_TRUE(sum.save_state() == film(*straight));
@@ -54,7 +54,7 @@ TEST_F(MergeOrderTest, path_tracer) { expect_same_in_any_order("PathTracer", "",
 TEST_F(MergeOrderTest, light_tracer) { expect_same_in_any_order("LightTracer", "", eight, 8); }
 TEST_F(MergeOrderTest, bidirectional_path_tracer) { expect_same_in_any_order("BidirectionalPathTracer", "", eight, 8); }
 
-// A crop's passes hold several of those of the whole picture, of one sample each; the last is short.
+// A crop has fewer pixels, so its steps have several samples of each; the last step is short.
 TEST_F(MergeOrderTest, crops) {
   for (const char* renderer : {"PathTracer", "BidirectionalPathTracer"})
     expect_same_in_any_order(renderer, ", crop: [230, 200, 330, 290]", {{0, 1}, {1, 2}, {2, 4}, {4, 5}}, 4 * 32 + 5);

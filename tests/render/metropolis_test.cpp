@@ -1,5 +1,5 @@
-// Metropolis renderers: that brightness is right as a whole and by path length, of crops too, and is the same to the bit for
-// any number of threads; what chains begin with; what is refused.
+// Metropolis renderers: the brightness as a whole and by path length, also of crops; the same bits for any number of threads;
+// the first states of chains; refusals.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@
 namespace etendue::checkpoint_test {
 namespace {
 
-// Radiance 1 leaves the inside of a sphere everywhere, and half of it is reflected each time: by paths of n segments comes
-// 1 / 2^(n-1), 2 in all. Of walks that must meet the light and that roulette ends after each segment with probability 1/2, one
-// brings as many as it has segments: states differ, and chains must weigh them.
+// The inside of a sphere emits radiance 1 everywhere and reflects half of it: paths of n segments contribute 1 / 2^(n-1), 2 in
+// all. Without next event estimation, and with roulette that ends walks after each segment with the probability 1/2, a walk
+// contributes its number of segments: states differ in brightness, and chains must weight them.
 std::string furnace_text(const std::string& renderer, const std::string& image) {
   return fmt::format(R"(Job {{ renderer: {}
     camera: PerspectiveCamera {{ from: [0.3, 0.1, 0.2], to: [0, 0, 1], fov: 90 }}
@@ -28,9 +28,9 @@ const std::string roulette = "PathTracer { next_event: false, roulette_depth: 1,
 
 using test::means;
 
-// Ten seeds: 0.3 % of all light. Brightness is measured by 1.3 10^6 walks in all, whose values have the relative standard
-// deviation 0.7 (inner), by 2.6 10^6 single strategies, about 3, or by 1.3 10^5 pairs of walks, less than 1; all but the
-// inner's for a quarter of the light alone. Single strategies for all light come as near as 1 %.
+// Ten seeds: to 0.3 % of all light. Brightness is estimated from 1.3 10^6 walks in all, whose values have the relative standard
+// deviation 0.7 (inner), from 2.6 10^6 single strategies (about 3), or from 1.3 10^5 pairs of walks (less than 1); except for
+// `inner` only for a quarter of the light. With single strategies for all light the tolerance is 1 %.
 struct MeansCase {
   const char *name, *renderer;
   double tolerance;
@@ -74,7 +74,7 @@ TEST(Metropolis, CropsAreAsBrightAsTheWholePicture) {
     const auto render = rendered(job_of(furnace_text(renderer, "crop: [2, 1, 6, 3]"), 16384), two_threads);
     EXPECT_NEAR(means(render->picture())["Y"], 2, 0.05);
   }
-  // Paths from luminaires fall outside of a crop, too.
+  // Light subpaths splat outside of a crop, too.
   const std::string renderer = "PrimarySampleMetropolis { inner: LightTracer { max_depth: 2 }, direct: false, bootstrap: 1 }";
   const std::string plane = R"(Job {{ renderer: {}
     camera: PerspectiveCamera {{ from: [0, 0, 2], to: [0, 0, 0], fov: 40 }}
@@ -95,7 +95,7 @@ TEST(Metropolis, TheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-// Each path begins its share of the chains, whatever the number of chains.
+// Each path starts its share of the chains, in proportion to its brightness, for any number of chains.
 TEST(ChainStarts, AreInProportionToBrightness) {
   const ChainStarts starts({{7, 1, 0}, {8, 0, 1}, {9, 2, 2}, {10, 5, 1}});
   EXPECT_EQ(starts.mean(), 2);
@@ -109,9 +109,9 @@ TEST(ChainStarts, AreInProportionToBrightness) {
   EXPECT_NEAR(begun[10] / (repeats * chains), 5 / 8.0, 1e-3);
 }
 
-// By each mutation alone, with few independent paths: what chains show, part by part of the picture and by length, is what
-// another renderer does. A density that is wrong by a cosine or a squared distance moves light between the parts by much more
-// than the noise.
+// Each mutation alone, with few independent paths: the image of the chains agrees with that of another renderer in each of 4 x
+// 3 pixels and by path length. A pdf that is wrong by a cosine or a squared distance moves light between the pixels by much
+// more than the noise.
 class Mutations : public ::testing::TestWithParam<const char*> {
  protected:
   static Image parts(const std::string& renderer, const std::string& scene, int samples) {
@@ -124,7 +124,7 @@ class Mutations : public ::testing::TestWithParam<const char*> {
     EXPECT_EQ(render->film().bad_samples(), 0u);
     return render->picture();
   }
-  /// Each by so large a part of itself and of the mean.
+  /// Expects that pixels agree to within `tolerance` times the sum of their value and the mean.
   static void same(const Image& image, const Image& expected, const char* length, double tolerance) {
     const size_t y = size_t(std::ranges::find(image.channels, length) - image.channels.begin());
     double mean = 0;
@@ -144,7 +144,7 @@ class Mutations : public ::testing::TestWithParam<const char*> {
   }
 };
 
-// Two matt rectangles and a lamp.
+// Two diffuse rectangles and a lamp.
 TEST_P(Mutations, LeaveTheLightWhereItIs) {
   const std::string scene = R"(
         Rectangle { corner: [-1, -1, 0], edge_u: [2, 0, 0], edge_v: [0, 2, 0], shader: Lambertian { color: 0.8 } }
@@ -153,8 +153,8 @@ TEST_P(Mutations, LeaveTheLightWhereItIs) {
   same(parts(alone(GetParam(), 4), scene, 65536), parts("PathTracer { max_depth: 4 }", scene, 65536), "length_3.Y", 0.08);
 }
 
-// A matt floor below a wide lamp, seen in a convex mirror and through a ball of glass, which throws a caustic: three and four
-// segments are those of light thrown by the mirror, seen in it, thrown by glass, and seen through it.
+// A diffuse floor below a wide lamp, seen in a convex mirror and through a glass ball, both of which cast caustics: paths of
+// three and four segments are the caustics of the mirror and of the glass, and the floor seen in the one and through the other.
 TEST_P(Mutations, GoThroughMirrorsAndGlass) {
   const std::string scene = R"(
         Rectangle { corner: [-2, -2, 0], edge_u: [4, 0, 0], edge_v: [0, 4, 0], shader: Lambertian { color: 0.8 } }
@@ -171,8 +171,8 @@ INSTANTIATE_TEST_SUITE_P(PathSpace, Mutations,
                          ::testing::Values("BidirectionalMutation", "LensMutation", "CausticMutation", "MultiChainMutation",
                                            "ManifoldMutation"));
 
-// A ball within rough glass of a higher priority is hidden, so the picture is the same without it. Walks from the lamp go
-// through the glass against the order in which the vertices of paths stand.
+// A ball within rough glass of a higher priority is hidden, so the image is the same without it. Light subpaths pass the glass
+// against the order in which the vertices of a path are stored.
 TEST(Metropolis, PathsThroughRoughGlassKnowTheirMedia) {
   const auto light = [](const std::string& inner) {
     return means(test::rendered(job_of(R"(Job { renderer: PathSpaceMetropolis { max_depth: 3, large_steps: 1 }
@@ -198,7 +198,7 @@ TEST(Metropolis, RefusesWhatItCannotMutate) {
       has(refused("PrimarySampleMetropolis {}", "wavelengths: GridWavelengths {}\n"), "GridWavelengths cannot be mutated"));
   EXPECT_TRUE(has(refused("PrimarySampleMetropolis { inner: PrimarySampleMetropolis {} }"), "no paths that could be mutated"));
   EXPECT_EQ(refused("PrimarySampleMetropolis {}"), "");
-  // What would have no effect.
+  // Members that would have no effect.
   EXPECT_TRUE(
       has(refused("PrimarySampleMetropolis { inner: PathTracer { samples: 9 } }"), "say it of the PrimarySampleMetropolis"));
   EXPECT_TRUE(

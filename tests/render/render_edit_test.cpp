@@ -1,5 +1,5 @@
-// Edits of a render: after each the picture is that of a new render of what the job then says, byte for byte; what is refused
-// leaves all as it was.
+// Edits of a render: after each edit the image is, byte for byte, that of a new render of the edited job; a refused edit
+// changes nothing.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace {
 using checkpoint_test::complaint;
 using checkpoint_test::has;
 
-/// Of all kinds of parts: nested and instanced scenes, a solid, meshes that are moved, shine, are displaced, maps, media.
+/// A job with all kinds of components: nested and instanced scenes, a solid, emissive and displaced meshes, maps, a medium.
 const std::string world = R"(Job {
   renderer: PathTracer { samples: 2, max_depth: 5 }
   camera: PerspectiveCamera { from: [0, 0.5, 5] m, to: [0, 0, 0] m, fov: 50 deg }
@@ -54,14 +54,14 @@ std::string unknown_class(const std::string& text) {
 
 std::vector<std::byte> finished(const Render& render) { return render.film().save_state(); }
 
-/// What a new render of the same description comes to.
+/// The film of a new render of the same description.
 std::vector<std::byte> of_a_new_render(const Job& job) {
   Render fresh(load_job_text(write_description(job), "again.etd"), {.threads = 1});
   fresh.run();
   return finished(fresh);
 }
 
-/// All parts of a job, in the order in which they are met.
+/// All components of a job, in the order of a breadth-first search.
 std::vector<const Component*> parts_of(const Job& job) {
   std::vector<const Component*> parts{&job};
   std::set<const Component*> seen{&job};
@@ -103,8 +103,8 @@ TEST(RenderEdit, each_kind_of_member_leads_to_the_picture_of_a_new_render) {
   EXPECT_TRUE(edit(*objects(4).emission, "radiance", Value(Number{9})));
   EXPECT_TRUE(edit(objects(2), "interior", part("HomogeneousVolume { absorption: 2 }")));
   EXPECT_TRUE(edit(objects(5), "displacement", part("ConstantMap { value: 0.5 }")));
-  EXPECT_TRUE(edit(*job->camera, "from", numbers({0.5, 1, 4})));  // nearby: the scene stays as it is
-  EXPECT_TRUE(edit(*job->camera, "from", numbers({500, 1, 4})));  // far: it counts from elsewhere
+  EXPECT_TRUE(edit(*job->camera, "from", numbers({0.5, 1, 4})));  // nearby: the scene is not prepared again
+  EXPECT_TRUE(edit(*job->camera, "from", numbers({500, 1, 4})));  // far: the origin of render space moves
   EXPECT_TRUE(edit(*job->camera, "from", numbers({0, 0.5, 5})));
   EXPECT_TRUE(edit(*job, "renderer", part("DirectRenderer { samples: 3 }")));
   EXPECT_TRUE(edit(*job->renderer, "samples", Value(Number{5})));
@@ -169,12 +169,12 @@ TEST(RenderEdit, what_is_refused_leaves_all_as_it_was) {
   EXPECT_TRUE(has(refused(*job->scene->objects[4], "triangles", Value(Numbers{{0, 1, 9}, 1, Dimension::none})), "vertex 9"));
   EXPECT_TRUE(has(refused(*job->scene->objects[8], "scene", Value(Ref<Component>(job->scene))), "cannot hold itself"));
   EXPECT_TRUE(has(refused(*make<Job>(), "seed", Value(Number{1})), "no part of the job"));
-  // Of several edits none is made.
+  // If one of several edits is refused, none is made.
   const Edit both[] = {{Ref<const Component>(&ball), "radius", Value(Number{0.1, Dimension::length})},
                        {Ref<const Component>(job->camera.get()), "fov", Value(Number{-1})}};
   EXPECT_NE(complaint([&] { render.edit(both); }), "");
   EXPECT_EQ(write_description(*job), description);
-  // And it goes on to the same picture.
+  // The render continues to the same image.
   render.run();
   EXPECT_EQ(finished(render), of_a_new_render(*job));
 }
@@ -232,7 +232,7 @@ TEST(RenderEdit, samples_are_replayed_while_it_renders) {
   runs.join();
 }
 
-/// One thread renders, one looks, one edits at random.
+/// One thread renders, one displays, one edits at random.
 TEST(RenderEdit, random_edits_of_every_part_while_it_renders) {
   const char* asked = std::getenv("ETENDUE_RANDOM_EDITS");
   const int edits = asked ? std::atoi(asked) : 250;
@@ -253,14 +253,14 @@ TEST(RenderEdit, random_edits_of_every_part_while_it_renders) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
     });
-    // What many edits in turn have made of a scene is mostly dark: it begins again now and then.
+    // After many edits in turn a scene is mostly dark, so the job is loaded again now and then.
     for (int k = 0; k < 25 && n < edits; ++k, ++n) {
       const std::vector<const Component*> parts = parts_of(*job);
       const Component& part = *parts[random() % parts.size()];
       const std::vector<Member>& members = part.class_info().members;
       if (members.empty()) continue;
       const Member& member = members[random() % members.size()];
-      // Limits of time are no function of the description; large pictures take long.
+      // Limits of time do not depend on the description alone; large images take long.
       static const std::set<std::string> left_out{"time_limit", "error_limit", "samples", "width",
                                                   "height",     "levels",      "outputs"};
       if (left_out.contains(member.name)) continue;
@@ -274,7 +274,7 @@ TEST(RenderEdit, random_edits_of_every_part_while_it_renders) {
       const std::string description = write_description(*job);
       fails = false;
       while (!fails && render.progress().samples < std::uint32_t(job->renderer->samples)) std::this_thread::yield();
-      // Some things are found out only when they are rendered; a new render says the same.
+      // Some errors are found only while rendering; a new render then throws as well.
       if (fails)
         EXPECT_NE(complaint([&] { of_a_new_render(*job); }), "") << description;
       else

@@ -1,5 +1,5 @@
-// What processes of algorithms with a memory have at hand: records of the paths they show, wavelengths of a whole step, chains
-// that are saved.
+// Facilities of render processes with a state: records that paths leave, wavelengths shared by a whole step, and chains that
+// are saved.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace etendue::checkpoint_test {
 namespace {
 
-/// Shows 1, notes a number of each path, and gives all paths of a step the same wavelengths.
+/// Returns radiance 1, adds one record per path, and gives all paths of a step the same wavelengths.
 class NotingProcess final : public RenderProcess {
  public:
   using RenderProcess::RenderProcess;
@@ -49,7 +49,7 @@ class NotingRenderer final : public Renderer {
 };
 
 TEST_F(CheckpointTest, what_paths_note_comes_in_a_fixed_order_and_is_kept) {
-  static const Register<NotingRenderer> registered;  // only once this test runs: others go through all renderers
+  static const Register<NotingRenderer> registered;  // only once this test runs: other tests go through all renderers
   const auto state = [&](int threads, bool broken_off) {
     Render render(job_of(ball_text("NotingRenderer {}"), 2 * step), {.threads = threads});
     if (broken_off) {
@@ -102,7 +102,7 @@ TEST(MutatedPrimarySamples, go_on_from_their_saved_state) {
   walk(numbers, 23);
   std::vector<std::byte> bytes;
   numbers.save(bytes);
-  bytes.push_back(std::byte{9});  // the next one's
+  bytes.push_back(std::byte{9});  // belongs to the next object in the stream
   MutatedPrimarySamples other(99);
   std::span<const std::byte> rest(bytes);
   other.load(rest);

@@ -1,4 +1,4 @@
-// Samples computed again.
+// Replay: samples that are computed again.
 
 #include "check/replay/replay.h"
 
@@ -59,10 +59,10 @@ TEST(Replay, json_tells_where_all_light_of_a_pixel_comes_from) {
     lit += luminance > 0;
     several += path["contributions"].size() > 1;
     EXPECT_FALSE(path["single"].get<bool>()) << "the light of each wavelength that was followed is in its place";
-    bool photon_occluded = false;
+    bool disperses = false;
     for (const auto& v : path["vertices"])
-      photon_occluded |= v.contains("note") && v["note"].get<std::string>().starts_with("dispersion");
-    dispersed += photon_occluded;
+      disperses |= v.contains("note") && v["note"].get<std::string>().starts_with("dispersion");
+    dispersed += disperses;
   }
   EXPECT_NEAR(shares, 1, 1e-9);
   EXPECT_EQ(samples.size(), 64u) << "each sample once";
@@ -83,7 +83,7 @@ TEST(Replay, a_pixel_is_what_the_picture_has_there) {
 }
 
 TEST(Replay, the_brightest_are_the_same_however_many_are_asked_for_and_on_any_number_of_threads) {
-  const Ref<Job> job = loaded(glass_text(3000));  // several parts
+  const Ref<Job> job = loaded(glass_text(3000));  // several work items
   const PixelReplay many = replay_pixel(Render(job, {.threads = 1}), px, py, 3000);
   ASSERT_EQ(many.paths.size(), 3000u);
   for (const int threads : {1, 2, 5}) {

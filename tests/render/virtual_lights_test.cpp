@@ -1,5 +1,5 @@
-// Virtual lights: that all light is found, by length, wherever the bound of the geometry term is, what is left without
-// compensation, that bits do not depend on threads, and that one light of each group stands for all.
+// Virtual lights: all light is found, by path length, for any bound of the geometry term; the light that remains without
+// compensation; the same bits for any number of threads; one light of each group represents the group without bias.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,13 +12,13 @@
 namespace etendue::checkpoint_test {
 namespace {
 
-// Radiance 1 leaves the inside of a sphere everywhere, and half of it is reflected each time: by paths of n segments comes
-// 1 / 2^(n-1). Between any two places of a sphere of radius R the geometry term is 1 / (4 R^2), so virtual lights bring the
-// same part w everywhere: all where `nearest` is small, and nothing where it is large.
+// The inside of a sphere emits radiance 1 everywhere and reflects half of it: paths of n segments contribute 1 / 2^(n-1).
+// Between any two points of a sphere of radius R the geometry term is 1 / (4 R^2), so virtual lights contribute the same
+// fraction w everywhere: all where `nearest` is small, and nothing where it is large.
 struct Case {
   const char *name, *renderer;
-  double all;     ///< that is seen
-  double longer;  ///< of it, by more than two segments
+  double all;     ///< radiance of paths of all lengths
+  double longer;  ///< radiance of paths of more than two segments, over 0.5
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
@@ -42,7 +42,7 @@ TEST_P(VirtualLightsInASphere, FindAllLight) {
       for (int x = 0; x < 8; ++x) sum += image.at(x, y, c) / 64;
     return sum;
   };
-  // 25,600 samples, of lights whose number differs from step to step: standard errors of half a per cent.
+  // 25,600 samples, with a different number of lights in each step: standard errors of half a per cent.
   EXPECT_NEAR(mean("Y"), GetParam().all, 0.03);
   EXPECT_NEAR(mean("length_1.Y"), 1, 0.02);
   EXPECT_NEAR(mean("length_2.Y"), 0.5, 0.01);
@@ -62,8 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"many_nothing", "ManyLights { nearest: 100000, compensate: false, walks: 300 }", 1.5, 0}),
     [](const auto& each) { return std::string(each.param.name); });
 
-// Light of radiance 1 comes from everywhere, and a ball of fog loses none of it: it is not seen. Half of the light that leaves
-// it towards the camera was scattered more than once.
+// Radiance 1 arrives from all directions, and a ball of fog that absorbs nothing is invisible. Half of the light that leaves
+// the ball towards the camera was scattered more than once.
 TEST(VirtualLights, FogThatAbsorbsNothingIsNotSeen) {
   for (const char* renderer : {"InstantRadiosity { max_depth: 100, nearest: 1 }",
                                "ManyLights { max_depth: 100, nearest: 1, walks: 300, cut: 4, samples_per_tree: 1 }"}) {
@@ -80,7 +80,7 @@ TEST(VirtualLights, FogThatAbsorbsNothingIsNotSeen) {
     double mean = 0;
     for (int y = 0; y < 4; ++y)
       for (int x = 0; x < 4; ++x) mean += image.at(x, y, 1) / 16;
-    EXPECT_NEAR(mean, 1, 0.02) << renderer;  // 2000 steps with some lights each: four standard errors
+    EXPECT_NEAR(mean, 1, 0.02) << renderer;  // 2000 steps with some lights each: the tolerance is four standard errors
     EXPECT_EQ(render->film().bad_samples(), 0u);
   }
 }
@@ -92,7 +92,7 @@ TEST(VirtualLights, TheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-// Whatever a light in front of a place brings, the mean over cuts is the sum over all.
+// For any contributions of the lights in front of a point, the mean over sampled cuts is the sum over all lights.
 TEST(VirtualLightTree, OneOfEachGroupStandsForAll) {
   ChoiceNumbers random(1);
   const auto next = [&] { return float(random.next()); };

@@ -1,5 +1,5 @@
 #pragma once
-// What tests of checkpoints share: a small scene, and a folder of parts.
+// Shared by tests of checkpoints: a small scene, and renders of single steps into files.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace etendue::checkpoint_test {
 
 using test::rendered;
 
-// A pass of a picture of so few pixels is 16384 samples of each.
+// With an image of so few pixels, a step has 16384 samples of each.
 inline constexpr int step = 16384;
 
 inline std::string ball_text(const std::string& renderer = "PathTracer { max_depth: 3 }", const std::string& image = "width: 2",
@@ -32,10 +32,10 @@ inline Ref<Job> job_of(const std::string& text, int samples) {
 }
 inline Ref<Job> ball(int samples) { return job_of(ball_text(), samples); }
 
-/// More than one, on any machine.
+/// More than one thread on any machine.
 inline const RenderSettings two_threads{.threads = 2};
 
-/// A render of a job that goes on from a checkpoint, with all its samples.
+/// A render of a job that continues from a checkpoint up to all its samples.
 inline std::unique_ptr<Render> continued(const Ref<Job>& job, const std::string& file,
                                          const RenderSettings& settings = two_threads) {
   auto render = std::make_unique<Render>(job, settings);
@@ -44,10 +44,10 @@ inline std::unique_ptr<Render> continued(const Ref<Job>& job, const std::string&
   return render;
 }
 
-/// All that was collected, bit by bit.
+/// The state of the film, for comparison bit by bit.
 inline std::vector<std::byte> film(const Render& render) { return render.film().save_state(); }
 
-/// Expects of a checkpoint, and of the picture that is kept in it, what a render has.
+/// Expects that a checkpoint, and the image stored in it, equal the state and the image of a render.
 inline void expect_same(const Checkpoint& c, const Render& render) {
   EXPECT_TRUE(c.state.image == film(render));
   const Image kept = picture_of(c).picture, picture = render.picture();
@@ -56,7 +56,7 @@ inline void expect_same(const Checkpoint& c, const Render& render) {
   for (const char* key : {"samples", "seed", "renderer", "version"}) EXPECT_EQ(kept.metadata.at(key), picture.metadata.at(key));
 }
 
-/// The largest difference of two pictures in any channel, relative to that channel's largest value.
+/// The largest difference of two images in any channel, relative to that channel's largest value.
 inline double relative_difference(const Image& a, const Image& b) {
   EXPECT_EQ(a.channels, b.channels);
   double worst = 0;
@@ -72,7 +72,7 @@ inline double relative_difference(const Image& a, const Image& b) {
   return worst;
 }
 
-/// What an action throws; empty: nothing.
+/// The message of the Error that an action throws; empty: it throws none.
 template <class F>
 std::string complaint(F&& f) {
   try {
@@ -91,7 +91,7 @@ inline bool has(const std::string& text, const std::string& part) { return text.
 
 class CheckpointTest : public RunsProgram {
  protected:
-  /// Renders passes of a job into a file.
+  /// Renders these steps of a job into a checkpoint file.
   std::string part(const Ref<Job>& job, const std::string& name, std::optional<IndexRange> passes = {}) {
     std::string file = folder / name;
     EXPECT_EQ(rendered(job, {.threads = 2, .steps = passes, .checkpoint_file = file})->checkpoint_failure(), "");

@@ -1,15 +1,14 @@
 #pragma once
-// Configurations with a known answer, by every renderer that can find all of their light: the same number must come out
-// whichever way paths are built. Each value is held to 0.5 % and to 4.5 standard errors of its own estimate, with fixed
-// seeds. The error is taken from the differences of 32 renders with different seeds, which counts whatever correlation
-// there is between splats of one path and between low-discrepancy samples (two-sided 9e-5 for each value: Student's
-// distribution with 31 degrees of freedom).
+// Configurations with a known answer, rendered by every renderer that can find all of their light: each strategy must give the
+// same number. Each value is held to 0.5 % and to 4.5 standard errors of its own estimate, with fixed seeds. The standard error
+// is taken from the differences of 32 renders with different seeds, which includes any correlation between splats of one path
+// and between low-discrepancy samples (two-sided 9e-5 for each value: Student's distribution with 31 degrees of freedom).
 //
-// Left out, each because it cannot find the light: DirectRenderer where paths are longer than two segments;
-// WhittedRenderer where luminaires have an extent or matt surfaces light each other; LightTracer where the camera looks at
-// glass, at a surface too small to be met (a point: there the mean over a square is compared instead), or at media that
-// emit; PathTracer and DistributionRenderer where a luminaire without extent shines through glass; media for all but
-// PathTracer, BidirectionalPathTracer and LightTracer.
+// Left out, each because it cannot find the light: DirectRenderer where paths are longer than two segments; WhittedRenderer
+// where luminaires have an area or diffuse surfaces light each other; LightTracer where the camera sees glass, a surface too
+// small for light subpaths to hit (a point: there the mean over a square is rendered instead), or emissive media; PathTracer
+// and DistributionRenderer where a delta luminaire shines through glass; media for all but PathTracer, BidirectionalPathTracer
+// and LightTracer.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -33,7 +32,7 @@ struct Row {
   std::string name, camera, objects;
   double expected;
   std::vector<Way> ways;
-  int size = 16;  ///< of the picture, in pixels
+  int size = 16;  ///< width and height of the image [pixels]
 };
 
 struct Case {
@@ -50,7 +49,7 @@ inline std::vector<Case> cases(const std::vector<Row>& rows) {
 
 inline void PrintTo(const Case& c, std::ostream* out) { *out << c.way.renderer << " { " << c.way.members << " }"; }
 
-/// Mean Y of the picture over renders with different seeds, and its standard error.
+/// Compares the mean Y of the image, over renders with different seeds, with the expected value.
 inline void expect_row(const Case& c) {
   constexpr int renders = 32;
   Render render(load_job_text(job_text(fmt::format("{} {{ samples: {}{}{} }}", c.way.renderer, c.way.samples,
@@ -74,7 +73,7 @@ inline void expect_row(const Case& c) {
   const double error = std::sqrt(squares / (renders * (renders - 1.0))), expected = c.row.expected;
   EXPECT_EQ(bad, 0u);
   EXPECT_NEAR(mean, expected, 0.005 * expected) << "standard error " << error;
-  // What float arithmetic and six digits leave, 1e-4, is all that counts where the error is smaller still.
+  // Float arithmetic and expected values of six digits are exact to 1e-4, which matters only if the standard error is smaller.
   EXPECT_NEAR(mean, expected, 4.5 * error + 1e-4 * expected) << "standard error " << error;
 }
 
@@ -88,11 +87,11 @@ inline const std::string diffuse = "shader: Lambertian { color: 1 }";
 inline std::string pinhole(const std::string& from, const std::string& to) {
   return "PerspectiveCamera { from: " + from + ", to: " + to + ", up: [0, 1, 0], fov: 0.01 deg }";
 }
-/// Sees the square of so many metres around `to`.
+/// An orthographic camera that sees the square of so many metres around `to`.
 inline std::string square(const std::string& from, const std::string& to, double width) {
   return fmt::format("OrthographicCamera {{ from: {}, to: {}, up: [0, 1, 0], width: {} }}", from, to, width);
 }
-/// Horizontal, at height z.
+/// A horizontal rectangle at height z.
 inline std::string plate(double half, double z, const std::string& more = "") {
   return fmt::format("Rectangle {{ corner: [{0}, {0}, {1}], edge_u: [{2}, 0, 0], edge_v: [0, {2}, 0]{3}{4} }}\n", -half, z,
                      2 * half, more.empty() ? "" : ", ", more);

@@ -1,5 +1,5 @@
 #pragma once
-// What tests of single components share: making them, points on surfaces, and a chi-square test.
+// Shared by tests of single components: their creation, surface points, and a chi-square test.
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,8 @@ inline SurfacePoint surface_point(const Normal3& normal, const Normal3& shading_
 }
 inline SurfacePoint surface_point(const Normal3& normal = {0.3f, -0.5f, 0.8f}) { return surface_point(normal, normal); }
 
-/// A square in its own xy plane with an edge of given length, facing +z; just what tests of shaders and emission ask for.
+/// A square in the xy plane of object space with an edge of given length, facing +z; only what tests of shaders and emission
+/// use.
 class TestSquare final : public SceneObject {
  public:
   explicit TestSquare(float edge = 1) : edge_(edge) {}

@@ -1,5 +1,5 @@
 #pragma once
-// What tests of objects and scenes share.
+// Shared by tests of objects and scenes.
 
 #include <gtest/gtest.h>
 
@@ -87,7 +87,7 @@ inline Ray ray(const Point3& origin, const Vector3& direction, float time = 0) {
   return r;
 }
 
-/// Mean and its standard error.
+/// The mean of a sample and its standard error.
 struct Mean {
   double sum = 0, squares = 0, count = 0;
   void add(double x) {

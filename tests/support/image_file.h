@@ -13,7 +13,7 @@
 
 namespace etendue::test {
 
-/// Writes an image in the format of the path's ending.
+/// Writes an image in the format of the path's extension.
 inline void write_image(const std::string& path, const ImageHeader& header, const std::vector<float>& values) {
   const std::vector<unsigned char> bytes =
       image_library().encode(std::filesystem::path(path).extension().string(), header, values);
@@ -22,7 +22,7 @@ inline void write_image(const std::string& path, const ImageHeader& header, cons
   if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
-/// A temporary file that lives as long as this.
+/// A temporary file that is removed by the destructor.
 struct ImageFile {
   std::string path;
   explicit ImageFile(const std::string& name)

@@ -1,5 +1,5 @@
 #pragma once
-// What a picture holds on the whole.
+// Means of images.
 
 #include <map>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// What tests of the language share: small components of their own, and texts read as one thing or another.
+// Shared by tests of the language: small components, and texts that are parsed as components, values or jobs.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@ namespace etendue {
 
 enum class LanguageMode : std::uint8_t { visible, hidden };
 
-/// Something with every kind of member.
+/// A component with every kind of member.
 class LanguagePart : public Component {
  public:
   using Interface = LanguagePart;
@@ -71,7 +71,7 @@ class LanguagePart : public Component {
   }
 };
 
-/// Needs a member, and a plain number stands for it.
+/// A part that a plain number in the text stands for.
 class LanguageConstant final : public LanguagePart {
  public:
   float value = 0;
@@ -134,7 +134,7 @@ inline std::string job_errors(const std::string& text, const LoadOptions& option
   return errors_of([&] { load_job_text(text, "job", {}, options); });
 }
 
-/// A Job that is complete enough to be loaded.
+/// The text of a Job that is complete enough to be loaded.
 inline std::string job_with(const std::string& members) { return "Job { camera: none, scene: none, " + members + " }"; }
 
 inline double number(const std::string& text) {
@@ -148,7 +148,7 @@ inline double number(const std::string& text) {
   return 0;
 }
 
-/// A folder of files that is removed in the end.
+/// A temporary folder, removed by the destructor.
 class Folder {
  public:
   Folder()

@@ -1,5 +1,5 @@
 #pragma once
-// What tests of luminaires share: components from texts, and integrals over directions.
+// Shared by tests of luminaires: components from texts, and integrals over directions.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ Ref<T> prepared_as(const std::string& text) {
   return ref_cast<T>(prepared(text));
 }
 
-/// Refused when it is prepared, at a column of the text, with a message that says some words.
+/// Expects that preparing a component throws Error at the member's column of the text, with a message that contains `words`.
 inline void expect_refused(const std::string& text, const std::string& member, const std::string& words) {
   const Ref<Component> made = parse_component(text, "test.etd");
   try {
@@ -35,14 +35,15 @@ inline void expect_refused(const std::string& text, const std::string& member, c
   }
 }
 
-/// A motion from one transform to another over a second.
+/// A motion from one transform to another within one second.
 inline AnimatedTransform motion(const Transform& from, const Transform& to) {
   return AnimatedTransform(std::vector<AnimatedTransform::Key>{{0, from}, {1, to}});
 }
 
 inline void expect_near(const Vector3& a, const Vector3& b, float tolerance = 1e-6f) { EXPECT_LT(length(a - b), tolerance); }
 
-/// The integral over all directions of a function: midpoints in 1 - cos(theta) to an axis, finer between borders of it.
+/// The integral of a function over all directions, by the midpoint rule in 1 - cos(theta) around an axis. `borders` [in
+/// 1 - cos(theta)] divide it into parts with `steps` midpoints each.
 inline double integrate_around(const Vector3& axis, const std::vector<double>& borders,
                                const std::function<double(const Vector3&)>& f, int steps = 2000, int sectors = 8) {
   const Frame frame{Normal3(axis)};

@@ -1,5 +1,5 @@
 #pragma once
-// Runs the built program for tests, and gives them a folder of their own.
+// Runs the built program for tests, in a temporary folder.
 
 #include <fcntl.h>
 #include <signal.h>
@@ -17,7 +17,7 @@
 
 namespace etendue {
 
-/// A new folder, removed at the end.
+/// A new folder, removed by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -51,7 +51,7 @@ inline std::string file_text(const std::string& path) {
   return std::move(text).str();
 }
 
-/// A program that runs with its output in files of a folder.
+/// A running program whose output is written to files in a folder.
 class Process {
  public:
   Process(const std::string& program, const std::vector<std::string>& arguments, const TemporaryFolder& folder,
@@ -65,14 +65,14 @@ class Process {
     const std::string in_folder = working_folder.empty() ? folder.path() : working_folder;
     id_ = fork();
     if (id_ == 0) {
-      prctl(PR_SET_PDEATHSIG, SIGKILL);  // tests that are killed leave no program behind that renders for days
-      // Under nohup or in the background tests are told to ignore these, and the program would be as well.
+      prctl(PR_SET_PDEATHSIG, SIGKILL);  // if the tests are killed, the program is too, instead of rendering for days
+      // Under nohup or in the background the tests ignore these signals, and the program would inherit that.
       for (const int ignored : {SIGHUP, SIGINT, SIGQUIT}) ::signal(ignored, SIG_DFL);
       if (out < 0 || err < 0) _exit(125);
       dup2(out, STDOUT_FILENO);
       dup2(err, STDERR_FILENO);
       if (chdir(in_folder.c_str()) != 0) _exit(125);
-      // Tests that run under nohup would hand on that hanging up is ignored, and a render sent SIGHUP would never end.
+      // Under nohup the program would inherit that SIGHUP is ignored, and a render that is sent SIGHUP would never end.
       ::signal(SIGHUP, SIG_DFL);
       execv(program.c_str(), argv.data());
       _exit(126);
@@ -89,7 +89,7 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void send(int signal) const { ::kill(id_, signal); }
-  /// The exit status; 128 + the signal's number when one ended it.
+  /// The exit status, or 128 + the number of the signal that ended the program.
   int wait() {
     int status = 0;
     if (id_ <= 0 || waitpid(id_, &status, 0) != id_) return -1;

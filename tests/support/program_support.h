@@ -1,5 +1,5 @@
 #pragma once
-// What tests of the program share: a folder of their own, the program run there to its end, and what it said.
+// Shared by tests of the program: a temporary folder, and runs of the program with their output.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ class RunsProgram : public testing::Test {
  protected:
   /// Runs the program with these arguments; returns its exit status.
   int run(const std::vector<std::string>& arguments) { return finish(Process(program, arguments, folder)); }
-  /// Waits for a process, and keeps what it said.
+  /// Waits for the end of a process, and stores its output.
   int finish(Process&& process) {
     const int status = process.wait();
     out = process.out();
@@ -20,7 +20,7 @@ class RunsProgram : public testing::Test {
   }
 
   static bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-  /// Whether its errors and warnings do.
+  /// Whether the program's errors and warnings contain a text.
   bool says(const std::string& part) const { return has(err, part); }
   bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Renders descriptions, and says what came out.
+// Renders descriptions for tests, and measures the images.
 
 #include <gtest/gtest.h>
 
@@ -11,14 +11,14 @@
 
 namespace etendue::test {
 
-/// A render of a job, with all its samples.
+/// A render of a job, run up to all its samples.
 inline std::unique_ptr<Render> rendered(const Ref<Job>& job, RenderSettings settings = {}) {
   auto render = std::make_unique<Render>(job, std::move(settings));
   EXPECT_EQ(render->run(), Ended::samples);
   return render;
 }
 
-/// Renders anew, with other random numbers.
+/// Renders again, with another seed.
 inline void render_again(Render& render, std::uint64_t seed) {
   render.restart(seed);
   EXPECT_EQ(render.run(), Ended::samples);
@@ -52,7 +52,7 @@ inline Measured measure(const Ref<Job>& job) {
 
 inline Measured measure(const std::string& text) { return measure(load_job_text(text, "test.etd")); }
 
-/// A job with a given renderer, camera, picture and objects.
+/// The text of a job with a given renderer, camera, image size and objects.
 inline std::string job_text(const std::string& renderer, const std::string& camera, int size, const std::string& objects,
                             const std::string& scene = "BruteForceScene") {
   return "Job {\n renderer: " + renderer + "\n camera: " + camera + "\n image: ImageBuffer { width: " + std::to_string(size) +

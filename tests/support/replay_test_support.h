@@ -1,5 +1,5 @@
 #pragma once
-// What tests of replayed samples and of advice share: scenes with caustics, and a renderer that brings what is hard to tell.
+// Shared by tests of replayed samples and of advice: scenes with caustics, and a renderer with splats and bad samples.
 
 #include <regex>
 
@@ -27,14 +27,14 @@ inline Ref<Job> prepared(const std::string& text) {
   return job;
 }
 
-/// A lamp that dispersing glass gathers on a floor: dim paths, and a few bright ones.
+/// A lamp whose light a dispersive glass ball concentrates on a floor: many dim paths, and a few bright ones.
 inline std::string glass_text(int samples) {
   return test::job_text(
       "PathTracer { samples: " + std::to_string(samples) + " }", camera, 16,
       objects({floor_disc, glass_ball, round_lamp, "Environment { emission: DiffuseEmission { radiance: 0.1 } }"}));
 }
 
-inline constexpr int px = 6, py = 10;  // on the floor, where the glass gathers light
+inline constexpr int px = 6, py = 10;  // a pixel in the caustic on the floor
 
 inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -46,8 +46,8 @@ inline std::string point_scene(const std::string& renderer, const std::vector<st
   return lamp_and_ball + test::job_text(renderer, camera, 4, objects(parts));
 }
 
-/// Brings a little to its own pixel and much to two places, of which one lies beside the picture. Some samples are no
-/// numbers, some negative in part.
+/// Adds a little light to its own pixel and much to two film points, one of which lies outside the image. Some samples are NaN,
+/// and some are negative at one wavelength.
 class Sprinkler final : public Renderer {
  public:
   static void describe(Description<Sprinkler>& d) { d.summary("For tests: splats much light, some of it bad."); }
@@ -57,7 +57,7 @@ class Sprinkler final : public Renderer {
     if (u < 0.12f)
       own.set(1, std::numeric_limits<float>::quiet_NaN());
     else if (u < 0.25f)
-      own.set(1, -0.0001f);  // the colour of the whole is positive all the same
+      own.set(1, -0.0001f);  // the XYZ of the whole spectrum is still positive
     for (const Point2 film : {Point2(2.5f, 3.25f), Point2(-4.0f, 3.0f)}) {
       sample.sink.splat(film, Spectrum(u), sample.wavelengths, 3);
       if (sample.sink.record)
@@ -68,7 +68,7 @@ class Sprinkler final : public Renderer {
   }
 };
 
-/// A scene's light, sprinkled. Its renderer has a name, but is none that can be made: other tests go through all of those.
+/// A job with the Sprinkler. Its class is registered without a constructor, so that tests of all renderers do not find it.
 inline Ref<Job> sprinkled(const std::string& text, int samples) {
   static RegistrationNode node{typeid(Sprinkler), typeid(Renderer),
                                [](ClassInfo& info) {

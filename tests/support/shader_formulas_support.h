@@ -1,6 +1,6 @@
 #pragma once
-// What tests of shaders' formulas share: vectors in double precision, colours that differ between wavelengths, and the
-// comparison of a smooth model with its formula at random pairs of directions.
+// Shared by tests of shaders' formulas: vectors in double precision, colours that vary with the wavelength, and the comparison
+// of a smooth model with its formula at random pairs of directions.
 
 #include "component_test_support.h"
 #include "etendue/describe/color.h"
@@ -20,14 +20,14 @@ inline V unit(const V& a) { return scaled(a, 1 / std::sqrt(dot(a, a))); }
 inline double pow2(double x) { return x * x; }
 inline double pow5(double x) { return x * x * x * x * x; }
 
-/// A colour that is linear in the wavelength, and its value at one.
+/// A colour that is linear in the wavelength, and its value at a wavelength.
 struct Slope {
   double at360, at830;
   Color color() const { return table_spectrum({360, 830}, {float(at360), float(at830)}); }
   double operator()(double lambda) const { return at360 + (at830 - at360) * (lambda - 360) / 470; }
 };
 
-/// On a square whose u is x and whose normal is z: directions are local ones.
+/// A point on a square with u along x and the normal along z, so that local directions are those of the world.
 inline SurfacePoint flat_point() {
   static test::TestSquare* const square = [] {
     auto* made = new test::TestSquare;
@@ -39,15 +39,15 @@ inline SurfacePoint flat_point() {
   return p;
 }
 
-/// f of a pair of directions in the frame of the brush strokes, both above the surface, at a wavelength.
+/// f [1/sr] of a pair of directions in the frame of the brush strokes, both above the surface, at a wavelength [nm].
 using Formula = std::function<double(const V& out, const V& in, double lambda)>;
 
-inline V turned(const V& v, double turns) {  // into a frame that is turned counter-clockwise
+inline V turned(const V& v, double turns) {  // into a frame that is rotated counter-clockwise
   const double c = std::cos(2 * M_PI * turns), s = std::sin(2 * M_PI * turns);
   return {c * v.x + s * v.y, c * v.y - s * v.x, v.z};
 }
 
-/// Compares value, density by its own samples' weight, and the other side of the surface.
+/// Compares f with a formula on both sides of the surface, and the weights of samples with f and the pdf.
 inline void expect_formula(const std::string& name, const Ref<Shader>& shader, double rotation, const Formula& formula,
                            double tolerance = 2e-4, Lobes which = smooth_lobes) {
   const Wavelengths w = test::wavelengths(430);
@@ -59,7 +59,7 @@ inline void expect_formula(const std::string& name, const Ref<Shader>& shader, d
   for (int i = 0; i < 400; ++i) {
     Vector3 out = random.direction(), in = random.direction();
     in.z = std::copysign(in.z, out.z);
-    if (i % 3 == 0) {  // near the mirror direction, where lobes are
+    if (i % 3 == 0) {  // near the mirror direction, where f is large
       in = normalize(Vector3{-out.x, -out.y, out.z} + 0.1f * random.direction());
       if (in.z * out.z < 0) in.z = -in.z;
     }
@@ -69,12 +69,13 @@ inline void expect_formula(const std::string& name, const Ref<Shader>& shader, d
             t = turned({double(in.x), double(in.y), std::abs(double(in.z))}, rotation);
     for (int k = 0; k < spectrum_size; ++k) {
       const double expected = formula(o, t, double(w[k]));
-      // Narrow lobes amplify the rounding of directions by the square of their narrowness; far tails do not count.
+      // For narrow lobes, rounding errors of directions are amplified by the squared narrowness; far tails are below the
+      // tolerance.
       EXPECT_NEAR(double(f[k]), expected, tolerance * std::abs(expected) + 4e-6) << name << " at " << w[k] << " nm, pair " << i;
       ++compared;
     }
     if (testing::Test::HasFailure()) return;
-    // What is drawn has the weight that value and density say.
+    // The weight of a sample is value / pdf.
     const float choice = random();
     if (const auto s = scatter->sample(out, choice, random.pair(), Transport::radiance, which); s && !s->specular()) {
       const ScatterValue both = scatter->value_and_pdf(out, s->direction, Transport::radiance, which);

@@ -1,5 +1,5 @@
 #pragma once
-// What tests of the simpler renderers share: parts of scenes, single samples, and comparisons.
+// Shared by tests of the simpler renderers: parts of scenes, single samples, and comparisons.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ inline void expect_value(const Measured& m, double expected, double tolerance = 
   EXPECT_NEAR(m.mean.y, expected, 4.5 * m.error + 2e-4 * expected);
 }
 
-/// A job that is ready to compute single samples.
+/// A started render of a job, from which single samples can be computed.
 class Ready {
  public:
   explicit Ready(const std::string& text) : render_(load_job_text(text, "test.etd")), process_(render_.start_at(0)) {}
@@ -26,7 +26,7 @@ class Ready {
     sink.lengths = lengths;
     return process_->sample(x, y, n, arena_, sink);
   }
-  /// The components of linear sRGB of a sample.
+  /// A sample as linear sRGB.
   Vector3 rgb(int x, int y, std::uint32_t n = 0) {
     const auto s = sample(x, y, n);
     const Xyz c = to_xyz(s.value, s.wavelengths);
@@ -56,7 +56,7 @@ inline std::string pinhole(const std::string& from, const std::string& to) {
 
 inline const std::string furnace_camera = "PerspectiveCamera { from: [0.3, 0.1, 0.2], to: [0, 0, 1], fov: 90 }";
 
-/// A room with matt, glossy, mirroring and dispersing things, two lamps of different size and a window.
+/// A room with diffuse, glossy, mirroring and dispersive objects, two lamps of different size and an environment.
 inline std::string room() {
   return R"(
     Rectangle { corner: [-2,-1,-2], edge_u: [0,0,4], edge_v: [4,0,0], shader: PhongShader { color: 0.4, specular: 0.5, exponent: 40 } }
@@ -88,8 +88,8 @@ inline const std::string slab = R"(
     shader: Dielectric { ior: 1.5 } }
 )";
 
-/// Chi-square over pixels of the difference of two pictures' Y, each pixel with its own standard errors; the p-value.
-/// Sample means of few samples have long tails, so there must be many samples.
+/// The p-value of a chi-square test over the pixels of two images: the difference of their Y, with the standard error of each
+/// pixel. Means of few samples have heavy-tailed distributions, so there must be many samples.
 inline double agreement(const std::string& a, const std::string& b, const std::string& camera, int size,
                         const std::string& objects) {
   double statistic = 0;

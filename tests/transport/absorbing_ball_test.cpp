@@ -1,13 +1,13 @@
-// Light that crosses media and panes which absorb, with closed forms for all that happens, by every renderer that can find it.
-// All renderers share how shadow rays walk and how media are tracked, so that they agree whatever these do: here they are held
-// to numbers from outside.
+// Light that crosses absorbing media and panes, with closed forms of all that happens, by every renderer that can find it. All
+// renderers share the code of shadow rays and of media tracking, so they would agree even if it were wrong: here they are
+// compared with independent numbers.
 //
-// A round room of radius 1, whose wall sends out 1 and reflects half, with a ball of radius b in the middle. Everything is the
-// same all around, so the wall is as bright everywhere and in all directions: B. Of the light that leaves the wall at the angle
-// theta, whatever meets the ball (sin theta < b) comes back to the wall by some fraction T; all other light does. So
+// A spherical room of radius 1, whose wall emits radiance 1 and reflects half, has a ball of radius b in its middle. By
+// symmetry the radiance B of the wall is the same everywhere and in all directions. Of the light that leaves the wall at the
+// angle theta, a fraction T returns to the wall if it hits the ball (sin theta < b); all other light returns. So
 //     B = 1 + k B / 2,   k = 1 - integral over sin theta < b of 2 (1 - T) sin theta cos theta dtheta,
 // per wavelength. T is exp(-a times the chord) for a ball that only absorbs; (1 - o)^2 for a shell with holes; for glass it is
-// R + (1 - R)^2 t / (1 - R t), R being Fresnel's reflectance and t what is left after the chord inside.
+// R + (1 - R)^2 t / (1 - R t), with R Fresnel's reflectance and t the transmittance of the chord inside.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ struct Mean {
   double value = 0, error = 0;
 };
 
-/// Mean Y over renders with different seeds, and its standard error.
+/// The mean Y over renders with different seeds, and its standard error.
 Mean rendered(const std::string& renderer, int samples, const std::string& camera, const std::string& objects, int size = 8) {
   const std::string head = renderer.substr(0, renderer.find('{')), members = renderer.substr(renderer.find('{') + 1);
   Render render(load_job_text(
@@ -55,19 +55,19 @@ void expect_mean(const std::string& what, const Mean& m, double expected) {
   EXPECT_LT(m.error, (what.starts_with("LightTracer") ? 0.04 : 0.006) * expected) << what;
 }
 
-/// Y of a function of the wavelength.
+/// Y of a spectrum, given as a function of the wavelength [nm].
 double luminance(const std::function<double(double)>& f) {
   double sum = 0;
   for (int l = 360; l <= 830; ++l) sum += f(l) * observer(float(l)).y;
   return sum / observer_y_integral();
 }
 
-/// B of the room for a ball of radius b that sends back T(sine of the angle at the ball's surface).
+/// B of the room with a ball of radius b that returns the fraction T(sine of the angle at the ball's surface).
 double brightness(double b, const std::function<double(double)>& T) {
   constexpr int steps = 1000;
   double lost = 0;
   for (int i = 0; i < steps; ++i) {
-    const double s = std::sqrt((i + 0.5) / steps);  // even in s^2, of which 2 sin cos dtheta is the differential
+    const double s = std::sqrt((i + 0.5) / steps);  // uniform in s^2, since d(s^2) = 2 sin cos dtheta
     lost += (1 - T(s)) / steps * b * b;
   }
   return 1 / (1 - 0.5 * (1 - lost));
@@ -75,7 +75,7 @@ double brightness(double b, const std::function<double(double)>& T) {
 
 const std::string wall =
     "Sphere { radius: 1, shader: Lambertian { color: 0.5 }, emission: DiffuseEmission { radiance: 1, sides: back } }\n";
-/// Between ball and wall, and in the middle of the ball.
+/// Cameras between ball and wall, and in the middle of the ball.
 const std::string outside = "PerspectiveCamera { from: [0.7, 0.1, 0], to: [1, 0.2, 0.1], fov: 50 }",
                   within = "PerspectiveCamera { from: [0, 0, 0], to: [1, 0.2, 0.1], fov: 50 }";
 
@@ -104,7 +104,7 @@ TEST(AbsorbingBall, ThatOnlyAbsorbs) {
               seen);
 }
 
-// A shell of which a part is there and black: the rest of the light goes straight on, twice.
+// A shell with a black fraction: the remaining light passes by null scattering, twice.
 TEST(AbsorbingBall, ShellWithHoles) {
   const std::string objects =
       wall +
@@ -116,14 +116,14 @@ TEST(AbsorbingBall, ShellWithHoles) {
   }
 }
 
-// Panes that take color^(1 / cos) of the light and do not reflect (their index is 1).
+// Panes that transmit color^(1 / cos) of the light and do not reflect (their index is 1).
 TEST(AbsorbingBall, ShellOfColouredPanes) {
   const std::string objects = wall + fmt::format("Sphere {{ radius: {}, shader: ThinDielectric {{ ior: 1, color: 0.7 }} }}", b);
   const double B = brightness(b, [](double s) { return std::pow(0.7, 2 / std::sqrt(1 - s * s)); });
   for (const Way& way : all_ways) expect_mean(way.renderer, rendered(way.renderer, way.samples, outside, objects), B);
 }
 
-// Fog that scatters at some wavelengths more than at others and absorbs nothing changes nothing.
+// Fog whose scattering depends on the wavelength, without absorption, changes nothing.
 TEST(AbsorbingBall, FogThatOnlyScatters) {
   const std::string objects = wall + fmt::format(
                                          "Sphere {{ radius: {}, shader: PassThrough {{}}, interior: HomogeneousVolume {{ "
@@ -157,9 +157,10 @@ TEST(AbsorbingBall, OfGlass) {
     expect_mean(way.renderer, rendered(way.renderer, way.samples, outside, objects), expected);
 }
 
-// A paper ball with holes, filled with an absorber: of its paper, a part o, r is reflected and t scattered through; 1 - o goes
-// straight on. With m what of the light of its inner side comes to the inner side again, J the radiance of each side (outside
-// its mean by projected area) and F = b^2 the part of the wall's view that is ball:
+// A paper ball with holes, filled with an absorber. A fraction o of its surface is paper, which reflects r and transmits t
+// diffusely; 1 - o is null scattering. With m the fraction of the light from its inner side that arrives at the inner side
+// again, J the radiance of each side (outside its mean by projected area) and F = b^2 the fraction of the wall's view that is
+// ball:
 //   J_in = o r m J_in + (o t + 1 - o) B,   J_out = o r B + (o t + 1 - o) m J_in,   B = 1 + ((1 - F) B + F J_out) / 2.
 TEST(AbsorbingBall, OfPaper) {
   const double o = 0.8, r = 0.35, t = 0.5;
@@ -185,16 +186,15 @@ TEST(AbsorbingBall, OfPaper) {
   }
 }
 
-// The ball itself shines, and absorbs what it sends inwards: seen through its middle from a black room, 1 + exp(-2 a b).
-// The lens is much nearer to it than 2 b: were the medium of the ball's inside put outside, it would absorb another amount.
+// The ball itself emits, and absorbs what it emits inwards: seen through its middle from a black room, 1 + exp(-2 a b). The
+// lens is much nearer to it than 2 b: if the medium of the inside were put outside, it would absorb another amount.
 TEST(AbsorbingBall, ThatShines) {
   const std::string objects = fmt::format(
       "Sphere {{ radius: {}, shader: PassThrough {{}}, emission: DiffuseEmission {{ radiance: 1, sides: "
       "both }}, interior: HomogeneousVolume {{ absorption: {} }} }}",
       b, slope);
   const std::string camera = "OrthographicCamera { from: [0, 0, 0.7], to: [0, 0, 0], up: [0, 1, 0], width: 0.2 }";
-  const double expected =
-      luminance([](double l) { return 1 + std::exp(-absorption(l) * 2 * b * (1 - 0.0016667 / (b * b) / 1)); });
+  const double expected = luminance([](double l) { return 1 + std::exp(-absorption(l) * 2 * b * (1 - 0.0033333 / (b * b))); });
   for (const Way& way : {Way{"PathTracer {}", 16}, {"BidirectionalPathTracer {}", 16}, {"LightTracer {}", 2000}}) {
     const Mean m = rendered(way.renderer, way.samples, camera, objects);
     EXPECT_NEAR(m.value, expected, 4.5 * m.error + 3e-3 * expected) << way.renderer << " " << m.error;
@@ -202,8 +202,8 @@ TEST(AbsorbingBall, ThatShines) {
   }
 }
 
-// A lamp in an absorbing ball over a floor: E is the integral of exp(-a s) over the lamp's solid angle, s being the way through
-// the ball. The lamp is a point, or a ball of radius 0.25; both lie in the middle of a ball of radius 0.8 at the height 2.
+// A lamp in an absorbing ball over a floor: E is the integral of exp(-a s) over the lamp's solid angle, with s the distance
+// within the ball. The lamp is a point, or a sphere of radius 0.25, in the middle of a ball of radius 0.8 at the height 2.
 TEST(AbsorbingBall, WithALampInside) {
   const std::string floor =
       "Rectangle { corner: [-5, -5, 0], edge_u: [10, 0, 0], edge_v: [0, 10, 0], shader: Lambertian { color: 1 } }\n";
@@ -213,7 +213,7 @@ TEST(AbsorbingBall, WithALampInside) {
       slope);
   const std::string camera = "OrthographicCamera { from: [0, 0, 0.9], to: [0, 0, 0], up: [0, 1, 0], width: 0.02 }";
   const std::string wide = "OrthographicCamera { from: [0, 0, 0.9], to: [0, 0, 0], up: [0, 1, 0], width: 2 }";
-  // Mean over the square of width w: cos^3 / d^2 exp(-0.8 a).
+  // The mean over the square of width w of cos^3 / d^2 exp(-0.8 a).
   const auto point_light = [](double w) {
     double sum = 0;
     constexpr int steps = 100;
@@ -246,7 +246,7 @@ TEST(AbsorbingBall, WithALampInside) {
                          {"BidirectionalPathTracer { max_depth: 2 }", 64},
                          {"PathTracer { max_depth: 2, heuristic: balance }", 64}})
     expect_mean(way.renderer, rendered(way.renderer, way.samples, camera, floor + ball + lamp), expected);
-  // The lamp itself, through what lies before it.
+  // The lamp itself, seen through the medium before it.
   const std::string disc =
       "Rectangle { corner: [-0.3, -0.3, 2], edge_u: [0.6, 0, 0], edge_v: [0, 0.6, 0], emission: DiffuseEmission { "
       "radiance: 1, sides: both } }";
@@ -259,7 +259,7 @@ TEST(AbsorbingBall, WithALampInside) {
   }
 }
 
-// Two panes before a lamp multiply, off the normal, for all renderers that send shadow rays.
+// The transmittances of two panes before a lamp multiply, at an oblique angle, for all renderers that trace shadow rays.
 TEST(AbsorbingBall, TwoPanesBeforeALamp) {
   const std::string floor =
       "Rectangle { corner: [-5, -5, 0], edge_u: [10, 0, 0], edge_v: [0, 10, 0], shader: Lambertian { color: 1 } }\n";

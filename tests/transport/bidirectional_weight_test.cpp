@@ -1,5 +1,5 @@
-// Weights of the ways to make one path: whatever its densities are, they sum to 1, and stand in the proportions of the
-// densities.
+// The multiple importance sampling weights of all strategies that make a path sum to 1, for any pdfs, and are in proportion to
+// the pdfs of the strategies.
 
 #include <gtest/gtest.h>
 
@@ -11,11 +11,11 @@
 namespace etendue {
 namespace {
 
-/// A path x_0 (on a luminaire) … x_last (the lens) with made-up densities, as each strategy sees it.
+/// A path x_0 (on a luminaire) … x_last (the lens) with random pdfs, as each strategy sees it.
 struct MadeUp {
   int last;
   std::vector<float> from_light, from_camera;
-  std::vector<bool> specular;  ///< scattering at x_i is
+  std::vector<bool> specular;  ///< whether scattering at x_i is specular
   float pdf_next_event;
   double merging;
 
@@ -30,7 +30,7 @@ struct MadeUp {
     pdf_next_event = u(random);
   }
 
-  /// Product of densities of strategy j; `of_walk`: x_0 as a walk begins, in strategy 1 as well.
+  /// The product of the pdfs of strategy j. `of_walk`: x_0 has the pdf of emission in strategy 1, too.
   double pdf(int j, bool of_walk = false) const {
     double p = 1;
     for (int i = 0; i <= last; ++i)
@@ -47,8 +47,9 @@ struct MadeUp {
     std::vector<SubpathVertex> light, camera;
     for (int i = 0; i < s; ++i) light.push_back(vertex(i, from_light[size_t(i)], from_camera[size_t(i)]));
     for (int i = last; i >= s; --i) camera.push_back(vertex(i, from_camera[size_t(i)], from_light[size_t(i)]));
-    // What a connection changes stands wrong in the walks themselves: nobody may look at it there. Where walks end or connect
-    // they may have gone on by a mirror as well as not.
+    // The reverse pdfs that a connection replaces are set to -1 in the subpaths, since the weight must not read them there. The
+    // `specular` flags of the last vertices belong to the sampled continuations and must not be read either, so they are
+    // flipped.
     if (!merge && s > 0) light.back().specular = !light.back().specular;
     camera.back().specular = !camera.back().specular;
     for (std::vector<SubpathVertex>* walk : {&light, &camera})
@@ -70,7 +71,8 @@ struct MadeUp {
                        true,
                        {merging, 0}};
     if (!merge) return bidirectional_weight(path, heuristic);
-    // A photon knows its density back to where it came from for each unit of density of the direction: here of `back`.
+    // A photon stores the pdf of its previous vertex, sampled from the merged vertex, over the pdf of the direction, here
+    // `back`.
     const float back = 0.3f;
     path.light_last_from_camera /= back;
     path.light_before_from_camera = -1;
@@ -97,8 +99,8 @@ TEST(BidirectionalWeight, of_all_strategies_sum_to_one_in_proportion_to_their_pd
         const MadeUp path(random, 2 + n % 6, merging, n % 3 == 0 ? 0.4 : 0);
         const double power = heuristic == Heuristic::balance ? 1 : 2;
         double sum = 0, all = 0;
-        std::vector<std::pair<double, double>> known;  // weight, density
-        // The last strategy, all from the luminaire, would have to meet the lens.
+        std::vector<std::pair<double, double>> known;  // weight, pdf
+        // Strategy last + 1, with all vertices from the luminaire, would have to hit the lens.
         for (int s = 0; s <= path.last; ++s)
           if (path.connects(s)) known.emplace_back(path.weight(s, false, heuristic), path.pdf(s));
         for (int i = 1; merging > 0 && i < path.last; ++i)

@@ -1,4 +1,4 @@
-// Paths that go on for hours take no more memory than short ones, and end at once when nobody waits for them any more.
+// Paths that would continue for hours take no more memory than short ones, and end at once when the render is aborted.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// What this process holds in memory [bytes].
+/// The resident memory of this process [bytes].
 double resident() {
   std::ifstream file("/proc/self/statm");
   double all = 0, resident = 0;
@@ -25,12 +25,12 @@ const char* const white_box =
     "Sphere { radius: 10 m, shader: Lambertian { color: 1 } }\n"
     "Environment { emission: DiffuseEmission { radiance: 1 } }";
 
-/// Light is scattered without end and without loss.
+/// Fog that scatters light without end and without loss.
 const char* const white_fog =
     "Sphere { radius: 1e6 m, shader: PassThrough {}, interior: HomogeneousVolume { absorption: 0, scattering: 5 } }\n"
     "Environment { emission: DiffuseEmission { radiance: 1 } }";
 
-/// Two hundred sheets that let light through, between white walls.
+/// Two hundred half-transparent sheets between white walls.
 std::string sheets(const std::string& walls) {
   std::string text = walls + "\n";
   for (int i = 0; i < 200; ++i)
@@ -40,7 +40,7 @@ std::string sheets(const std::string& walls) {
   return text;
 }
 
-/// Glass within glass within mirrors: each ray makes two, for as many segments as there may be.
+/// Glass within glass within mirrors: each ray splits in two, up to the longest path.
 const char* const glass =
     "Sphere { radius: 10 m, shader: PerfectSpecular { color: 1 } }\n"
     "Sphere { radius: 1 m, shader: Dielectric { ior: 1.5 } }\n"
@@ -98,11 +98,11 @@ TEST(BoundedPaths, take_no_more_memory_and_end_when_aborted) {
     const double grown = resident() - before;
     const double asked = now();
     render.abort();
-    // On a machine with other work to do the threads may have to wait for their turn; a path of its own takes hours.
+    // On a machine with other work the threads may have to wait for their turn; without the abort a path takes hours.
     ASSERT_EQ(ended.wait_for(std::chrono::seconds(30)), std::future_status::ready) << e.name;
     EXPECT_LT(now() - asked, 2) << e.name;
     EXPECT_EQ(ended.get(), Ended::aborted) << e.name;
-    // Kept walks reach their full length once; nothing else grows at all. It was 0.3 GB in a second.
+    // Stored subpaths reach their full length once; nothing else grows. It was 0.3 GB in a second.
     EXPECT_LT(grown, 60e6) << e.name;
   }
 }
@@ -150,7 +150,7 @@ TEST(BoundedPaths, depths_that_need_more_memory_are_refused_with_their_place) {
   }
 }
 
-// What goes straight on is no recursion: a thousand sheets one behind the other, at each of many segments.
+// Null scattering is no recursion: a thousand sheets one behind the other, on each of many segments.
 TEST(BoundedPaths, a_thousand_sheets_are_no_deep_recursion) {
   std::string objects = "Environment { emission: DiffuseEmission { radiance: 1 } }\n";
   for (int i = 0; i < 900; ++i)

@@ -1,4 +1,4 @@
-// Near and far planes of cameras: what they leave out is not seen by any algorithm, and throws its shadow all the same.
+// Near and far planes of cameras: no algorithm shows objects beyond them, but these objects still cast shadows.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,10 +11,9 @@ namespace {
 
 using test::create;
 
-// A matt plate at z = 0 under a lamp of intensity I at (1.25, 0, 4.5), seen from z = 5 in four columns of half a metre. A black
-// strip at z = 3, from x = 1/2 to 2/3, stands before a third of the last column, and its shadow, three times as large, is the
-// first column. At z = 1 is a pane that lets all light pass straight on. The irradiance of the plate is I h / (r^2 +
-// h^2)^(3/2).
+// A diffuse plate at z = 0 under a point light of intensity I at (1.25, 0, 4.5), seen from z = 5 in four columns of half a
+// metre. A black strip at z = 3, from x = 1/2 to 2/3, covers a third of the last column, and its shadow, three times as large,
+// is the first column. At z = 1 is a null-scattering pane. The irradiance of the plate is I h / (r^2 + h^2)^(3/2).
 Image picture(const std::string& renderer, const std::string& camera, int samples) {
   const Ref<Job> job = load_job_text(
       fmt::format(
@@ -30,7 +29,7 @@ Image picture(const std::string& renderer, const std::string& camera, int sample
   return test::rendered(job)->picture();
 }
 
-/// Of a column, relative to the same everywhere; `hidden`: what the strip leaves of it is counted.
+/// The irradiance of a column, in relative units; `hidden`: without the part that the strip covers.
 double irradiance(int column, bool hidden) {
   constexpr int n = 120;
   double sum = 0;
@@ -76,7 +75,7 @@ TEST(CameraClip, NothingIsSeenBeyondThePlanes) {
 TEST(CameraClip, AlgorithmsAgreeThroughLenses) {
   const std::string camera =
       "PerspectiveCamera { from: [0.3, 0, 5], to: [0, 0.1, 0], up: [0, 1, 0], fov: 20, lens_radius: 0.2, near_clip: 1.7, "
-      "far_clip: 4.97 }";  // the strip is seen, the plate in part
+      "far_clip: 4.97 }";  // the strip is seen, and a part of the plate
   const Image by_rays = picture("PathTracer {}", camera, 1 << 14);
   double brightest = 0;
   for (int x = 0; x < 4; ++x) brightest = std::max(brightest, double(by_rays.at(x, 0, 1)));
@@ -89,7 +88,7 @@ TEST(CameraClip, AlgorithmsAgreeThroughLenses) {
   }
 }
 
-// Along the axis, whatever the direction: as in Mitsuba.
+// The planes are perpendicular to the axis, as in Mitsuba: depth is measured along the axis.
 TEST(CameraClip, RaysBeginAndEndInPlanesAcrossTheAxis) {
   const std::vector<double> from{1, 2, -3}, to{0.5, 1, 4};
   const Vector3 axis = normalize(Vector3{-0.5f, -1, 7});

@@ -8,7 +8,7 @@
 namespace etendue::closed_form {
 namespace {
 
-/// A slab from z = 0 down to -depth, `half` wide to each side, with a boundary that does nothing.
+/// A slab from z = 0 down to -depth, `half` wide to each side.
 std::string slab(double half, double depth, const std::string& shader) {
   std::string points;
   for (const double z : {-depth, 0.0})
@@ -22,9 +22,9 @@ std::string medium(double half, double depth, const std::string& volume) {
   return slab(half, depth, "shader: PassThrough {}, interior: HomogeneousVolume { " + volume + " }");
 }
 
-// Fluxes of a beam that falls straight onto a slab, by reciprocity: the share R of it that comes back is the radiance
-// straight up under even light of radiance 1 from above, and the share T that gets through that on the other side. The
-// light is a wide plate; the camera stands between it and the slab, where nothing sees it.
+// Fluxes of a beam perpendicular to a slab, by reciprocity: the reflected fraction R is the radiance straight up under uniform
+// light of radiance 1 from above, and the transmitted fraction T is that on the other side. The light is a wide plate; the
+// camera is between the plate and the slab, where it is not visible.
 std::vector<Row> media_and_glass_rows() {
   const std::string endless = "max_depth: 100000";
   const auto three = [&](int path, int bidirectional, int light) {
@@ -33,12 +33,13 @@ std::vector<Row> media_and_glass_rows() {
     std::erase_if(ways, [](const Way& w) { return w.samples == 0; });
     return ways;
   };
-  // Upwards and downwards: what is within 10 m of the edge is not looked at.
+  // The width of the view, upwards and downwards: the outer 10 m of the slab are not seen.
   const double half = 80, seen = 140;
   const std::string from_above = square("[0, 0, 0.05]", "[0, 0, 0]", seen),
                     from_below = square("[0, 0, -1.05]", "[0, 0, 0]", seen);
   const std::string above = plate(half, 0.1, "emission: DiffuseEmission { radiance: 1, sides: back }");
-  // Makes a plate of reflectance 1e-5 as bright as its irradiance is, in units of what arrives across the light.
+  // With this sun, the radiance of a plate of reflectance 1e-5 is its irradiance relative to that perpendicular to the sun's
+  // rays.
   const std::string strong_sun = "Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: 314159.265 } }";
   std::vector<Row> rows;
   const struct {
@@ -57,7 +58,7 @@ std::vector<Row> media_and_glass_rows() {
   rows.push_back({"R20_BothForwards", from_above,
                   medium(half, 1, "scattering: 1, anisotropy: 0.7") + above + plate(half, -1.1, "emission: " + glow), 1,
                   three(16, 32, 112)});
-  // The beam itself, on a plate that sends next to nothing back (and that roulette must not take for unimportant).
+  // The beam itself, on a plate of low reflectance (Russian roulette must not end paths there for their low throughput).
   rows.push_back({"R22_BeamTransmitted",
                   square("[0, 0, -1.05]", "[0, 0, -2]", seen),
                   medium(half, 1, "scattering: 0.9, absorption: 0.1") +
@@ -66,19 +67,19 @@ std::vector<Row> media_and_glass_rows() {
                   {{"PathTracer", endless + ", roulette_depth: 1000", 24},
                    {"BidirectionalPathTracer", endless + ", roulette_depth: 1000", 16},
                    {"LightTracer", endless, 160}}});
-  // A medium at the temperature of its surroundings sends out as much as it absorbs: 1 - R - T.
+  // A medium at the temperature of its surroundings emits as much as it absorbs: 1 - R - T.
   rows.push_back({"R22_Absorbed", from_above, medium(half, 1, "scattering: 0.9, absorption: 0.1, emission: 0.1"), 0.14096,
                   three(48, 48, 0)});
   rows.push_back({"R19_HalfSpaceFlux", from_above, medium(half, 30, "scattering: 0.9, absorption: 0.1") + above, 0.414948,
                   three(48, 32, 64)});
-  // A furnace is one whatever floats in it.
+  // The radiance in a furnace is independent of non-absorbing media in it.
   rows.push_back({"R01_FurnaceWithFog", "PerspectiveCamera { from: [-0.5, 0, 0], to: [1, 0, 0], fov: 90 }",
                   "Sphere { radius: 1, shader: Lambertian { color: 0.5 }, emission: DiffuseEmission { radiance: 1, sides: "
                   "back } }\nSphere { centre: [0.4, 0, 0], radius: 0.5, shader: PassThrough {}, interior: HomogeneousVolume { "
                   "scattering: 2 } }",
                   2, three(24, 12, 96)});
 
-  // Glass 1.5 with all internal reflections: seen through it, and as what falls through it on a plate.
+  // Glass of index 1.5 with all internal reflections: a plate seen through it, and the light through it on a plate.
   const std::string glass = slab(40, 1, "shader: Dielectric { ior: 1.5 }");
   rows.push_back({"R32_SeenThroughGlass",
                   square("[0, 0, 3]", "[0, 0, 0]", 1),
@@ -93,7 +94,8 @@ std::vector<Row> media_and_glass_rows() {
                   glass + plate(40, -2, "shader: Lambertian { color: 1e-5 }") + strong_sun,
                   0.923077,
                   {{"BidirectionalPathTracer", endless, 64}, {"LightTracer", endless, 40}}});
-  // Inside glass: a lamp's radiance leaves as (1 - R) / n^2 of it; light that falls in brings 1 - R of its irradiance.
+  // Inside glass: the radiance of a lamp leaves as (1 - R) / n^2 of it; light from outside arrives with 1 - R of its
+  // irradiance.
   rows.push_back({"R28_LampInGlass",
                   square("[0, 0, 3]", "[0, 0, 0]", 1),
                   glass + plate(3, -0.5, "emission: " + glow),

@@ -8,7 +8,7 @@
 namespace etendue::closed_form {
 namespace {
 
-/// Mean of f over the square of half a side h around the origin.
+/// The mean of f over the square of half width h around the origin.
 template <class F>
 double mean_over_square(double h, const F& f) {
   constexpr int steps = 200;
@@ -18,17 +18,17 @@ double mean_over_square(double h, const F& f) {
   return sum / (steps * steps);
 }
 
-/// Irradiance by a rectangle a x b of radiance 1 that faces the point under one of its corners from height 1.
+/// Irradiance by a rectangle a x b of radiance 1, parallel to the receiver at height 1, at the point under one of its corners.
 double irradiance_at_corner(double a, double b) {
   const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
   return 0.5 * (a / p * std::atan(b / p) + b / q * std::atan(a / q));
 }
 
-/// Irradiance of the plane through the middle of a sphere of radius 1 and radiance 1, at the distance r: row 9.
+/// Irradiance of the plane through the centre of a sphere of radius 1 and radiance 1, at the distance r: row 9.
 double irradiance_beside_sphere(double r) { return std::atan(1 / std::sqrt(r * r - 1)) - std::sqrt(r * r - 1) / (r * r); }
 
-/// Its mean over the square of half a side 3, the sphere itself (which a camera above sees with radiance 1) included,
-/// divided by pi. With u = sqrt(r^2 - 1), r dr = u du.
+/// The mean of that, divided by pi, over the square of half width 3, with the sphere itself (which a camera above sees with
+/// radiance 1). With u = sqrt(r^2 - 1), r dr = u du.
 double sphere_on_a_floor() {
   constexpr int steps = 400;
   double sum = 0;
@@ -109,7 +109,7 @@ std::vector<Row> surface_rows() {
                   receiver + "Rectangle { corner: [0,0,0], edge_u: [0,1,0], edge_v: [0,0,1], emission: " + glow + " }",
                   0.200044, all({8, 64, 8, 24, 512, 4, 8, 0})});
   rows.push_back(
-      {"R06_Discs", square("[0, 0, 0.5]", "[0, 0, 0]", 2),  // the picture is the square around the disc
+      {"R06_Discs", square("[0, 0, 0.5]", "[0, 0, 0]", 2),  // the image is the square around the disc
        "Disc { radius: 1, " + diffuse + " }\nDisc { radius: 1, transform: translate(0, 0, 1), emission: " + glow + " }",
        0.381966 * exact_pi / 4, all({16, 128, 16, 16, 160, 8, 16, 0})});
 
@@ -129,7 +129,7 @@ std::vector<Row> surface_rows() {
   rows.push_back({"R08_Sphere", pinhole("[0, 0.2, 0.5]", "[0, 0, 0]"),
                   plate(1, 0, diffuse) + "Sphere { centre: [0, 0, 3], radius: 1, emission: " + glow + " }", 0.349066 / exact_pi,
                   all({8, 0, 8, 8, 0, 4, 8, 0})});
-  // A shell around the sphere has the row's irradiance everywhere.
+  // On a shell around the sphere the irradiance is that of the row everywhere.
   rows.push_back({"R08_SphereInAShell", "PerspectiveCamera { from: [0, 0, 1.2], to: [0, 0, 3], fov: 120 }",
                   "Sphere { radius: 3, " + diffuse + " }\nSphere { radius: 1, emission: DiffuseEmission { radiance: 1 } }",
                   1.0 / 9, all({8, 256, 8, 12, 512, 4, 8, 0})});
@@ -140,7 +140,7 @@ std::vector<Row> surface_rows() {
                   plate(3, 0, diffuse) + "Sphere { radius: 1, emission: DiffuseEmission { radiance: 1 } }", sphere_on_a_floor(),
                   all({24, 128, 32, 32, 64, 16, 24, 0})});
 
-  // Inclined by 60 degrees, so that an irradiance of 2 across the light is 1 on the plane.
+  // Inclined by 60 degrees, so that an irradiance of 2 perpendicular to the light is 1 on the plane.
   rows.push_back({"R10_Sun", square("[0, 0, 5]", "[0, 0, 0]", 1.4),
                   plate(0.75, 0, "shader: Lambertian { color: 0.5 }") +
                       "Distant { direction: [0.8660254, 0, -0.5], emission: DiffuseEmission { radiance: 2 } }",
@@ -157,9 +157,9 @@ std::vector<Row> surface_rows() {
                     intensity / 4, all(samples)});
   }
 
-  // A black disc closes off the cap of 2 % of the sphere's wall; between what is left of the wall light goes as without it.
-  // A point in the middle sends out 1 W, of which 1 - f falls on the wall, evenly: the white wall's radiance is
-  // rho / (pi A (1 - f)) * (1 - f) * (1 + rho (1 - f) + ...) = rho / (pi A (1 - rho (1 - f))).
+  // A black disc closes off a cap of f = 2 % of the sphere's wall; between other points of the wall light travels as without
+  // it. A point light in the centre emits 1 W, of which 1 - f arrives at the wall, uniformly: the white wall's radiance is rho
+  // / (pi A (1 - f)) * (1 - f) * (1 + rho (1 - f) + ...) = rho / (pi A (1 - rho (1 - f))).
   const std::string port =
       "Point { emission: DiffuseEmission { radiance: 0.0795774715 } }\nSphere { radius: 1, shader: "
       "Lambertian { color: 0.98 } }\nDisc { radius: 0.3, transform: translate(0, 0, 0.96) }";
@@ -170,7 +170,7 @@ std::vector<Row> surface_rows() {
                   {{"PathTracer", endless, 48},
                    {"LightTracer", endless, 64},
                    {"DistributionRenderer", endless + ", light_samples: 1, diffuse_samples: 1", 64}}});
-  // Up to twelve segments: all of some 25 bounces, each connected to each, would take BidirectionalPathTracer a minute.
+  // Limited to twelve segments: with some 25 bounces, each connected to each, BidirectionalPathTracer would take a minute.
   rows.push_back({"R13_IntegratingSphereOfTwelve",
                   aside,
                   port,

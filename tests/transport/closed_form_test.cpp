@@ -35,7 +35,7 @@ TEST(ClosedForm, FurnaceReachesItsLimit) {  // L = 1 / (1 - 0.8)
   }
 }
 
-// Guided paths: the guide, directly seen light and what is learned of both leave the mean as it is.
+// Path guiding, direct light that is seen, and learning do not change the mean.
 TEST(ClosedForm, GuidedFurnaceReachesItsLimit) {  // L = 1 / (1 - 0.8)
   const std::string sphere =
       std::string("Sphere { radius: 1, shader: Lambertian { color: 0.8 }, emission: ") + unit_emission + " }";
@@ -80,7 +80,7 @@ TEST(ClosedForm, FormFactorOfSquaresAtRightAngles) {
       0.200044);
 }
 
-TEST(ClosedForm, FormFactorOfDiscs) {  // the picture is the square around the disc
+TEST(ClosedForm, FormFactorOfDiscs) {  // the image is the square around the disc
   const std::string objects = std::string("Disc { radius: 1, shader: Lambertian { color: 1 } }\n") +
                               "Disc { radius: 1, transform: translate(0, 0, 1), emission: " + unit_emission + " }";
   const auto m = measure(
@@ -169,8 +169,7 @@ TEST(ClosedForm, TransmittanceOfGlassSlab) {  // (1 - R)/(1 + R) with R = 0.04, 
   expect_value(measure(job_text(path_tracer(1000, 4096), pinhole("[0,0,3]", "[0,0,0]"), 8, objects)), 0.923077);
 }
 
-// Inside glass all around, the radiance of a furnace is what it is outside: the factor of the squared index is undone on
-// the way out.
+// A uniform furnace stays uniform through glass: the factor of the squared index on the way in is undone on the way out.
 TEST(ClosedForm, FurnaceThroughGlass) {
   const std::string objects = R"(
     Sphere { radius: 1, shader: Dielectric { ior: glass("N-SF11") } }
@@ -179,7 +178,7 @@ TEST(ClosedForm, FurnaceThroughGlass) {
       measure(job_text(path_tracer(10000, 512), "PerspectiveCamera { from: [0,0,-3], to: [0,0,0], fov: 30 }", 32, objects)), 1);
 }
 
-// A beam through a prism at minimum deviation leaves where Sellmeier's formula says: 2 asin(n/2) - 60 degrees.
+// A beam through a prism at minimum deviation is deviated as Sellmeier's formula predicts: 2 asin(n/2) - 60 degrees.
 TEST(ClosedForm, PrismDeviation) {
   const struct {
     double wavelength, deviation;

@@ -1,4 +1,4 @@
-// Luminaires that lie in one place with other surfaces: every renderer sees the same one of them, from either side.
+// Luminaires that coincide with other surfaces: every renderer hits the same one of the two, from either side.
 
 #include "support/render_support.h"
 
@@ -9,10 +9,10 @@ const char* const floor =
     "Rectangle { corner: [-2, -2, -1] m, edge_u: [4, 0, 0] m, edge_v: [0, 4, 0] m, shader: Lambertian { color: 0.6 } }\n";
 const char* const camera = "PerspectiveCamera { from: [0.2, -3.4, 0.1] m, to: [0, 0, -0.4] m, up: [0, 0, 1], fov: 45 }";
 
-// The heights of the second surface when it lies in one place with the first, and when it lies a little behind it.
+// The height of the second surface when it coincides with the first, and when it lies a little behind it.
 const char *const together = "0", *const behind = "0.0004";
 
-/// Two surfaces, all of them facing down, of which the one that is there is seen.
+/// Two surfaces seen from below. `height` is that of the one that the other hides where they coincide.
 struct Place {
   const char* name;
   std::string (*objects)(const std::string& height);
@@ -42,7 +42,7 @@ const Place places[] = {
               "}\n";
      }}};
 
-/// Where floats round, and where a structure of its own takes rays in.
+/// Transforms under which float coordinates are rounded, and which place an instance with its own acceleration structure.
 const char* const transforms[] = {"translate(0.1, 0.2, 0.3) * rotate(17, [1, 0.4, 0.3])",
                                   "translate(0.1, 0.2, 0.3) * scale(-1, 1, 1) * rotate(9, [0.2, 1, 0.1])"};
 

@@ -28,7 +28,8 @@ TEST(CornellBox, AgreesWithMitsuba) {
         const double expected = cornell_reference[row][column][c];
         whole[c] += sum / (64 * 1024);
         reference[c] += expected / 64;
-        // Corner tiles hold a few lit pixels only; 128 samples leave up to 1 % of noise in Z, the reference half of it.
+        // Corner tiles have only a few lit pixels; 128 samples leave up to 1 % of noise in Z, and the reference has half of
+        // that.
         EXPECT_NEAR(sum / 1024 / expected, 1, 0.025) << "tile " << column << ", " << row << ", channel " << c;
       }
   for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(whole[c] / reference[c], 1, 0.003) << "channel " << c;

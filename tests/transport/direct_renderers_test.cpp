@@ -15,7 +15,7 @@ struct Setup {
   double expected;
 };
 
-/// Rows of the table of closed forms: form factors of receivers of reflectance 1, and irradiance over pi.
+/// Rows of the table of closed forms: form factors, with receivers of reflectance 1, and irradiance over pi.
 std::vector<Setup> direct_light_setups() {
   const std::string from_above = "OrthographicCamera { from: [0.5,0.5,0.5], to: [0.5,0.5,0], up: [0,1,0], width: 1 }";
   const std::string square = "Rectangle { corner: [0,0,0], edge_u: [1,0,0], edge_v: [0,1,0], " + diffuse + " }\n";
@@ -44,7 +44,7 @@ void expect_direct_light(const std::string& renderer, int samples) {
   for (const Setup& setup : direct_light_setups()) {
     SCOPED_TRACE(std::string(setup.name) + ", " + renderer);
     const std::string with_samples = renderer.substr(0, renderer.size() - 1) + ", samples: " + std::to_string(samples) + " }";
-    // The smallest lamp is met by one direction in 120 of the shader's: its error is larger.
+    // One direction in 120 of the shader's hits the smallest lamp, so its error is larger.
     expect_value(measure(job_text(with_samples, setup.camera, 16, setup.objects)), setup.expected,
                  setup.expected < 0.01 ? 0.1 : 0.01);
   }
@@ -108,8 +108,8 @@ TEST(DirectRenderer, AgreesWithThePathTracer) {
         << members;
 }
 
-// Half of the picture shows a glossy floor under a wide lamp, where luminaire points hardly ever fall into the lobe, the other
-// a matt one under a small lamp, which the shader's directions hardly ever meet.
+// Half of the image shows a glossy floor under a wide lamp, where luminaire points hardly ever lie in the lobe, the other half
+// a diffuse floor under a small lamp, which the shader's directions hardly ever hit.
 TEST(DirectRenderer, BothStrategiesTogetherVaryLessThanEach) {
   const std::string objects = R"(
     Rectangle { corner: [-2,-1,0], edge_u: [2,0,0], edge_v: [0,2,0], shader: PhongShader { color: 0, specular: 0.5, exponent: 2000 } }
@@ -144,7 +144,7 @@ TEST(DirectRenderer, StrategiesFindWhatTheyCan) {
   expect_flat(value("light", lit_floor), 0.75f * inverse_pi);
   expect_flat(value("both", lit_floor), 0.75f * inverse_pi);
   expect_flat(value("shader", lit_floor), 0);
-  // A lamp in a mirror.
+  // A lamp seen in a mirror.
   const std::string mirror = floor +
                              "PerfectSpecular { color: 0.7 } }\nRectangle { corner: [-9,-9,3], edge_u: [18,0,0], "
                              "edge_v: [0,18,0], emission: DiffuseEmission { radiance: 2, sides: both } }";

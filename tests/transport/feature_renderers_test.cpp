@@ -13,8 +13,8 @@ namespace {
 // ---- ambient occlusion ----------------------------------------------------------------------------------------------
 
 TEST(AmbientOcclusionRenderer, InsideASphere) {
-  // A direction at angle t from the normal meets the sphere again after 2 R cos(t): with rays of length d the open
-  // fraction is 1 - (d / 2R)^2.
+  // A direction at the angle t from the normal hits the sphere again after 2 R cos(t): with rays of length d the open fraction
+  // is 1 - (d / 2R)^2.
   for (const double d : {0.0, 0.5, 1.0, 1.9}) {
     const Measured m = measure(job_text(fmt::format("AmbientOcclusionRenderer {{ distance: {}, rays: 8, samples: 32 }}", d),
                                         furnace_camera, 16, "Sphere { radius: 1, " + diffuse + " }"));
@@ -26,7 +26,7 @@ TEST(AmbientOcclusionRenderer, InsideASphere) {
 }
 
 TEST(AmbientOcclusionRenderer, BesideAWall) {
-  // A wall of height h at distance a, endlessly wide, takes (1 - 1 / sqrt(1 + h^2 / a^2)) / 2 of the hemisphere.
+  // An infinitely wide wall of height h at distance a occludes (1 - 1 / sqrt(1 + h^2 / a^2)) / 2 of the hemisphere.
   const std::string wall = "Rectangle { corner: [1,-5000,0], edge_u: [0,10000,0], edge_v: [0,0,1] }";
   for (const char* from : {"[0,0,0.5]", "[0.01,0,3]"}) {
     const Measured m = measure(job_text("AmbientOcclusionRenderer { rays: 16, samples: 256 }", pinhole(from, "[0,0,0]"), 8,
@@ -87,7 +87,7 @@ TEST(FeatureRenderer, TellsObjectsAndPrimitivesApart) {
     BruteForceScene { objects: [ Sphere { centre: [-1,-1,0], radius: 0.4 }, Sphere { centre: [1,-1,0], radius: 0.4 } ] })";
   const std::string camera = "OrthographicCamera { from: [0,0,5], to: [0,0,0], up: [0,1,0], width: 4 }";
   Ready object(job_text("FeatureRenderer { feature: object }", camera, 2, objects));
-  // Pixels show the objects' middles when the sample falls there: compare some samples that met something.
+  // Objects are smaller than pixels: the colours of those samples are compared that hit an object.
   std::vector<Vector3> colors;
   for (int pixel = 0; pixel < 4; ++pixel)
     for (std::uint32_t n = 0; n < 64; ++n) {

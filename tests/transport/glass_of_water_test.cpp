@@ -1,4 +1,4 @@
-// The scene of docs/nested-glass.md: two algorithms that share little agree on it, and the page shows what is in the file.
+// The scene of docs/nested-glass.md: two algorithms that share little code agree, and the page shows parts of the scene's file.
 
 #include <gtest/gtest.h>
 

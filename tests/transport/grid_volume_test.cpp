@@ -1,4 +1,4 @@
-// GridVolume and extinction with albedo. The means of walks have fixed seeds.
+// GridVolume, and media described by extinction and albedo. Monte Carlo means have fixed seeds.
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ Ref<VolumeShader> volume(const std::string& text) { return prepared_as<VolumeSha
 
 float extinction(const VolumeShader& v, const Point3& p) { return v.coefficients(p, 0, wavelengths()).extinction()[0]; }
 
-/// A file in Mitsuba's format; `header` may be wrong.
+/// A file in Mitsuba's volume format; its header may be invalid.
 struct VolumeFile {
   ImageFile place;
   VolumeFile(const std::string& name, const std::vector<std::int32_t>& header, const std::vector<float>& box,
@@ -46,7 +46,7 @@ TEST(HomogeneousVolume, ExtinctionAndAlbedoSayTheSame) {
   expect_refused("HomogeneousVolume { extinction: -3 }", "extinction", "negative");
 }
 
-// Cells' values are a linear function of their middles, so what is between is that function; x runs fastest.
+// The values of cells are a linear function of their centres, so interpolation gives that function; x varies fastest.
 TEST(GridVolume, IsLinearBetweenTheMiddlesOfCells) {
   const auto wanted = [](const Point3& p) { return 1 + 2 * p.x + 3 * p.y + 5 * p.z; };
   std::string numbers;
@@ -59,12 +59,13 @@ TEST(GridVolume, IsLinearBetweenTheMiddlesOfCells) {
   const Ref<VolumeShader> v = volume("GridVolume { " + grid + " }");
   for (const Point3 p : {Point3{0.2f, 0.3f, 0.4f}, Point3{0.5f, 0.8f, 0.7f}, Point3{0.125f, 0.5f, 0.25f}})
     EXPECT_NEAR(extinction(*v, p), 2 * wanted(p), 1e-4f);
-  // Outside: as at the border; else as told. Cells end in the middle of the last half cell.
+  // Outside of the grid: the value at the border by default, else as `outside` specifies. The border is at the centres of the
+  // outermost cells.
   EXPECT_NEAR(extinction(*v, {-7, 0.5f, 0.5f}), 2 * wanted({0.125f, 0.5f, 0.5f}), 1e-4f);
   EXPECT_NEAR(extinction(*v, {0.5f, 9, 1.2f}), 2 * wanted({0.5f, 5 / 6.0f, 0.75f}), 1e-4f);
   EXPECT_EQ(extinction(*volume("GridVolume { " + grid + ", outside: empty }"), {1.01f, 0.5f, 0.5f}), 0);
   EXPECT_EQ(extinction(*volume("GridVolume { " + grid + ", outside: cut }"), {1.01f, 0.5f, 0.5f}), 0);
-  // In the border itself the cells outside count for half, or not at all.
+  // In the border itself: with `empty` the cells outside count for half, with `cut` they do not count.
   EXPECT_NEAR(extinction(*volume("GridVolume { " + grid + ", outside: empty }"), {1, 0.5f, 0.5f}), wanted({0.875f, 0.5f, 0.5f}),
               1e-4f);
   EXPECT_NEAR(extinction(*volume("GridVolume { " + grid + ", outside: cut }"), {1, 0.5f, 0.5f}),
@@ -75,7 +76,7 @@ TEST(GridVolume, IsLinearBetweenTheMiddlesOfCells) {
               2 * wanted({0.7f, 0.6f, 0.4f}), 1e-4f);
   EXPECT_NEAR(extinction(*volume("GridVolume { " + grid + ", filter: nearest }"), {0.26f, 0.3f, 0.9f}),
               2 * wanted({0.375f, 1 / 6.0f, 0.75f}), 1e-4f);
-  // Its place in the object.
+  // The placement of the grid in object space.
   EXPECT_NEAR(
       extinction(*volume("GridVolume { " + grid + ", placement: translate([1, 0, 0]) * scale(2) }"), {1.4f, 0.6f, 0.8f}),
       2 * wanted({0.2f, 0.3f, 0.4f}), 1e-4f);
@@ -93,7 +94,7 @@ TEST(GridVolume, ReadsFiles) {
     EXPECT_EQ(extinction(*of_file, p), extinction(*of_list, p));
     EXPECT_NEAR(extinction(*in_box, {4 * p.x - 1, 4 * p.y - 1, 4 * p.z - 1}), extinction(*of_list, p), 1e-5f);
   }
-  // RGB for the albedo, each cell its own.
+  // An RGB grid of albedos.
   std::vector<float> colors;
   for (int i = 0; i < 8; ++i) colors.insert(colors.end(), {i % 2 ? 0.8f : 0.2f, 0.5f, 0.5f});
   const VolumeFile albedo("albedo.vol", {1, 2, 2, 2, 3}, box, colors);
@@ -127,14 +128,14 @@ TEST(GridVolume, RefusesWhatIsNoGrid) {
   expect_refused("GridVolume { resolution: [2, 2, 2], density: [1, 2] }", "density", "for a grid of 8");
   expect_refused("GridVolume { resolution: [2, 0, 2] }", "resolution", "at least 1");
   expect_refused("GridVolume { density: [-1] }", "density", "negative");
-  // What filters leave: so little below 0 is 0.
+  // Values that filters leave slightly below 0 count as 0.
   const Ref<VolumeShader> rounded = volume("GridVolume { resolution: [2, 1, 1], density: [-0.004, 1], extinction: 1 }");
   EXPECT_EQ(extinction(*rounded, {0.25f, 0.5f, 0.5f}), 0);
   expect_refused("GridVolume { resolution: [2, 1, 1], density: [-0.1, 1] }", "density", "negative");
 }
 
-// The optical depth of a ramp along x from 1/4 to 3/4: of densities 0 and 4 in the middles of two cells, 8 (x - 1/4), the
-// integral over its half is 1, times an extinction of 3.
+// The optical depth of a ramp along x from 1/4 to 3/4: with densities 0 and 4 at the centres of two cells it is 8 (x - 1/4),
+// whose integral over this half is 1, times an extinction of 3.
 TEST(GridVolume, LetsThroughWhatTheIntegralSays) {
   const Ref<VolumeShader> v = volume("GridVolume { resolution: [2, 1, 1], density: [0, 4], extinction: 3, albedo: 0.5 }");
   const Ref<SceneObject> inside = create<SceneObject>("Sphere");
@@ -155,9 +156,9 @@ TEST(GridVolume, LetsThroughWhatTheIntegralSays) {
   EXPECT_NEAR(sum, std::exp(-3.0), 4 * std::sqrt((squares - sum * sum) / n));
 }
 
-// A ray that has slipped through an edge of the surface is in the medium for ever. It ends with the object: from the middle the
-// optical depth of the ramp and of the rest, 4 wide 1/4, is 3/4 + 1, and from outside there is none. (Without the end this test
-// would not come to one.)
+// A ray that has slipped through an edge of the surface would stay in the medium for ever. The medium ends with its object:
+// from the middle the optical depth of the ramp and of the rest, density 4 over a length of 1/4, is 3/4 + 1, and outside it is
+// none. (Without the end this test would not finish.)
 TEST(GridVolume, EndsWithItsObjectWhereNothingElseEndsARay) {
   const Ref<VolumeShader> v = volume("GridVolume { resolution: [2, 1, 1], density: [0, 4], extinction: 1, outside: cut }");
   const Ref<SceneObject> box = prepared_as<SceneObject>("Box { centre: [0.5, 0.5, 0.5] m, size: [1, 1, 1] m }");

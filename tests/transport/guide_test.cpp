@@ -1,5 +1,5 @@
-// What guides learn, held against what is known of directions: densities that integrate to one and are those of the samples,
-// optima in closed form, states that come back byte by byte or not at all.
+// Guides: their pdfs integrate to one and are those of their samples; what they learn is compared with closed forms; their
+// state is restored byte by byte or not at all.
 
 #include "etendue/guiding/guide.h"
 
@@ -27,13 +27,13 @@ class Random {
   std::mt19937 engine_;
 };
 
-/// A direction of the unit square, by Lambert's map that keeps areas.
+/// The direction of a point of the unit square, by Lambert's equal-area map.
 Vector3 direction_at(double x, double y) {
   const double z = 2 * x - 1, r = std::sqrt(1 - z * z);
   return {float(r * std::cos(2 * M_PI * y)), float(r * std::sin(2 * M_PI * y)), float(z)};
 }
 
-/// A lobe of each kind: even, wide, narrow; near, far and at infinity.
+/// Lobes of all kinds: nearly uniform, wide, narrow; near, far and at infinity.
 LobeMixture all_kinds() {
   LobeMixture m;
   const Point3 c{0.3f, -0.2f, 1};
@@ -69,8 +69,8 @@ TEST(LobeMixture, its_pdf_integrates_to_one_and_is_that_of_its_samples) {
       ++seen[size_t(std::min(int((double(d.z) + 1) / 2 * rows), rows - 1) * columns +
                     std::min(int(turn * columns), columns - 1))];
     }
-    // Pearson's chi^2 over bins where ten are expected, the others together; by Wilson & Hilferty's approximation five
-    // standard deviations, that is 3e-7.
+    // Pearson's chi^2 over bins where ten samples are expected, the others together; by Wilson & Hilferty's approximation five
+    // standard deviations, a probability of 3e-7.
     double chi = 0, rest = 0, rest_seen = 0;
     int bins = 0;
     for (size_t b = 0; b < seen.size(); ++b) {
@@ -90,7 +90,7 @@ TEST(LobeMixture, its_pdf_integrates_to_one_and_is_that_of_its_samples) {
   }
 }
 
-// k / (4 pi sinh k) exp(k cos), Fisher 1953, and what follows from where a place is.
+// The pdf is k / (4 pi sinh k) exp(k cos) (Fisher 1953); seen from another point, the lobe points at the same place.
 TEST(LobeMixture, is_fishers_pdf_and_points_at_one_place_from_everywhere) {
   LobeMixture m;
   const Vector3 axis = normalize(Vector3{1, 2, 2});
@@ -109,14 +109,14 @@ TEST(LobeMixture, is_fishers_pdf_and_points_at_one_place_from_everywhere) {
   EXPECT_NEAR(1 / lobe.nearness, length(way), 1e-4f);
   EXPECT_NEAR(lobe.concentration, k * length_squared(way) / 4, 1e-3f * lobe.concentration);
   EXPECT_NEAR(SeenLobes(m, other).pdf(lobe.direction), lobe.concentration / (2 * pi), 1e-3f * lobe.concentration);
-  // At infinity it is the same for all.
+  // A lobe at infinity is the same seen from everywhere.
   m.set({1, 1, 1}, 3, {axis, 0, k, 1});
   EXPECT_EQ(m.seen_from(other, 3).direction, axis);
   EXPECT_EQ(m.seen_from(other, 3).concentration, k);
 }
 
-/// Two round spots in the plane z = 0, which send light up, seen from all over a plane 1 m above that: three quarters of what
-/// comes from directions chosen evenly is from the first.
+/// Two round spots in the plane z = 0 that emit upwards, seen from all over a plane 1 m above: three quarters of the light, by
+/// directions that choose both spots equally often, is from the first.
 struct TwoSpots {
   static constexpr float radius = 0.15f;
   Point3 spot[2] = {{-0.6f, 0.4f, 0}, {0.8f, -0.5f, 0}};
@@ -139,7 +139,7 @@ struct TwoSpots {
 TEST(Guide, learns_two_spots_their_places_their_width_and_what_each_sends) {
   const TwoSpots scene;
   GuideSettings settings;
-  settings.region_samples = 1e9f;  // one region sees both, from everywhere
+  settings.region_samples = 1e9f;  // one region that is never divided
   Guide guide(settings);
   Random random(5);
   for (int batch = 0; batch < 10; ++batch) {
@@ -166,7 +166,7 @@ TEST(Guide, learns_two_spots_their_places_their_width_and_what_each_sends) {
           mean[k] += met - scene.spot[k];
         }
     }
-    // Within three radii of one or the other is nearly everything, divided as it was.
+    // Nearly all samples lie within three radii of one spot or the other, in the proportion of their light.
     EXPECT_GT(at[0] + at[1], 0.85 * n);
     EXPECT_NEAR(at[0] / double(at[0] + at[1]), 0.75, 0.04);
     for (int k = 0; k < 2; ++k) EXPECT_LT(length(mean[k] / float(at[k])), 0.5f * TwoSpots::radius);
@@ -195,8 +195,8 @@ TEST(Guide, samples_of_no_distance_or_no_number_spoil_nothing) {
   EXPECT_EQ(guide.save(), other.save());
 }
 
-/// A lamp of 0.4 m by 0.4 m, 2 m over a floor of 2 m by 2 m: places on the floor, directions by a guide and by chance, one
-/// batch after the other. Returns E[X^2] / E[X]^2 - 1 of the last.
+/// A lamp of 0.4 m by 0.4 m, 2 m over a floor of 2 m by 2 m. Training samples have points on the floor, and directions from the
+/// guide or uniform ones, one batch after the other. Returns E[X^2] / E[X]^2 - 1 of the last batch.
 struct LampOverFloor {
   GuideSettings settings;
   bool forgets_pdf = false;
@@ -253,7 +253,7 @@ TEST(Guide, finds_a_lamp_and_means_stay_what_they_are) {
   const double after = scene.learn(guide, 6, &means);
   EXPECT_GT(before, 150);
   EXPECT_LT(after, 1.5);
-  // The integral, by quadrature: the mean over the floor of the lamp's solid angle weighted by the cosine.
+  // The integral by quadrature: the mean over the floor of the lamp's solid angle weighted by the cosine.
   double expected = 0;
   constexpr int n = 40;
   for (int i = 0; i < n; ++i)
@@ -267,12 +267,12 @@ TEST(Guide, finds_a_lamp_and_means_stay_what_they_are) {
         }
   for (const double mean : means) EXPECT_NEAR(mean, expected, 0.08 * expected);  // of the first: sqrt(210 / 30000) = 8 %
   EXPECT_NEAR(means.back(), expected, 0.02 * expected);
-  // A share was learned, and it is a large one under the lamp.
+  // A share is learned, and it is large under the lamp.
   EXPECT_GT(guide.at({0, 0, -1}, {0, 0, 1}).share(), 0.6f);
-  EXPECT_EQ(guide.at({0, 0, -1}, {0, 0, -1}).share(), 0);  // nobody came to the other side
+  EXPECT_EQ(guide.at({0, 0, -1}, {0, 0, -1}).share(), 0);  // no samples on the other side
 }
 
-// Samples that are not divided by their density leave the mean as it is: it is seen by what the guide is worth.
+// Training samples without the division by the pdf do not change the mean; the fault shows in the variance, by a worse guide.
 TEST(Guide, a_pdf_forgotten_in_training_is_seen_in_the_variance) {
   LampOverFloor scene;
   Guide sound(scene.settings), faulty(scene.settings);
@@ -326,7 +326,7 @@ TEST(Guide, comes_back_byte_by_byte_or_not_at_all) {
 namespace checkpoint_test {
 namespace {
 
-// A room seen by two pixels, so that steps are few; every sample is one the guide learned from.
+// A room in an image of a few pixels, so that a step is short and all its paths are training paths.
 std::string guided_room(const std::string& renderer) {
   return test::job_text(renderer, "PerspectiveCamera { from: [0, 0, 0] m, to: [0, 0, 1] m, fov: 60 deg }", 2,
                         "Sphere { radius: 1, shader: Lambertian { color: 0.7 } }\n"
@@ -338,7 +338,7 @@ TEST_F(CheckpointTest, a_guide_is_the_same_for_any_number_of_threads_and_after_a
     const char* renderer;
     int samples;
   };
-  // Merging goes in steps of one sample, the others in such of 256.
+  // Steps with merging have one sample per pixel, the others 256.
   for (const auto& [renderer, samples] :
        {Case{"GuidedPathTracer { max_depth: 6 }", 6 * 256},
         Case{"BidirectionalPathTracer { max_depth: 6, guided: true }", 6 * 256},

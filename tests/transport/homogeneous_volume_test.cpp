@@ -1,5 +1,5 @@
-// The homogeneous medium and the boundary that is not there. Statistical tests have fixed seeds and a significance of 1e-3
-// over all their cases together.
+// The homogeneous medium and the null-scattering boundary. Statistical tests have fixed seeds and a significance of 1e-3 over
+// all their cases together.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ TEST(HomogeneousVolume, PhaseFunctionIsNormalisedWithItsMeanCosine) {
     const double mean =
         integrate_around(peak, borders, [&](const Vector3& in) { return phase(in) * -double(dot(in, out)); }, 1000, 2);
     EXPECT_NEAR(mean, g, 1e-4);
-    // Henyey & Greenstein's formula, straight on and at right angles.
+    // Henyey & Greenstein's formula, in the forward direction and at right angles.
     EXPECT_NEAR(phase(-out), (1 - g * g) / (4 * M_PI * std::pow(1 - g, 3)), 1e-4 * phase(-out));
     const Vector3 across = Frame(Normal3(out)).s;
     EXPECT_NEAR(phase(across), (1 - g * g) / (4 * M_PI * std::pow(1 + g * g, 1.5)), 1e-4 * phase(across));
@@ -36,8 +36,8 @@ TEST(HomogeneousVolume, PhaseFunctionIsNormalisedWithItsMeanCosine) {
   }
 }
 
-// A ray that has slipped through an edge of the surface would be in the medium for ever. It ends with the object: from the
-// middle there is half a metre of it, from outside none.
+// A ray that has slipped through an edge of the surface would stay in the medium for ever. The medium ends with its object:
+// from the middle it is half a metre long, from outside there is none.
 TEST(HomogeneousVolume, EndsWithItsObjectWhereNothingElseEndsARay) {
   const Ref<VolumeShader> v = prepared_as<VolumeShader>("HomogeneousVolume { scattering: 1, absorption: 2, emission: 6 }");
   const Ref<SceneObject> box = prepared_as<SceneObject>("Box { centre: [0.5, 0.5, 0.5] m, size: [1, 1, 1] m }");
@@ -152,7 +152,7 @@ TEST(PassThrough, EverythingGoesStraightOn) {
   EXPECT_TRUE(shader->transmits());
   EXPECT_EQ(shader->possible_lobes(), Lobes(null_scattering));
   EXPECT_EQ(shader->interior_index(wavelengths())[0], 1);
-  // The shading normal disagrees with the surface from many of these directions: nothing may be lost there.
+  // From many of these directions, shading and geometric normal are on different sides: no light may be lost there.
   const SurfacePoint p = surface_point({0.1f, 0.2f, 1}, {0.9f, 0.1f, 0.3f});
   Random random(6);
   for (int i = 0; i < 1000; ++i) {

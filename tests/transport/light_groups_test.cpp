@@ -1,5 +1,5 @@
-// Light groups: that each has the light of its luminaires and all of it, against a closed form and for every renderer; that
-// together they are the picture; and that where they cannot be told apart nothing is shown.
+// Light groups: each has all the light of its luminaires, compared with a closed form for every renderer; their sum is the
+// image; and a renderer that cannot separate them refuses.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@
 namespace etendue::checkpoint_test {
 namespace {
 
-// The inside of a unit sphere sends the radiance 1 and reflects half of what comes: 2 is seen everywhere. A point of the
-// intensity pi in its centre gives the irradiance pi to all of it, of which 1/2 is sent on as radiance, and by all further
+// The inside of a unit sphere emits the radiance 1 and reflects half of the light: 2 is seen everywhere. A point light of the
+// intensity pi in its centre gives the irradiance pi everywhere, which is reflected as the radiance 1/2, and with all further
 // reflections 1.
 std::string room(const std::string& renderer, const std::string& layers) {
   return fmt::format(R"(bulb = DiffuseEmission {{ radiance: {} }}
@@ -31,7 +31,7 @@ std::string room(const std::string& renderer, const std::string& layers) {
 
 using test::means;
 
-/// Expects the groups of each pixel to add up to it.
+/// Expects that the groups of each pixel add up to its value.
 void expect_whole(const Image& image) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
@@ -47,7 +47,7 @@ void expect_whole(const Image& image) {
 
 struct GroupCase {
   const char *name, *renderer;
-  double wall, bulb;  ///< what is found of 2 and 1
+  double wall, bulb;  ///< radiance that the renderer finds, of 2 and 1
   int samples;
   double tolerance = 0.02;
 };
@@ -55,7 +55,7 @@ void PrintTo(const GroupCase& c, std::ostream* out) { *out << c.name; }
 
 class LightGroupsOf : public ::testing::TestWithParam<GroupCase> {};
 
-// Some 64 x samples paths; their standard errors are at most a quarter of the tolerance.
+// Some 64 x samples paths; the standard errors are at most a quarter of the tolerance.
 TEST_P(LightGroupsOf, HaveTheLightOfTheirLuminaires) {
   const GroupCase& c = GetParam();
   const auto render =
@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(
                       GroupCase{"whitted", "WhittedRenderer {}", 1, 0.5, 16}),
     [](const auto& info) { return info.param.name; });
 
-// In fog, by photons in all three ways: the light of both lamps is that of the two groups, which differ as the lamps do.
+// In fog, with photons gathered in all three ways: the groups of two lamps are in the proportion of the lamps' powers.
 TEST(LightGroups, AreOfPhotonsInMedia) {
   for (const char* media : {"points", "along_rays", "beams"}) {
     const auto render = test::rendered(job_of(fmt::format(R"(bulb = DiffuseEmission {{ radiance: 3 }}
@@ -109,7 +109,8 @@ TEST(LightGroups, AreOfPhotonsInMedia) {
   }
 }
 
-// What no name says is the rest; several names make one group; an object's name and its emission's are both its own.
+// Light of unnamed luminaires is in the rest; several names make one group; a luminaire belongs to a group by its own name or
+// by that of its emission.
 TEST(LightGroups, AreOfNames) {
   const auto found = [](const std::string& layers) {
     return means(test::rendered(job_of(room("PathTracer {}", layers), 64), two_threads)->picture());
@@ -124,7 +125,7 @@ TEST(LightGroups, AreOfNames) {
   EXPECT_EQ(both["light.rest.Y"], 0);
 }
 
-// A crop, a wide filter, uneven samples and splats: all parts go where the whole goes.
+// With a crop, a wide filter, different numbers of samples and splats, the groups are filtered as the whole image is.
 TEST(LightGroups, AreWholeOfCropsAndFilters) {
   for (const char* renderer :
        {"PathTracer {}", "BidirectionalPathTracer {}", "LightTracer {}", "AdaptiveSampling { inner: PathTracer {} }"}) {
@@ -134,7 +135,7 @@ TEST(LightGroups, AreWholeOfCropsAndFilters) {
   }
 }
 
-/// What is said when the job is rendered; empty if nothing is.
+/// The message of the error that rendering the job throws; empty: none.
 std::string refused(const std::string& renderer, const std::string& layers) {
   try {
     Render(job_of(room(renderer, layers), 16), two_threads).run();
@@ -159,14 +160,14 @@ TEST(LightGroups, RefuseWhatTheyCannotTell) {
   EXPECT_TRUE(has(refused("FeatureRenderer { feature: albedo }", wall), "does not tell which luminaires"));
 }
 
-// Any name may follow "light.", and no other layer may be made up.
+// Any name may follow "light.", and other unknown layers are refused.
 TEST(LightGroups, AreAnOpenChoice) {
   EXPECT_TRUE(has(refused("PathTracer {}", R"(layers: ["albdo"])"), "did you mean 'albedo'"));
   EXPECT_TRUE(has(refused("PathTracer {}", R"(layers: ["lights.wall"])"), "no choice 'lights.wall'"));
   EXPECT_TRUE(has(json_schema(), R"("pattern": "^light\\.")"));
 }
 
-// A state is not added to one whose groups are others.
+// A film's state is not loaded into a film with other groups.
 TEST(LightGroups, BelongToTheState) {
   const auto with = [](const std::string& layers) {
     return test::rendered(job_of(room("PathTracer {}", layers), 2), two_threads);
@@ -180,7 +181,7 @@ TEST(LightGroups, BelongToTheState) {
   EXPECT_THROW(of_bulb.load_state(of_wall), Error);
 }
 
-// In a file they are of the picture's own colour space.
+// In a file, groups are in the colour space of the image.
 TEST(LightGroups, AreInExrFiles) {
   const Image picture = test::rendered(job_of(room("PathTracer {}", R"(layers: ["light.wall"])"), 4), two_threads)->picture();
   const std::string file = (std::filesystem::temp_directory_path() / "etendue_light_groups.exr").string();

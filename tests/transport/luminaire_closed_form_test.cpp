@@ -1,4 +1,4 @@
-// Luminaires without extent and spotlights, rendered: closed forms, to 0.5 % and 4.5 standard errors.
+// Delta luminaires and spotlights, rendered: closed forms, to 0.5 % and 4.5 standard errors.
 
 #include <gtest/gtest.h>
 
@@ -31,13 +31,13 @@ TEST(ClosedFormLuminaires, PlaneUnderDistantLight) {  // L = rho E / pi
   expect_value(measure(job_text(path_tracer(4, 64), from_above, 8,
                                 plane + std::string("Distant { direction: [0,0,-2], emission: DiffuseEmission {} }"))),
                0.159155);
-  // From 60 degrees, by its own direction and turned there.
+  // From 60 degrees, by its direction or by a rotation.
   for (const char* sun : {"Distant { direction: [0.8660254, 0, -0.5], emission: DiffuseEmission {} }",
                           "Distant { transform: rotate(30 deg, [1,0,0]), emission: DiffuseEmission {} }"})
     expect_value(measure(job_text(path_tracer(4, 64), from_above, 8, std::string(plane) + sun)), 0.159155 / 2);
 }
 
-TEST(ClosedFormLuminaires, LambertSphereAtPhaseAngles) {  // (2/3) [sin a + (pi - a) cos a] / pi, over a picture of 4 R^2
+TEST(ClosedFormLuminaires, LambertSphereAtPhaseAngles) {  // (2/3) [sin a + (pi - a) cos a] / pi, over an image of 4 R^2
   const std::pair<double, double> phases[] = {{0, 0.666667}, {45, 0.503606}, {90, 0.212207}, {135, 0.032202}};
   for (const auto& [angle, expected] : phases) {
     const double a = angle * M_PI / 180;
@@ -50,7 +50,7 @@ TEST(ClosedFormLuminaires, LambertSphereAtPhaseAngles) {  // (2/3) [sin a + (pi 
   }
 }
 
-TEST(ClosedFormLuminaires, IrradianceOfASpotlight) {  // E = I cos / d^2, full inside, half of it half way
+TEST(ClosedFormLuminaires, IrradianceOfASpotlight) {  // E = I cos / d^2; half of it halfway through the penumbra
   const std::string inside = "Point { position: [0,1,2], emission: SpotEmission { radiance: 5, axis: [0,-1,-2] } }";
   const double e = 5 * (2 / std::sqrt(5.0)) / 5;
   expect_value(measure(job_text(path_tracer(2, 64), from_above, 4, plane + inside)), 0.5 * e / M_PI);
@@ -80,8 +80,8 @@ TEST(ClosedFormLuminaires, LightSeenThroughABoundaryThatIsNotThere) {
                2);
 }
 
-// A ball whose every place sends radiance 1 within 80 degrees of +z, seen from there: a disc of 1, pi/4 of the picture. Most of
-// those directions lead into the ball from most places, and those places are seen all the same.
+// A sphere each of whose points emits radiance 1 within 80 degrees of +z, seen from there: a disc of radiance 1, pi/4 of the
+// image. At most points, most of these directions lead into the sphere, and the points are seen all the same.
 TEST(ClosedFormLuminaires, WhereNoLightLeavesInMostDirections) {
   const char* const ball =
       "Sphere { emission: SpotEmission { axis: [0,0,1], inner_angle: 80 deg, outer_angle: 80 deg, radiance: 1 } }";

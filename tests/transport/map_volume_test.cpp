@@ -1,4 +1,4 @@
-// MapVolume, and light of media that differ from place to place. The means of walks have fixed seeds.
+// MapVolume, and emission of heterogeneous media. Monte Carlo means have fixed seeds.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ struct Estimate {
   double mean[spectrum_size] = {}, error[spectrum_size] = {};
 };
 
-/// The mean of a spectrum over walks, each from numbers of its own.
+/// The mean of a spectrum over Monte Carlo samples, each with its own stream of primary samples.
 template <class Draw>
 Estimate average(const Draw& draw, int n = 60000) {
   const Ref<Sampler> sampler = create<Sampler>("IndependentSampler");
@@ -49,13 +49,12 @@ struct Slab {
   }
 };
 
-/// Four standard errors, and rounding.
+/// To four standard errors, and rounding.
 #define EXPECT_ESTIMATE(estimate, k, expected) \
   EXPECT_NEAR((estimate).mean[k], expected, 4 * (estimate).error[k] + 1e-5 * (expected)) << "wavelength " << (k)
 
-// Absorption and scattering on grids of their own, in RGB. Along x two cells; from the middle of the first to that of the
-// second both are linear in RGB, but the spectrum of what is between is not: the optical depth is found by a rule of many
-// points from the colours' own spectra.
+// Absorption and scattering on separate RGB grids. Between the centres of two cells along x both are linear in RGB, but the
+// spectra in between are not linear in x: the expected optical depth is a midpoint sum over the spectra of the colours.
 TEST(MapVolume, TwoGridsOfRgbLetThroughWhatTheirIntegralSays) {
   const Slab slab(
       "MapVolume { absorption: GridMap { resolution: [2, 1, 1], values: [0.2, 1, 2, 3, 0.5, 0.1] }, scattering: GridMap { "
@@ -76,7 +75,7 @@ TEST(MapVolume, TwoGridsOfRgbLetThroughWhatTheirIntegralSays) {
   }
 }
 
-// The three ways of saying the same: a grid's density, a map's, and coefficients on grids.
+// Three equivalent descriptions: the density of a grid, that of a map, and coefficients on grids.
 TEST(MapVolume, SaysWhatGridVolumeSays) {
   const std::string cells = "resolution: [2, 2, 1], ", numbers = "[0, 1, 2, 4]";
   const Ref<VolumeShader>
@@ -105,8 +104,8 @@ TEST(MapVolume, SaysWhatGridVolumeSays) {
   }
 }
 
-// Hot gas that only absorbs: L = B(T) (1 - exp(-a d)), a black body as bright as its temperature says where it is thick.
-// Planck's radiance is that of the colour `blackbody`.
+// Hot gas that only absorbs: L = B(T) (1 - exp(-a d)), which is a black body of its temperature where it is optically thick. B
+// is Planck's radiance, that of the colour `blackbody`.
 TEST(MapVolume, HotGasIsABlackBodyWhereItIsThick) {
   const Wavelengths w = wavelengths();
   const Color black = blackbody_spectrum(1800);
@@ -140,7 +139,7 @@ TEST(MapVolume, LightByTemperatureIsThatOfEachPlace) {
   }
 }
 
-// Light without any matter in the way: e d, also where nothing bounds the distance between collisions.
+// Emission without absorption: e d, also where no majorant bounds the free-flight distance.
 TEST(MapVolume, ShinesWhereItAbsorbsNothing) {
   const Wavelengths w = wavelengths();
   for (const char* text : {"MapVolume { emission: 3 }", "GridVolume { emission: 3 }",
@@ -160,7 +159,7 @@ TEST(MapVolume, IsThinnedToItsBound) {
   EXPECT_NEAR(dense.absorption[0], 2, 1e-4f);
   EXPECT_GE(v->majorant(w)[0], dense.extinction()[0]);
   expect_refused("MapVolume { density: FormulaMap { formula: \"x\" }, absorption: 1 }", "density", "give the medium a `bound`");
-  // Numbers of a damaged file, say: the bound would be infinite, and steps to the next collision nothing.
+  // For example from a damaged file: the majorant would be infinite, and free-flight distances 0.
   expect_refused("MapVolume { density: GridMap { values: [3e38] }, absorption: 1000 }", "density", "cannot be followed");
   expect_refused("GridVolume { density: [3e38], absorption: 1000 }", "density", "cannot be followed");
   expect_refused("MapVolume { absorption: -1 }", "absorption", "negative");
@@ -177,7 +176,7 @@ TEST(MapVolume, EndsWithItsBox) {
   EXPECT_EQ(v->coefficients({-0.1f, 1, 1}, 0, w).absorption[0], 0);
 }
 
-// What maps say of their bounds holds: at random places no number, and no coefficient, is larger.
+// Maps report valid upper bounds: at random points no coefficient is above the majorant.
 TEST(MapVolume, MapsKeepTheirBounds) {
   const std::string grid =
       "GridMap { resolution: [2, 2, 2], values: [3, 0, 0, 0, 2, 0, 0, 0, 1, 1, 1, 1, 3, 0, 0, 0, 0, 2, 2, 0, 3, 0, 1, 0] }";

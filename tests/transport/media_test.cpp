@@ -1,4 +1,4 @@
-// Participating media against closed forms, for every renderer that knows them. Each value is held to 0.5 % and to 4.5
+// Participating media against closed forms, for every renderer that supports them. Each value is held to 0.5 % and to 4.5
 // standard errors (7e-6 each), with fixed seeds. Rows are those of Chandrasekhar's half space and of plane slabs.
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ struct Estimate {
   double mean = 0, error = 0;
 };
 
-/// Mean Y of a picture and the standard error of the mean, from the differences of its pixels.
+/// The mean Y of an image and its standard error, from the differences between pixels.
 Estimate estimate(const std::string& text) {
   const auto render = rendered(load_job_text(text, "test.etd"));
   const Image image = render->film().develop();
@@ -28,7 +28,7 @@ Estimate estimate(const std::string& text) {
   return {sum / n, std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1))};
 }
 
-/// A slab from z = 0 down to -depth, `half` wide to each side, with a boundary that does nothing.
+/// A slab from z = 0 down to -depth, `half` wide to each side, with a null-scattering boundary.
 std::string slab(double half, double depth, const std::string& medium) {
   const auto p = [&](int x, int y, double z) {
     return "[" + std::to_string(x * half) + "," + std::to_string(y * half) + "," + std::to_string(z) + "]";
@@ -89,8 +89,9 @@ TEST(Media, SingleScattering) {
   expect(job("LightTracer", 2, 4096, view(false, 2), medium + beam), transmitted, "LightTracer");
 }
 
-// H functions: omega H(1)^2 / (8 pi). The slab is deep enough for what lies below to matter by less than 1e-4 where it
-// absorbs; without absorption a slab's reflection misses about 1 / depth of its flux, so that one absorbs a little less.
+// By H functions: omega H(1)^2 / (8 pi). With absorption, this slab is so deep that light from below would change the result by
+// less than 1e-4. Without absorption the reflection of a slab would lack about 1 / depth of its flux, so this one absorbs a
+// little.
 TEST(Media, HalfSpace) {
   for (const char* r : renderers)
     expect(job(r, 100000, 1024, view(true, 1), slab(400, 40, "scattering: 0.9, absorption: 0.1") + beam), 0.122572, r);
@@ -105,7 +106,7 @@ TEST(Media, SlabOfAllOrders) {
   expect(job("LightTracer", 100000, 16384, view(true, 30), slab(30, 1, "scattering: 1") + beam), 0.085749, "LightTracer");
 }
 
-// A medium thin for short waves and thick for long ones: the walk is drawn for all of a path's wavelengths at once, and
+// A medium thin for short waves and thick for long ones: free flights are sampled for all wavelengths of a path at once, and
 // must give the sum of short-waved light in a thin grey medium and long-waved light in a thick one.
 TEST(Media, ChromaticSlabAgreesWithItsGreyParts) {
   const std::string low = "spectrum([360, 555, 555.01, 830], [1, 1, 0, 0])",
@@ -123,7 +124,7 @@ TEST(Media, ChromaticSlabAgreesWithItsGreyParts) {
   }
 }
 
-// An index-matched boundary around nothing changes nothing, from inside and outside, and a camera in a medium sees it.
+// A camera inside a medium.
 TEST(Media, TheCameraMayBeInside) {
   const std::string glow =
       "Sphere { radius: 2, shader: PassThrough {}, interior: HomogeneousVolume { absorption: 0.5, "

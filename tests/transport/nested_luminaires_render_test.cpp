@@ -1,4 +1,4 @@
-// Pictures of scenes with lamps in nested scenes: the same as without the nesting, and as free of noise.
+// Images of scenes with lamps in nested scenes: the same as without nesting, with the same noise.
 
 #include "support/process.h"
 #include "support/render_support.h"
@@ -9,11 +9,11 @@ namespace {
 const char* const floor_and_wall =
     "Rectangle { corner: [-3, -3, 0] m, edge_u: [6, 0, 0] m, edge_v: [0, 6, 0] m, shader: Lambertian { color: 0.6 } }\n"
     "Rectangle { corner: [-3, 3, 0] m, edge_u: [6, 0, 0] m, edge_v: [0, 0, 4] m, shader: Lambertian { color: 0.6 } }\n";
-// Below the lamps, so that it sees none of them.
+// Below the lamps, so that the camera does not see them.
 const char* const camera =
     "PerspectiveCamera { from: [0, 0, 0.35] m, to: [0, 1, 0] m, up: [0, 0, 1], fov: 50, shutter_close: 1 s }";
 
-/// A bulb, a plate with a pattern and a crystal: each with its own transform before others.
+/// A sphere, a textured rectangle, a mesh and a spotlight, each with its own transform after `before`.
 std::vector<std::string> lamps(const std::string& before) {
   return {
       "Sphere { radius: 0.08 m, transform: " + before + " * translate(0, 0, 0.1), emission: DiffuseEmission { power: 9 W } }",
@@ -52,7 +52,7 @@ std::string flat() {
   return text;
 }
 
-// In all of the picture and in each part of it, from the camera and from the lamps.
+// Compares the means and the noise of the images, for paths from the camera and from the lamps.
 class NestedPictures : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(NestedPictures, AreThoseWithoutNesting) {
@@ -63,7 +63,7 @@ TEST_P(NestedPictures, AreThoseWithoutNesting) {
   EXPECT_EQ(a.bad, 0u);
   EXPECT_NEAR(a.mean.y / b.mean.y, 1, 4 * std::hypot(a.error, b.error) / b.mean.y);
   EXPECT_NEAR(a.mean.x / b.mean.x, 1, 4 * std::hypot(a.error, b.error) / b.mean.y);
-  EXPECT_LT(std::max(a.error, b.error) / b.mean.y, 0.03);  // so the comparison says something
+  EXPECT_LT(std::max(a.error, b.error) / b.mean.y, 0.03);  // so that the comparison is sensitive
   EXPECT_NEAR(a.error / b.error, 1, 0.25);
 }
 

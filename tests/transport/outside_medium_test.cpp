@@ -1,6 +1,6 @@
-// Shaders under another medium than vacuum. What a boundary does depends on the ratio of indices alone (and, in a film, on its
-// thickness in the wavelengths of what surrounds it): under a medium of index n a body of index n r does what one of index r
-// does in vacuum, at every wavelength and every angle, from both sides.
+// Shaders inside a medium other than vacuum. A boundary depends on the ratio of indices alone (and, for a film, on its
+// thickness relative to the wavelength in the surrounding medium): in a medium of index n, a body of index n r scatters as one
+// of index r does in vacuum, at every wavelength and every angle, from both sides.
 
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
@@ -14,14 +14,14 @@ namespace {
 using test::create;
 using test::Setting;
 
-/// At whole nanometres, where tables have their entries.
+/// Wavelengths at whole nanometres, where tables have their entries.
 Wavelengths whole_nanometres() {
   Wavelengths w;
   for (int i = 0; i < spectrum_size; ++i) w.place(i, float(420 + 350 * i / spectrum_size), 1.0f / 470);
   return w;
 }
 
-/// A table of a function of the wavelength.
+/// A spectrum that tabulates a function of the wavelength [nm].
 Color table(const std::function<double(double)>& f) {
   std::vector<float> wavelengths, values;
   for (int l = 360; l <= 830; ++l) {
@@ -54,7 +54,7 @@ class OutsideMedium : public testing::Test {
     return p;
   }
 
-  /// The first under a medium, the second in vacuum.
+  /// Expects that the first shader, inside a medium, equals the second in vacuum.
   void expect_alike(const std::string& name, const Ref<Shader>& under, const Ref<Shader>& in_vacuum,
                     const test::TestSquare& around, bool hero_only = false) {
     media_ = {};
@@ -83,7 +83,7 @@ class OutsideMedium : public testing::Test {
         const auto s = a->sample(out, choice, u, Transport::radiance, which),
                    t = b->sample(out, choice, u, Transport::radiance, which);
         ASSERT_EQ(bool(s), bool(t)) << name << " " << out.z;
-        if (!s || s->lobe != t->lobe) continue;  // rounding may decide otherwise
+        if (!s || s->lobe != t->lobe) continue;  // rounding may change the chosen lobe
         EXPECT_LT(length(s->direction - t->direction), 2e-3f) << name;
         EXPECT_EQ(s->dispersive, t->dispersive) << name;
         for (int k = 0; k < wavelengths; ++k)
@@ -139,7 +139,7 @@ TEST_F(OutsideMedium, ThinPane) {
 }
 
 TEST_F(OutsideMedium, ThinFilm) {
-  // Thickness counts in wavelengths within the film: n1 d.
+  // The thickness counts relative to the wavelength within the film: n1 d.
   for (const bool metal : {false, true}) {
     const Color base = metal ? complex_index(flat_spectrum(0.8f), flat_spectrum(3)) : flat_spectrum(1.6f),
                 under = metal ? complex_index(flat_spectrum(0.8f * 1.25f), flat_spectrum(3 * 1.25f)) : flat_spectrum(2.0f);
@@ -151,7 +151,7 @@ TEST_F(OutsideMedium, ThinFilm) {
 }
 
 TEST_F(OutsideMedium, Hair) {
-  // What refracts decides; the absorption does not change.
+  // Only refraction depends on the medium; the absorption does not change.
   expect_alike("hair", create<Shader>("HairShader", {{"ior", 1.25 * 1.3}}), create<Shader>("HairShader", {{"ior", 1.3}}),
                grey_);
 }
@@ -187,7 +187,7 @@ TEST_F(OutsideMedium, Principled) {
   }
 }
 
-// A path is inside of what it has entered more often than left: also where a mesh that is inside out is left first.
+// A path is inside a body that it has entered more often than left, also when exits come first (a mesh with inverted normals).
 TEST(MediumStack, WhatIsLeftBeforeItIsEnteredIsNotEntered) {
   test::TestSquare a, b;
   for (test::TestSquare* each : {&a, &b}) each->reference();
@@ -199,7 +199,7 @@ TEST(MediumStack, WhatIsLeftBeforeItIsEnteredIsNotEntered) {
   EXPECT_EQ(media.current(), &b);
   media.enter(a);
   EXPECT_EQ(media.current(), &a);
-  // What was forgotten for want of room was entered.
+  // Entries that did not fit into the stack still count.
   MediumStack full;
   for (int i = 0; i < MediumStack::capacity + 2; ++i) full.enter(i < 2 ? a : b);
   for (int i = 0; i < MediumStack::capacity; ++i) full.leave(b);
@@ -208,10 +208,10 @@ TEST(MediumStack, WhatIsLeftBeforeItIsEnteredIsNotEntered) {
   EXPECT_EQ(full.current(), &a);
 }
 
-// A slab of glass above a polished coat, seen straight on under a white sky. Of F = 0.04 at each face of the slab, it reflects
-// R = 2 F / (1 + F) and lets T = (1 - F) / (1 + F) through; the coat reflects C = (0.2 / 2.2)^2; so R + T^2 C / (1 - R C) comes
-// back. The same whether its faces are turned outwards or inwards: then it refracts as the other way round, by which F at right
-// angles does not change. (While what is around an inside-out slab was taken for glass, C was that of 1.2 / 1.5.)
+// A slab of glass above a polished coat, seen along the normal under a white sky. With F = 0.04 at each face of the slab, it
+// reflects R = 2 F / (1 + F) and transmits T = (1 - F) / (1 + F); the coat reflects C = (0.2 / 2.2)^2; so R + T^2 C / (1 - R C)
+// is seen, for outward and for inverted normals: with inverted normals the refraction is reversed, which does not change F at
+// normal incidence. (When the surroundings of an inverted slab were taken for glass, C was that of 1.2 / 1.5.)
 TEST(MediumStack, AroundAMeshThatIsInsideOutIsNoGlass) {
   const double r = 2 * 0.04 / 1.04, t = 0.96 / 1.04, c = 0.04 / 4.84;
   const double expected = r + t * t * c / (1 - r * c);

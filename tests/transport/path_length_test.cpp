@@ -1,5 +1,5 @@
-// What counts as a segment of `max_depth`, by every renderer that has one: a scattering begins a new segment, going straight on
-// does not. Each row is a scene whose light comes by paths of one length: as long as that and no shorter it is all there.
+// Which segments count for `max_depth`, by every renderer that has it: scattering begins a new segment, null scattering does
+// not. Each row is a scene whose light comes by paths of one length: with that max_depth all of it is found, with less nothing.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 struct LengthCase {
   const char* name;
-  int segments;     ///< of the paths that bring the light
+  int segments;     ///< length of the paths with the light
   double expected;  ///< radiance
   std::string camera, objects;
   std::vector<std::string> renderers;
@@ -41,14 +41,14 @@ std::string sheet(const std::string& shader, double z = 1) {
   return fmt::format("Rectangle {{ corner: [-4, -4, {}], edge_u: [8, 0, 0], edge_v: [0, 8, 0], shader: {} }}\n", z, shader);
 }
 
-// A matt floor in the sun and a wall at its edge that the sun only grazes: the wall is lit by the floor alone.
+// A diffuse floor in the sun and a wall at its edge, parallel to the sunlight: the wall is lit by the floor alone.
 const std::string along = "OrthographicCamera { from: [1, 0, 2], to: [0, 0, 2], up: [0, 0, 1], width: 3.9 }";
 const std::string floor_and_wall =
     "Rectangle { corner: [0, -2, 0], edge_u: [4, 0, 0], edge_v: [0, 4, 0], shader: Lambertian { color: 0.5 } }\n"
     "Rectangle { corner: [0, -2, 0], edge_u: [0, 4, 0], edge_v: [0, 0, 4], shader: Lambertian { color: 0.5 } }\n";
 
-/// How much of what a place on the wall sees, by cosines, is floor, averaged over what the camera sees of the wall. Of a
-/// rectangle a deep and b wide that is seen from the height h above its corner, at a right angle to its depth, the part is
+/// The form factor of the floor seen from a point on the wall, averaged over what the camera sees of the wall. For a rectangle
+/// of depth a and width b, perpendicular to the receiver, with the point at the height h above its corner, the form factor is
 /// (atan(b / h) - h / c atan(b / c)) / 2 pi with c^2 = h^2 + a^2 (Lambert's contour integral).
 double floor_seen_from_wall() {
   constexpr int steps = 400;
@@ -87,7 +87,7 @@ std::vector<LengthCase> length_cases() {
        lamp + "Box { centre: [0, 0, 1], size: [4, 4, 1], shader: PassThrough {}, interior: HomogeneousVolume { absorption: 1 } "
               "}\n",
        {"PathTracer { samples: 64", "BidirectionalPathTracer { samples: 64"}},
-      // The boundary of the inner body means nothing inside one of higher priority.
+      // The boundary of the inner body has no effect inside a body of higher priority.
       {"HiddenByPriority", 3, (1 - r) * (1 - r), down,
        lamp + "Box { centre: [0, 0, 1], size: [6, 6, 1], priority: 1, shader: Dielectric { ior: 1.5 } }\n"
               "Box { centre: [0, 0, 1], size: [2, 2, 0.5], shader: Dielectric { ior: 2 } }\n",
@@ -109,7 +109,7 @@ std::vector<LengthCase> length_cases() {
            "}\n",
        {"PathTracer { samples: 16", "BidirectionalPathTracer { samples: 64", "LightTracer { samples: 65536"}},
       {"LitByTheFloor", 3, 0.5 * 0.5 * floor_seen_from_wall(), along, floor_and_wall + sun, with_media},
-      // Light scattered once by a thin layer of albedo 1 and depth t: (1 - exp(-2 t)) / (8 pi) of the sun's irradiance pi.
+      // Single scattering by a thin layer of albedo 1 and optical depth t: (1 - exp(-2 t)) / (8 pi) of the sun's irradiance pi.
       {"ScatteredInAMedium", 2, (1 - std::exp(-0.2)) / 8,
        "OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], width: 2 }",
        sun + "Box { size: [2.02, 2.02, 0.1], shader: PassThrough {}, interior: HomogeneousVolume { scattering: 1 } }\n",

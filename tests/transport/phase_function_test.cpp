@@ -12,7 +12,7 @@ namespace {
 
 Ref<PhaseFunction> phase(const std::string& text) { return prepared_as<PhaseFunction>(text); }
 
-/// 2 pi int f(h) value(h) dh, in steps that are fine where a peak straight on may be.
+/// 2 pi int f(1 - h) value(h) dh, with h = 1 - cos and steps that are fine at the forward peak.
 template <class F>
 double integral(const PhaseFunction& p, const F& f) {
   double sum = 0;
@@ -41,14 +41,14 @@ TEST(PhaseFunction, RayleighsSecondMomentIsTwoFifths) {
   EXPECT_NEAR(whole(*most), 1, 1e-5);
   EXPECT_NEAR(double(most->value(0)), 3.5 * 3 / (40 * M_PI), 1e-5);
   EXPECT_NEAR(double(most->value(1)), 3.25 * 3 / (40 * M_PI), 1e-5);
-  // Of light at right angles the weaker polarization is rho of the stronger, by which p(90) / p(0) = (1 + rho) / 2.
+  // At a scattering angle of 90 degrees the weaker polarization is rho times the stronger, so p(90) / p(0) = (1 + rho) / 2.
   const Ref<PhaseFunction> air = phase("RayleighPhase { depolarization: 0.0279 }");
   EXPECT_NEAR(double(air->value(1) / air->value(0)), (1 + 0.0279) / 2, 1e-5);
 }
 
-// Water in visible light: Mie's theory gives asymmetries of 0.85 to 0.87 for droplets of 10 to 40 micrometres (Hu & Stamnes
-// 1993, An accurate parameterization of the radiative properties of water clouds, figure 3). The mean of Draine's function is
-// his eq. 9.
+// Water droplets in visible light: Mie's theory gives asymmetries of 0.85 to 0.87 for diameters of 10 to 40 micrometres (Hu &
+// Stamnes 1993, An accurate parameterization of the radiative properties of water clouds, figure 3). The mean cosine of
+// Draine's function is his eq. 9.
 TEST(PhaseFunction, FogTurnsLightAsMiesTheorySays) {
   for (const double micrometres : {8.0, 10.0, 20.0, 40.0}) {
     const Ref<PhaseFunction> p = phase("FogPhase { droplet_diameter: " + std::to_string(micrometres * 1e-6) + " }");
@@ -56,7 +56,7 @@ TEST(PhaseFunction, FogTurnsLightAsMiesTheorySays) {
     const double mean = mean_cosine(*p);
     EXPECT_GT(mean, 0.82) << micrometres;
     EXPECT_LT(mean, 0.89) << micrometres;
-    // A peak straight on, and more straight back than sideways.
+    // A forward peak, and more backward than sideward scattering.
     EXPECT_GT(p->value(0), 100 * p->value(0.5f));
     EXPECT_GT(p->value(2), 1.5f * p->value(1.2f));
     double drawn = 0;
@@ -86,7 +86,7 @@ TEST(PhaseFunction, ValuesAreThoseOfMitsuba) {
   }
 }
 
-// A table of a lobe's values is the lobe, as far as it is fine enough; at places of one's own too.
+// A table of the values of a lobe is the lobe, as far as it is fine enough; also with given cosines.
 TEST(PhaseFunction, ATableOfAFunctionIsTheFunction) {
   const Ref<PhaseFunction> lobe = phase("HenyeyGreensteinPhase { anisotropy: -0.5 }");
   std::string values, cosines;

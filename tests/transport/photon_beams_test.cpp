@@ -1,4 +1,4 @@
-// Beams of photons: that rays find those they pass, and what they bring where the answer is known (see closed_form_rows.h).
+// Photon beams: rays find the beams they pass, and the estimate agrees with closed forms (see closed_form_rows.h).
 
 #include "etendue/render/photon_beams.h"
 
@@ -17,8 +17,8 @@ struct AllAlike final : NumberSource {
   Point2 pair(SampleKey, std::uint32_t) const override { return {0.25f, 0.25f}; }
 };
 
-// Every pair of a beam and a ray is looked at, in doubles: where their lines come nearest, two equations tell (both differences
-// are across the line between).
+// The reference is computed in double precision for every pair of a beam and a ray: two equations give the nearest points of
+// both lines, since the segment between these points is perpendicular to both.
 TEST(BeamMap, finds_all_that_pass_a_ray_and_each_once) {
   const AllAlike alike;
   int passed = 0;
@@ -56,7 +56,7 @@ TEST(BeamMap, finds_all_that_pass_a_ray_and_each_once) {
         const double sine = std::sqrt(std::max(0.0, dot3(d, d) * dot3(e, e) - dot3(d, e) * dot3(d, e)));
         if (sine > 0.01) {
           EXPECT_NEAR(double(width), 2 * double(radius) * sine, 1e-4 * double(radius));
-          // Both ends of the shortest way between the lines.
+          // These are the ends of the shortest segment between the lines.
           EXPECT_LT(length(ray(t) - (b.origin + s * b.direction)), radius + 1e-5f);
         }
       });
@@ -65,14 +65,14 @@ TEST(BeamMap, finds_all_that_pass_a_ray_and_each_once) {
         const std::array w{o[0] - c[0], o[1] - c[1], o[2] - c[2]};
         const double de = dot3(d, e), dw = dot3(d, w), ew = dot3(e, w), det = dot3(d, d) * dot3(e, e) - de * de;
         if (det < 1e-4) {
-          found[size_t(i)] = 0;  // told by the closed forms below
+          found[size_t(i)] = 0;  // parallel beams are tested by the closed forms below
           continue;
         }
         const double t = (dw * dot3(e, e) - de * ew) / det, s = (de * dw - dot3(d, d) * ew) / det;
         double squared = 0;
         for (size_t k = 0; k < 3; ++k) squared += std::pow(w[k] + s * e[k] - t * d[k], 2);
         const double apart = std::sqrt(squared), r = double(radius), end = double(beams[size_t(i)].length);
-        // What rounding decides is not looked at.
+        // Pairs that rounding decides are left out.
         if (std::abs(apart - r) < 1e-5 || std::abs(s) < 1e-5 || std::abs(s - end) < 1e-5 || std::abs(t) < 1e-5 ||
             std::abs(t - double(reach)) < 1e-5) {
           found[size_t(i)] = 0;
@@ -102,7 +102,8 @@ std::vector<Row> beam_rows() {
   };
   const std::string above = square("[0, 0, 2]", "[0, 0, 0]", 1.6), below = square("[0, 0, -3]", "[0, 0, 0]", 1.6);
   std::vector<Row> rows;
-  // Light scattered once in a slab of optical thickness 1. Beams that are parallel to all rays, along them and against them.
+  // Single scattering in a slab of optical thickness 1. All beams are parallel to all camera rays, in or against their
+  // direction.
   const std::string thin = fog(1, 1, "scattering: 1");
   rows.push_back({"ScatteredBack",
                   above,
@@ -114,19 +115,19 @@ std::vector<Row> beam_rows() {
                   thin + sun("[0, 0, -1]"),
                   std::exp(-1.0) / (4 * exact_pi),
                   {{"ProgressivePhotonMapper", by_beams(2, 2, 4000), 4}}});
-  // Slanted ones, with cosine m = 0.8: int_0^1 exp(-z / m) exp(-z) dz / (4 pi).
+  // Oblique beams, with cosine m = 0.8: int_0^1 exp(-z / m) exp(-z) dz / (4 pi).
   rows.push_back({"ScatteredUp",
                   square("[0, 0, 2]", "[0, 0, 0]", 1.2),
                   fog(1.5, 1, "scattering: 1") + sun("[0.6, 0, -0.8]"),
                   (1 - std::exp(-2.25)) / (2.25 * 4 * exact_pi),
                   {{"ProgressivePhotonMapper", by_beams(2, 2, 8000), 4}}});
-  // Of a thickness of 4, behind which few beams come.
+  // A slab of optical thickness 4, which few beams cross.
   rows.push_back({"ScatteredOnInThickFog",
                   square("[0, 0, -6]", "[0, 0, 0]", 1),
                   fog(2, 4, "scattering: 1") + sun("[0, 0, -1]"),
                   std::exp(-4.0) / exact_pi,
                   {{"ProgressivePhotonMapper", by_beams(2, 2, 4000), 4}}});
-  // Fog in the furnace, whose wall sends back nothing.
+  // Fog in a furnace whose wall reflects nothing.
   rows.push_back({"FurnaceWithFog",
                   "PerspectiveCamera { from: [-0.5, 0, 0], to: [1, 0, 0], fov: 90 }",
                   "Sphere { radius: 1, emission: DiffuseEmission { radiance: 1, sides: back } }\nSphere { centre: [0.4, 0, 0], "
@@ -137,7 +138,7 @@ std::vector<Row> beam_rows() {
   return rows;
 }
 
-// Beams go through media that are the same everywhere. In others light is gathered along rays, as it is if one asks for that.
+// Beams are used in homogeneous media. In heterogeneous media photons are gathered along rays, as with media: along_rays.
 TEST(PhotonBeams, leave_uneven_media_to_photons) {
   const auto picture = [](const char* media, const char* volume) {
     return test::rendered(

@@ -1,5 +1,5 @@
-// Photon mapping where the answer is known: see closed_form_rows.h. Radii are small beside what they could blur, except where
-// the light is the same everywhere and no blur shows.
+// Photon mapping against closed forms: see closed_form_rows.h. Radii are small compared with the structures they could blur,
+// except where the light is uniform and no blur is visible.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 std::vector<Row> photon_rows() {
   const std::string inside = "PerspectiveCamera { from: [0.3, 0.1, 0.2], to: [0, 0, 1], fov: 90 }";
   std::vector<Row> rows;
-  // A chord of length r cuts a cap of the area pi r^2 from a sphere: nothing is blurred. Photons come straight, too.
+  // A chord of length r cuts a cap of the area pi r^2 from a sphere: the kernel has no bias. Photons include direct light, too.
   rows.push_back({"R01_Furnace",
                   inside,
                   "Sphere { radius: 1, shader: Lambertian { color: 0.8 }, emission: DiffuseEmission { radiance: 1, sides: "
@@ -37,7 +37,7 @@ std::vector<Row> photon_rows() {
                   {{"VertexConnectionMerging", "max_depth: 1000, radius: 0.1", 16},
                    {"ProgressivePhotonMapper", "max_depth: 1000, radius: 0.1, photon_walks: 16000", 10},
                    {"ProgressivePhotonMapper", "max_depth: 1000, radius: 0.2, photon_walks: 4000, media: points", 8}}});
-  // Light through glass onto a plate that shows what it gets and sends next to nothing back; what photons bring is a caustic.
+  // Light through glass onto a plate of very low reflectance that shows its irradiance; all photons are caustic photons.
   const std::string sun = "Distant { direction: [0, 0, -1], emission: DiffuseEmission { radiance: 314159.265 } }";
   const std::string glass =
       "TriangleMesh { positions: [[-40,-40,-1],[40,-40,-1],[40,40,-1],[-40,40,-1],[-40,-40,0],[40,-40,0],[40,40,0],[-40,40,0]],"
@@ -52,7 +52,7 @@ std::vector<Row> photon_rows() {
                    {"ProgressivePhotonMapper", under, 4},
                    {"PhotonMapper",
                     "max_depth: 1000, farthest_caustic: 1, nearest_caustic: 1000, caustic_walks: 5000, samples_per_map: 4", 4},
-                   // Few photons: the farthest, one of ten, says how large the disc is and does not count.
+                   // Few photons: the k-th of ten gives the radius and is not in the sum.
                    {"PhotonMapper",
                     "max_depth: 1000, farthest_caustic: 8, nearest_caustic: 10, caustic_walks: 5000, samples_per_map: 4, "
                     "sampler: IndependentSampler {}",

@@ -1,4 +1,4 @@
-// Photons: what they bring, which are kept, and what they must not do.
+// Photons: their estimates, the choice of which are stored, and occlusion.
 
 #include "etendue/transport/photons.h"
 
@@ -27,8 +27,8 @@ TEST(VertexConnectionMerging, without_merging_is_bidirectional_path_tracing_to_t
   EXPECT_EQ(merging->film().develop().values, connecting->film().develop().values);
 }
 
-// Without connections it is progressive photon mapping in which photons bring direct light as well: by walks of the camera of
-// its own, so the pictures are alike within their noise. Both share their photons, and so most of it.
+// Without connections it is progressive photon mapping whose photons include direct light. The camera subpaths differ, so the
+// images agree only within their noise; both have the same photons, and so most of the noise is the same.
 TEST(VertexConnectionMerging, without_connecting_is_progressive_photon_mapping) {
   const std::string members = "{ max_depth: 6, radius: 2, alpha: 0.7, photon_walks: 4000, ";
   const Image merged = rendered(box("VertexConnectionMerging " + members + "connecting: false", 64))->film().develop();
@@ -41,7 +41,7 @@ TEST(VertexConnectionMerging, without_connecting_is_progressive_photon_mapping) 
   EXPECT_LT(difference, 0.01 * sum);
 }
 
-// A room without light beside a lit one, on one floor: what photons on the other side of the wall carry must not come over.
+// A dark room beside a lit one, on one floor: photons on the other side of the wall must not contribute.
 TEST(Photons, do_not_shine_through_walls) {
   const std::string rooms = R"(
     Box { size: [4, 2, 2], shader: Lambertian { color: 0.8 } }
@@ -58,7 +58,8 @@ TEST(Photons, do_not_shine_through_walls) {
   }
 }
 
-// The light that a small glass ball and a mirror throw on is the same whether walks begin everywhere or towards them alone.
+// The caustics of small glass balls and a mirror are the same for light subpaths that start everywhere and for those that start
+// towards specular objects alone.
 TEST(ProjectionMap, bring_the_same_caustics) {
   const std::string things = R"(
     Rectangle { corner: [-5, -5, 0], edge_u: [10, 0, 0], edge_v: [0, 10, 0], shader: Lambertian { color: 0.5 } }
@@ -77,10 +78,10 @@ TEST(ProjectionMap, bring_the_same_caustics) {
         load_job_text(job_text("LightTracer { samples: 1 }", "PerspectiveCamera {}", 4, things + "\n" + lamp), "ball.etd");
     Render render(job);  // prepares the parts
     const RenderContext context{*job->scene, *job->camera, *job->image, *job->wavelengths};
-    const std::unique_ptr<RenderProcess> process = job->renderer->start(context);  // and the light sampler
+    const std::unique_ptr<RenderProcess> process = job->renderer->start(context);  // prepares the light sampler, too
     const ProjectionMap targets(*job->scene);
     ASSERT_TRUE(targets.useful());
-    // Mean and standard error over 20 sets of walks, each with its own step.
+    // The mean and standard error over 20 sets of light subpaths, each with its own step number.
     const auto flux = [&](const ProjectionMap* towards, double& error) {
       constexpr int sets = 20;
       double sum = 0, squares = 0;
@@ -111,7 +112,7 @@ TEST(ProjectionMap, bring_the_same_caustics) {
     double error = 0, error_towards = 0;
     const double everywhere = flux(nullptr, error), towards = flux(&targets, error_towards);
     EXPECT_GT(everywhere, 0) << lamp;
-    // Four standard errors, as of Student's distribution with 38 degrees of freedom: 3e-4 for each lamp.
+    // Four standard errors, by Student's distribution with 38 degrees of freedom: a probability of 3e-4 for each lamp.
     EXPECT_NEAR(everywhere, towards, 4 * std::hypot(error, error_towards)) << lamp;
     EXPECT_LT(std::hypot(error, error_towards), 0.02 * everywhere) << lamp;
   }
@@ -134,7 +135,7 @@ TEST(Photons, shrink_as_knaus_and_zwicker_say) {
   EXPECT_NEAR(shrunk_area(99999, 0.7) * std::pow(100000.0, 0.3) * std::tgamma(1.7), 1, 1e-4);
 }
 
-// Walks from the camera end where photons are looked for, and of glowing gas there are none.
+// Camera subpaths end where photons are gathered, and photons do not represent the emission of media.
 TEST(VertexConnectionMerging, AloneDoesNotFindTheLightOfMediaOnSurfaces) {
   const auto merging = ref_cast<Renderer>(Registry::instance().create("VertexConnectionMerging"));
   EXPECT_TRUE(merging->finds() & emitting_media);

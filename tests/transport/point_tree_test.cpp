@@ -1,4 +1,4 @@
-// A tree of points finds what looking at all of them finds.
+// A tree of points: its queries find the same points as a search through all of them.
 
 #include "etendue/transport/point_tree.h"
 
@@ -57,7 +57,7 @@ TEST(PointTree, finds_all_within_a_distance_and_the_nearest) {
         std::sort_heap(near.begin(), near.end());
         std::ranges::sort(by_distance);
         for (size_t k = 0; k < near.size(); ++k) EXPECT_EQ(near[k].squared, by_distance[k].first);
-        // Along a line, now and then one that runs along an axis.
+        // Points near a line, which is sometimes parallel to an axis.
         const Vector3 direction = n % 5 == 0 ? Vector3{0, 0, 1} : normalize(Vector3{u(random), u(random), u(random)});
         const float reach = n % 3 == 0 ? 0.7f : infinity;
         std::vector<std::uint32_t> passed, near_line;

@@ -1,4 +1,5 @@
-// Chains of numbers come to their states as often as they should, also where states ask for numbers of their own.
+// Markov chains of primary samples visit states in proportion to their brightness, also where states use different numbers of
+// primary samples.
 
 #include <gtest/gtest.h>
 
@@ -16,9 +17,9 @@ float asked(const MutatedPrimarySamples& numbers, std::uint64_t walk) {
   return numbers.number(key, 0);
 }
 
-// States of two kinds lie in narrow stripes of one number. Those of the first kind bring 1. The others ask for one number more,
-// of which values within `width` bring 1 / width and all others nothing: either kind brings half of all there is, so a chain
-// is at either half of the time. A chain that leaves for the first kind finds the second number moved when it comes back.
+// States of two kinds lie in narrow stripes of one primary sample. States of the first kind have the brightness 1. The others
+// use a second primary sample: its values within `width` give 1 / width, all others 0. So either kind has half of all
+// brightness, and a chain is at each half of the time. The second sample has moved when a chain returns from the first kind.
 TEST(MutatedPrimarySamples, StatesThatAskForMoreAreAsLikelyAsTheyShouldBe) {
   constexpr float width = 0.02f, deviation = 0.05f;
   constexpr int chains = 200, steps = 20000;
@@ -58,8 +59,8 @@ TEST(MutatedPrimarySamples, StatesThatAskForMoreAreAsLikelyAsTheyShouldBe) {
   }
   const double mean = sum / chains, error = std::sqrt((squares / chains - mean * mean) / (chains - 1));
   EXPECT_LT(error, 0.005);
-  // Four standard errors: 1 in 16,000. The first states, not drawn in proportion, are forgotten after some hundred. Where
-  // numbers left out are moved afresh for each proposal it is 0.64.
+  // Four standard errors: a probability of 1 in 16,000. The first states, not drawn in proportion, are forgotten after some
+  // hundred. If unused samples were mutated anew for each proposal, the result would be 0.64.
   EXPECT_NEAR(mean, 0.5, 4 * error) << "standard error " << error;
 }
 

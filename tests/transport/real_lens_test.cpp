@@ -1,4 +1,4 @@
-// A camera whose lens weakens light, holds some of it back, and does so differently for each wavelength.
+// A camera whose lens weakens light, vignettes, and has a transmittance that depends on the wavelength.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 namespace etendue {
 namespace {
 
-/// An orthographic camera that looks down from z = 5 at 2 m by 2 m around the origin. Its left quarter is behind the rim; the
-/// rest weakens light to `clear` of it, and in its right half to half of that beyond 550 nm.
+/// An orthographic camera that looks down from z = 5 at 2 m by 2 m around the origin. The left quarter of its film is
+/// vignetted; the rest has the transmittance `clear`, and in its right half, beyond 550 nm, half of that.
 class RealLensCamera final : public Camera {
  public:
   static void describe(Description<RealLensCamera>& d) {
@@ -50,7 +50,7 @@ class RealLensCamera final : public Camera {
     s.film = {(from.x + 1) / 2 * width_, (1 - from.y) / 2 * height_};
     if (s.film.x < width_ / 4 || s.film.x >= width_ || s.film.y < 0 || s.film.y >= height_) return std::nullopt;
     s.pdf = 1;
-    s.importance = 1.0f / 4;  // over the 4 m^2 of the whole film
+    s.importance = 1.0f / 4;  // 1 over the 4 m^2 of the whole film
     return s;
   }
   Spectrum lens_weight(const LensSample& s, const Wavelengths& w) const override { return weight(s.film, w); }
@@ -68,8 +68,8 @@ class RealLensCamera final : public Camera {
   float width_ = 1, height_ = 1;
 };
 
-// A white plate under even light from above has radiance 1 everywhere. What comes of it: nothing in the left quarter, 0.8 in
-// the second, and in the right half 0.8 (Y below 550 nm + half of Y above) over all Y.
+// A white plate under uniform light from above has radiance 1 everywhere. The film has nothing in the left quarter, 0.8 in the
+// second, and in the right half 0.8 (Y below 550 nm + half of Y above) over all Y.
 TEST(RealLens, WeakensTheSameForAllAlgorithms) {
   static const Register<RealLensCamera> registered;
   const auto picture = [](const std::string& renderer, const std::string& camera, const std::string& radiance, int samples) {

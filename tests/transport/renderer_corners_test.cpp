@@ -1,5 +1,5 @@
-// Corners of the renderers: alpha surfaces on the last segment, numbers of samples that differ between strategies, what is seen
-// through panes, smooth normals, distances that end.
+// Corner cases of renderers: alpha surfaces on the last segment, different numbers of samples per strategy, surfaces seen
+// through panes, smooth normals, limited distances.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ void expect_exactly(const std::string& renderer, const std::string& camera, cons
   EXPECT_LE(m.error, 0.01 * expected + 1e-7) << renderer;
 }
 
-// What goes straight on is no segment: alpha surfaces may be passed on the last one, before lamps and after mirrors.
+// Null scattering does not count as a segment: alpha surfaces may be passed on the last one, before lamps and after mirrors.
 TEST(RendererCorners, AlphaSurfacesOnTheLastSegment) {
   const std::string before = plate(1, 1, holes) + plate(1, 2, holes) + plate(1, 0, lamp);
   for (const char* renderer :
@@ -43,7 +43,7 @@ TEST(RendererCorners, AlphaSurfacesOnTheLastSegment) {
   for (const char* renderer :
        {"WhittedRenderer { max_depth: 1 }", "DistributionRenderer { max_depth: 1 }", "PathTracer { max_depth: 1 }"})
     EXPECT_EQ(measure(job_text(renderer, straight_down, 4, mirror)).mean.y, 0) << renderer;
-  // An alpha surface that is lit itself, on the last segment but one and on the last.
+  // An alpha surface that reflects direct light, on the last segment but one and on the last.
   const std::string lit = plate(1, 0, "shader: MaskShader { shader: Lambertian { color: 1 }, opacity: 0.25 }") +
                           "Point { position: [0, 0, 4], emission: DiffuseEmission { radiance: 1 } }";
   expect_exactly("WhittedRenderer { max_depth: 2 }", low, lit, 0.25 / M_PI / 16, 2e-4);
@@ -52,8 +52,9 @@ TEST(RendererCorners, AlphaSurfacesOnTheLastSegment) {
     EXPECT_EQ(measure(job_text(renderer, low, 4, lit)).mean.y, 0) << renderer;
 }
 
-// Numbers of luminaire points and shader directions that differ: the weights of both add up to 1 whatever they are. A rectangle
-// 2 x 2 at height 1 over a matt point (1.740840 / pi), and a glossy surface under even light from all around.
+// Different numbers of luminaire samples and shader samples: the weights of both strategies add up to 1 for any numbers. A
+// rectangle 2 x 2 at height 1 over a diffuse point (1.740840 / pi), and a glossy surface under uniform light from all
+// directions.
 TEST(RendererCorners, CountsOfSamplesThatDiffer) {
   const std::string scene =
       plate(9, 0, "shader: Lambertian { color: 1 }") + plate(1, 1, "emission: DiffuseEmission { radiance: 1, sides: back }");
@@ -68,7 +69,7 @@ TEST(RendererCorners, CountsOfSamplesThatDiffer) {
     expect_exactly(fmt::format("DistributionRenderer {{ {}, max_depth: 2, samples: 4096 }}", counts), low, scene, expected,
                    5e-4);
 
-  // Phong straight on reflects kd + ks of even light; matt and glossy directions could each have given the other's.
+  // Phong along the normal reflects kd + ks of uniform light; each direction could come from the diffuse or the glossy lobe.
   const std::string glossy = plate(9, 0, "shader: PhongShader { color: 0.3, specular: 0.5, exponent: 9 }") +
                              "Environment { emission: DiffuseEmission { radiance: 1, sides: both } }";
   for (const char* counts :
@@ -80,8 +81,8 @@ TEST(RendererCorners, CountsOfSamplesThatDiffer) {
     expect_exactly(fmt::format("DirectRenderer {{ {}, samples: 4096 }}", counts), low, glossy, 0.8, 5e-4);
 }
 
-// A pane of index 1 that takes color^(1 / cos), between a matt floor and an endless even light: whichever way light is found,
-// it crosses the pane. E is the integral of 2 c 0.6^(1 / c) dc.
+// A pane of index 1 with the transmittance color^(1 / cos), between a diffuse floor and a uniform environment: shadow rays and
+// shader directions both cross the pane. E is the integral of 2 c 0.6^(1 / c) dc.
 TEST(RendererCorners, PanesBetweenSurfacesAndLamps) {
   double expected = 0;
   for (int i = 0; i < 100000; ++i) {
@@ -99,7 +100,7 @@ TEST(RendererCorners, PanesBetweenSurfacesAndLamps) {
     expect_exactly(renderer, low, scene, expected, 1e-3);
 }
 
-/// A square whose normals are all tilted by an angle towards +x.
+/// A square whose shading normals are all tilted by an angle towards +x.
 std::string tilted(double degrees) {
   const double x = std::sin(degrees * M_PI / 180), z = std::cos(degrees * M_PI / 180);
   const std::string n = fmt::format("[{}, 0, {}]", x, z);
@@ -109,7 +110,7 @@ std::string tilted(double degrees) {
       n);
 }
 
-// Around a normal that is tilted by a, the true surface hides (1 - cos a) / 2 of a lobe of cosines.
+// Around a normal that is tilted by a, the geometric surface occludes (1 - cos a) / 2 of a cosine lobe.
 TEST(RendererCorners, SmoothNormals) {
   for (const double degrees : {20.0, 50.0}) {
     const double c = std::cos(degrees * M_PI / 180);
@@ -126,7 +127,7 @@ TEST(RendererCorners, SmoothNormals) {
   }
 }
 
-// Under a ceiling at the height 1, rays of length d meet it where cos > 1 / d: 1 - 1 / d^2 of the hemisphere.
+// Under a ceiling at the height 1, rays of length d hit it where cos > 1 / d: 1 - 1 / d^2 of the cosine-weighted hemisphere.
 TEST(RendererCorners, OcclusionOfALimitedDistance) {
   const std::string room = plate(50, 0, "shader: Lambertian {}") + plate(50, 1, "shader: Lambertian {}");
   for (const double d : {0.9, 1.2, 2.0})
@@ -134,7 +135,7 @@ TEST(RendererCorners, OcclusionOfALimitedDistance) {
                    d < 1 ? 1 : 1 / (d * d), 1e-3);
 }
 
-// Depth is measured from the camera, also past boundaries that another object of higher priority hides.
+// Depth is measured from the camera, also beyond boundaries that are hidden by an object of higher priority.
 TEST(RendererCorners, DepthPastHiddenBoundaries) {
   const std::string objects =
       "Sphere { radius: 3, shader: Dielectric {}, interior: HomogeneousVolume { absorption: 0.1 }, priority: 2 }\n"
@@ -145,8 +146,8 @@ TEST(RendererCorners, DepthPastHiddenBoundaries) {
   EXPECT_NEAR(depth.x, 3, 1e-3f);
 }
 
-// Fog that scatters once within the two segments of direct light, and not at all within one: rows 16 and 17 of a slab of
-// optical thickness 1 under a beam, seen straight on. Paths of 2 segments hold all light scattered once.
+// Fog: single scattering needs two segments, and with one there is no light: rows 16 and 17 of a slab of optical thickness 1
+// under a beam, seen along the normal. Paths of two segments have all single scattering.
 TEST(RendererCorners, DepthInFog) {
   const std::string slab =
       "Box { centre: [0, 0, -0.5], size: [400, 400, 1], shader: PassThrough {}, interior: HomogeneousVolume { scattering: 1 } "

@@ -1,4 +1,4 @@
-// What holds for all renderers that follow rays from the camera: Whitted, distribution, direct light, ambient occlusion,
+// Tests of all renderers that only trace rays from the camera: Whitted, distribution, direct light, ambient occlusion,
 // features.
 
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 namespace etendue::test {
 namespace {
 
-// Refraction that differs between wavelengths is followed for the hero alone, which then counts for all; the reflected
-// branch of the same surface keeps all wavelengths.
+// Dispersive refraction is followed for the hero wavelength alone, which is weighted for all; the reflected branch at the same
+// surface keeps all wavelengths.
 TEST(SimpleRenderers, DispersionDropsSecondaryWavelengthsInItsBranchAlone) {
   const std::string lamps = "Rectangle { corner: [-9,-9,-3], edge_u: [18,0,0], edge_v: [0,18,0], emission: " + lit +
                             " }\nRectangle { corner: [-9,-9,5], edge_u: [18,0,0], edge_v: [0,18,0], emission: " + lit + " }";
@@ -32,18 +32,18 @@ TEST(SimpleRenderers, DispersionDropsSecondaryWavelengthsInItsBranchAlone) {
       EXPECT_NEAR(lengths[2][i], i == 0 ? float(spectrum_size) * square(1 - reflectance(w[0])) : 0, 1e-4f);
     }
   }
-  // A single boundary: radiance above is that below over the squared index.
+  // A single boundary: the radiance above is that below over the squared index.
   Ready ready(job_text("DirectRenderer { shader_samples: 4096 }", pinhole("[0,0,3]", "[0,0,0]"), 1,
                        floor_of("Dielectric { ior: glass(\"N-SF11\") }") +
                            "Rectangle { corner: [-9,-9,-3], edge_u: [18,0,0], edge_v: [0,18,0], emission: " + lit + " }"));
   const auto s = ready.sample(0, 0, 0);
   const float n = glass->at(s.wavelengths[0], ColorUse::coefficient);
-  // Refraction is chosen in strata of a fixed choice, so the share of directions is exact to one of them.
+  // The lobe choice is stratified, so the fraction of refracted directions is exact to one of them.
   EXPECT_NEAR(s.value[0], float(spectrum_size) * (1 - reflectance(s.wavelengths[0])) / square(n), 2e-3f);
   for (int i = 1; i < spectrum_size; ++i) EXPECT_EQ(s.value[i], 0);
 }
 
-// ---- surfaces that light passes straight on ----------------------------------------------------------------------------
+// ---- null-scattering surfaces -------------------------------------------------------------------------------------------
 
 TEST(SimpleRenderers, AreNotDisturbedBySurfacesThatAreNotThere) {
   const std::string sheets = R"(

@@ -1,5 +1,5 @@
-// Paths that are divided where light is both reflected and refracted, and where it is dispersed, bring what undivided ones do:
-// held to closed forms whose colours depend on every wavelength going its own way.
+// Paths that split into reflection and refraction, and into wavelengths, have the expectation of paths that do not: compared
+// with closed forms whose colours depend on each wavelength being refracted for itself.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@ namespace etendue::test {
 namespace {
 
 struct Statistics {
-  Xyz mean, error;   ///< over renders with different seeds, and the standard error
-  double noise = 0;  ///< standard deviation of a pixel's X and Z against what its Y lets expect, over the mean
+  Xyz mean, error;   ///< mean over renders with different seeds, and its standard error
+  double noise = 0;  ///< colour noise: deviation of pixels' X and Z from those of the mean colour at their Y, over Y
 };
 
 Statistics rendered(const std::string& members, int samples, const std::string& camera, const std::string& objects) {
@@ -69,7 +69,7 @@ void expect_color(const std::string& what, const Statistics& s, const Xyz& expec
   EXPECT_LT(s.error.y, 0.02 * expected.y) << what;
 }
 
-/// R of light that falls on glass of index n with the sine s.
+/// Fresnel's reflectance of glass of index n for the sine s of the incident angle.
 double fresnel(double n, double s) {
   const double c = std::sqrt(1 - s * s), i = std::sqrt(1 - s * s / (n * n));
   const double rs = (c - n * i) / (c + n * i), rp = (n * c - i) / (n * c + i);
@@ -83,10 +83,10 @@ const std::vector<std::string> divisions = {"split_depth: 0, split_wavelengths: 
                                             "split_depth: 4, split_wavelengths: 1", "split_depth: 0, split_wavelengths: 8",
                                             "split_depth: 1, split_wavelengths: 4", "split_depth: 3, split_wavelengths: 3"};
 
-// A ray comes to a block of glass with the sine s. In it, at the depth 1, lies a luminaire that ends at a line: wavelengths
-// which are refracted less than to there miss it. With Snell's law
+// A ray hits a block of glass with the sine s. In the glass, at the depth 1, lies a luminaire that ends at the line x:
+// wavelengths that are refracted too little miss it. By Snell's law
 //     L(l) = R F(l) + (1 - R) 1 / n^2 [s / sqrt(n^2 - s^2) < x],
-// R being Fresnel's reflectance at l, F the sky's radiance and 1 that of the luminaire inside.
+// with R Fresnel's reflectance at l, F the sky's radiance and 1 that of the luminaire inside.
 TEST(Splitting, EveryWavelengthIsRefractedForItself) {
   constexpr double s = 0.8, x = 0.585;
   const double cosine = std::sqrt(1 - s * s);
@@ -112,8 +112,8 @@ TEST(Splitting, EveryWavelengthIsRefractedForItself) {
   }
 }
 
-// A ball of dispersive, absorbing glass in a round room: the room of absorbing_ball_test.cpp, whose wall is B bright, and the
-// ball sends back the fraction T of what comes with the sine s: seen there it is T B.
+// A ball of dispersive, absorbing glass in the spherical room of absorbing_ball_test.cpp, whose wall has the radiance B. The
+// ball returns the fraction T of light that arrives with the sine s: its radiance there is T B.
 TEST(Splitting, AbsorbingGlassSeenAndLookedPast) {
   constexpr double b = 0.6, s = 0.5;
   const auto absorption = [](double l) { return 0.4 + 6 * (l - 360) / 470; };

@@ -1,8 +1,8 @@
-// What walks make up for, in media and past holes, by every strategy.
+// Transmittance and null scattering in the throughput of paths, by every strategy taken alone.
 //
-// A lamp, a floor and the lens within one absorbing medium: light that is scattered once goes from the lamp to a point of the
-// floor and on to the lens, and loses exp(-a s) on both ways, by every strategy of every renderer taken alone. The floor's
-// radiance is E / pi, E being an integral over the lamp.
+// A lamp, a floor and the lens are within one absorbing medium: light travels from the lamp to a point of the floor and on to
+// the lens, and is attenuated by exp(-a s) on both segments. Each strategy of each renderer, taken alone, must find it. The
+// floor's radiance is E / pi, where E is an integral over the lamp.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,10 +18,10 @@ constexpr double half = 0.5, lamp_half = 0.4, height = 1.2, lens_height = 0.7;
 
 double absorption(double l) { return 0.4 + 2 * (l - 360) / 470; }
 
-/// Mean Y over the floor's square, by midpoints of it, of the lamp and of the wavelengths.
+/// The mean Y over the floor's square, by the midpoint rule on the floor, the lamp and the wavelengths.
 double expected() {
   constexpr int n = 12, steps = 94;
-  std::vector<double> ways;  // their lengths, and what goes along them without absorption
+  std::vector<double> ways;  // lengths of the paths, and their contributions without absorption
   std::vector<double> parts;
   const auto at = [](int i, double h) { return h * (2 * (i + 0.5) / n - 1); };
   for (int i = 0; i < n * n; ++i)
@@ -73,8 +73,8 @@ TEST(StrategiesInMedia, EachAloneFindsTheLight) {
   }
 }
 
-// A white ball half of which is holes, in a white furnace: all that is seen from within is 1, however often a walk was let
-// through, or was not and had to be made up for.
+// A white ball half of whose surface is holes, in a white furnace: the radiance seen from within is 1, for any number of null
+// scatterings.
 TEST(StrategiesInMedia, AWhiteBallWithHolesInAFurnace) {
   const std::string objects =
       "Sphere { shader: MaskShader { shader: Lambertian { color: 1 }, opacity: 0.5 } }\n"

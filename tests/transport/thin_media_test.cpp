@@ -1,5 +1,5 @@
-// Media behind thin panes and other sheets, against closed forms, by every renderer that knows media; and which index lies
-// behind a boundary that refracts nothing. Each value is held to 0.5 % and to 4.5 standard errors (7e-6), with fixed seeds.
+// Media behind thin panes and other sheets, against closed forms, by every renderer that supports media; and the index behind a
+// boundary that does not refract. Each value is held to 0.5 % and to 4.5 standard errors (7e-6), with fixed seeds.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ struct Pane {
   double reflected, transmitted;
 };
 
-/// Of a clear pane, by Stokes' sums for each polarization: R' = 2 R / (1 + R), T' = (1 - R) / (1 + R), with Fresnel's R.
+/// A clear pane, by Stokes' sums for each polarization: R' = 2 R / (1 + R), T' = (1 - R) / (1 + R), with Fresnel's R.
 Pane pane(double cosine, double n) {
   const double inside = std::sqrt(1 - (1 - cosine * cosine) / (n * n));
   const double s = (cosine - n * inside) / (cosine + n * inside), p = (n * cosine - inside) / (n * cosine + inside);
@@ -35,7 +35,7 @@ Pane pane(double cosine, double n) {
   return sum;
 }
 
-/// Two panes with a medium between of which a passage leaves the part a, under even light of radiance 1 from both sides:
+/// Two panes with a medium between them of transmittance a per passage, under uniform light of radiance 1 from both sides:
 /// R' + T'^2 a (1 + R' a + (R' a)^2 + ...). Within a sphere all passages are alike as well.
 double between_panes(double cosine, double n, double a) {
   const Pane one = pane(cosine, n);
@@ -61,7 +61,7 @@ TEST(ThinMedia, AnAbsorbingBallBehindAThinPane) {
   }
 }
 
-// Straight on, without the pane's reflections: the same however light comes there.
+// A slab at normal and at oblique incidence.
 TEST(ThinMedia, AnAbsorbingSlabOnAndOffTheNormal) {
   const std::string slab =
       "Box { size: [400, 400, 0.5], shader: ThinDielectric { ior: 1.5 }, interior: HomogeneousVolume { absorption: 1.2 } }\n";
@@ -75,8 +75,8 @@ TEST(ThinMedia, AnAbsorbingSlabOnAndOffTheNormal) {
   }
 }
 
-// What the sun sends through a slab of coloured panes that mirror nothing, on a matt plate: shadow rays, light paths to the
-// lens, and connections. A passage of a pane leaves 0.8^(1/cos), the medium exp(-0.6 / cos).
+// Sunlight through a slab of coloured panes that do not reflect, on a diffuse plate: by shadow rays, by light subpaths
+// connected to the lens, and by connections. A pane transmits 0.8^(1/cos), the medium exp(-0.6 / cos).
 TEST(ThinMedia, SunThroughColouredPanes) {
   const double sine = 0.6, cosine = 0.8;
   const std::string objects = fmt::format(
@@ -92,7 +92,7 @@ TEST(ThinMedia, SunThroughColouredPanes) {
     expect(r, camera, objects, expected, "sun");
 }
 
-// Nothing is absorbed: all of what comes in goes out, whatever happens inside.
+// Without absorption all incoming light leaves again, whatever happens inside.
 TEST(ThinMedia, AFurnaceStaysOneWithFogBehindSheets) {
   for (const char* shader : {"ThinDielectric { ior: 1.5 }", "DiffuseTransmitter { reflectance: 0.4, transmittance: 0.6 }",
                              "MixShader { first: ThinDielectric { ior: 1.5 }, second: Lambertian { color: 1 } }"})
@@ -103,7 +103,7 @@ TEST(ThinMedia, AFurnaceStaysOneWithFogBehindSheets) {
              shader);
 }
 
-// The same light through paper, once with fog behind it that takes all of it: what is left is what paper reflects.
+// Paper around soot that absorbs all light: only the paper's reflection is seen.
 TEST(ThinMedia, PaperBoundsTheMediumItsObjectNames) {
   const std::string camera = "PerspectiveCamera { from: [0, 0, 4], to: [0, 0, 0], fov: 5 deg }";
   const std::string ball = "Sphere { shader: DiffuseTransmitter { reflectance: 0.3, transmittance: 0.7 }";
@@ -111,10 +111,10 @@ TEST(ThinMedia, PaperBoundsTheMediumItsObjectNames) {
     expect(r, camera, ball + ", interior: HomogeneousVolume { absorption: 1000 } }\n" + sky, 0.3, "soot");
 }
 
-// Paper around an absorber. Light that paper lets in is diffuse; of what its inner side sends out a part m comes to its inner
-// side again, so that from outside R + T^2 m (1 + R m + (R m)^2 + ...) is seen. In a ball of radius 1 all chords are 2 cos:
+// Paper around an absorber. Paper transmits light diffusely; a fraction m of the light from its inner side arrives at the inner
+// side again, so R + T^2 m (1 + R m + (R m)^2 + ...) is seen from outside. In a ball of radius 1 all chords are 2 cos:
 // m = integral of exp(-2 a cos) 2 cos dcos = 2 (1 - (1 + 2 a) exp(-2 a)) / (2 a)^2. Between two sheets at the distance d it is
-// twice the exponential integral E3(a d), and what crosses is scattered through to the other side as well.
+// twice the exponential integral E3(a d), and light that crosses is transmitted diffusely to the other side as well.
 TEST(ThinMedia, PaperAroundAnAbsorber) {
   const double R = 0.3, T = 0.6;
   const std::string paper = "shader: DiffuseTransmitter { reflectance: 0.3, transmittance: 0.6 }";
@@ -138,7 +138,7 @@ TEST(ThinMedia, PaperAroundAnAbsorber) {
            R + T * T * m / (1 - R * m), "slab");
 }
 
-// Without an interior a pane bounds nothing: the fog around goes on inside. Of a glass ball in its place it would not.
+// A thin pane without an interior bounds no medium: the fog around it continues inside. A solid glass ball would exclude it.
 TEST(ThinMedia, AThinBubbleIsFullOfWhatIsAround) {
   const std::string camera = "PerspectiveCamera { from: [0, 0, 1.9], to: [0, 0, 0], fov: 1 deg }";
   const std::string fog = "Sphere { radius: 2, shader: PassThrough {}, interior: HomogeneousVolume { absorption: 0.5 } }\n";
@@ -154,8 +154,8 @@ TEST(ThinMedia, TheCameraMayStandBehindThePane) {
            0.9 * std::exp(-0.5), "inside");
 }
 
-// A boundary that bends no light has one index on both sides. Glass in a cloud in glass is glass throughout: of a lamp in the
-// middle (1 - R) / n^2 is seen, R = 0.04.
+// A boundary that does not refract has the same index on both sides. Glass in a cloud in glass is glass throughout: of a lamp
+// in the middle (1 - R) / n^2 is seen, R = 0.04.
 TEST(ThinMedia, WhatRefractsNothingHasTheIndexOfWhatIsAround) {
   for (const char* cloud : {"shader: PassThrough {}", "shader: MaskShader { shader: Lambertian {}, opacity: 0 }",
                             "shader: ThinDielectric { ior: 1.5 }, interior: HomogeneousVolume {}"})
@@ -170,7 +170,7 @@ TEST(ThinMedia, WhatRefractsNothingHasTheIndexOfWhatIsAround) {
              0.96 / 2.25, cloud);
 }
 
-// A pane that lies on water, in one place with its surface: light goes through both.
+// A pane that coincides with the surface of a medium: light passes both.
 TEST(ThinMedia, APaneOnTheFaceOfAMedium) {
   const std::string objects =
       "Box { size: [2, 2, 2], shader: PassThrough {}, interior: HomogeneousVolume { absorption: 0.5 } }\n"

@@ -1,5 +1,5 @@
-// Cases in which connections of paths went wrong once: all ways to find light must find the same. Fixed seeds; each
-// comparison is held to 4.5 standard errors of its difference, taken from renders with different seeds.
+// Cases in which connections of paths were once wrong: all strategies must agree. Fixed seeds; each comparison is held to 4.5
+// standard errors of its difference, taken from renders with different seeds.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ Estimate estimate(const std::string& renderer, int samples, const std::string& c
   return {sum, std::sqrt(std::max(0.0, squares - sum * sum) / (runs - 1))};
 }
 
-/// All given renderers against the first; differences of `notice`, relative, must be visible.
+/// Compares all renderers with the first; a relative difference of `notice` must be detectable.
 void agree(const std::vector<std::string>& renderers, int samples, const std::string& camera, const std::string& objects,
            double notice = 0.03) {
   const Estimate a = estimate(renderers[0], samples, camera, objects);
@@ -49,7 +49,7 @@ const std::string floor_plate =
 const std::string path = "PathTracer { max_depth: 6", unlit = "PathTracer { max_depth: 6, next_event: false",
                   both = "BidirectionalPathTracer { max_depth: 6", light = "LightTracer { max_depth: 6";
 
-// A shade a tenth of a millimetre below a lamp, three metres up: shadow rays must not end before it.
+// An opaque sheet a tenth of a millimetre below a lamp, at a height of three metres: shadow rays must not end before it.
 TEST(Transport, ShadesCloseToLampsShade) {
   const std::string lamp =
       "Rectangle { corner: [-0.4, 3, -0.4], edge_u: [0.8, 0, 0], edge_v: [0, 0, 0.8], emission: DiffuseEmission { radiance: "
@@ -60,7 +60,7 @@ TEST(Transport, ShadesCloseToLampsShade) {
   agree({path, both, light}, 512, camera, floor_plate + lamp, 0.06);
 }
 
-// A luminaire whose surface light passes straight through, filled with a medium or not.
+// A luminaire with a null-scattering surface, filled with a medium.
 TEST(Transport, LuminairesThatLightPassesThrough) {
   const std::string ball =
       "Sphere { radius: 0.6, shader: PassThrough {}, emission: DiffuseEmission { radiance: 1, sides: both }, interior: "
@@ -68,7 +68,7 @@ TEST(Transport, LuminairesThatLightPassesThrough) {
   agree({path, unlit, both, light}, 256, camera, floor_plate + ball, 0.04);
 }
 
-// An invisible sheet in fog bounds nothing.
+// A null-scattering sheet in fog bounds no medium.
 TEST(Transport, OpenSheetsInFogChangeNothing) {
   const std::string fog =
       "Sphere { radius: 2, shader: PassThrough {}, interior: HomogeneousVolume { scattering: 0.5 } }\n"
@@ -106,8 +106,8 @@ TEST(Transport, DepthIsMeasuredFromTheCameraThroughBoundaries) {
   }
 }
 
-// Hair is not reciprocal, and light that goes through a round hair passes its wall on one way only: walks from lamps carry the
-// adjoint. One lamp is behind, so that most of what is seen went through, and one in a hair.
+// Hair is not reciprocal, and light that crosses a round hair passes its wall in one direction only: light subpaths use the
+// adjoint. One lamp is behind the hair, so that most of the seen light was transmitted, and one is inside a hair.
 TEST(Transport, HairFromBothEnds) {
   const std::string behind = "Sphere { centre: [1.2, 1.6, 0.9], radius: 0.5, emission: DiffuseEmission { radiance: 10 } }\n";
   const std::string within = "Sphere { centre: [0.3, -0.4, 0], radius: 0.12, emission: DiffuseEmission { radiance: 10 } }\n";
@@ -140,7 +140,8 @@ TEST(Transport, WhatCannotBeFoundIsRefused) {
   };
   EXPECT_NE(refused("Sphere { emission: EnvironmentEmission { radiance: 1 } }").find("belongs on an Environment"),
             std::string::npos);
-  EXPECT_EQ(refused("BruteForceScene { objects: [ Point { emission: DiffuseEmission {} } ] }"), "");  // found in its place
+  EXPECT_EQ(refused("BruteForceScene { objects: [ Point { emission: DiffuseEmission {} } ] }"),
+            "");  // luminaires in nested scenes are found
 }
 
 }  // namespace

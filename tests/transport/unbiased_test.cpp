@@ -1,10 +1,10 @@
-// Whether expectations are the truth at any number of samples: for every renderer, map and film filter. Pictures of 1, 4 and
-// 16 samples a pixel are compared with means in closed form, or with what plain surfaces show by the same renderer.
+// Whether the expectation is right at any number of samples: for every renderer, map and film filter. Images of 1, 4 and 16
+// samples a pixel are compared with means in closed form, or with uniform surfaces rendered by the same renderer.
 //
-// The board. A checkerboard, or zigzag, is seen straight from above by parallel rays, its squares 1.25 pixels wide, so that
-// everything repeats after 5 pixels: pixels with equal remainders are independent trials of one experiment, 400 of each in
-// a picture of 100 x 100. Seeds are fixed. With the bounds below, five standard errors of normal means, a sound program has a
-// chance of about 1 in 1000 to fail any of all these comparisons together.
+// The board. A checkerboard, or zigzag, is seen from above by parallel rays. Its squares are 1.25 pixels wide, so the image
+// repeats after 5 pixels: pixels with equal remainders are independent trials of one experiment, 400 of each in an image of
+// 100 x 100. Seeds are fixed. With the bounds below, five standard errors of normal means, the probability that a correct
+// program fails in any of all these comparisons is about 1 in 1000.
 
 #include <fmt/format.h>
 
@@ -42,7 +42,7 @@ Image render(const std::string& renderer, const std::string& members, int sample
   return done->picture();
 }
 
-/// Built-in renderers that this scene, its camera of parallel rays and its light without extent are for.
+/// The built-in renderers that support this scene, an orthographic camera and a delta light.
 std::vector<std::string> renderers_for_it() {
   std::vector<std::string> names;
   for (const ClassInfo* info : Registry::instance().subclasses(*Registry::instance().find("Renderer"))) {
@@ -50,7 +50,7 @@ std::vector<std::string> renderers_for_it() {
     try {
       render(info->name, "", 1, "Lambertian { color: 0.5 }", 1);
       names.push_back(info->name);
-    } catch (const Error&) {  // it says what it needs
+    } catch (const Error&) {  // the renderer does not support the scene
     }
   }
   EXPECT_GE(names.size(), 14u);
@@ -69,7 +69,7 @@ struct Mean {
   double variance() const { return std::max(0.0, squares / count - mean() * mean()) / (count - 1); }
 };
 
-/// Y of pixels with equal remainders, those near the picture's border left out.
+/// The means of Y over pixels with equal remainders, without those near the border of the image.
 std::vector<Mean> by_place(const Image& image) {
   std::vector<Mean> means(size_t(period * period));
   constexpr int margin = 5;
@@ -88,7 +88,7 @@ Mean of_all(const Image& image) {
   return mean;
 }
 
-/// Whether a film point lies on `second`: u = 0.25 + x / 200 and v = 0.75 - y / 200, of which `repeat` is 160.
+/// Whether a film point lies on a square of `second`: u = 0.25 + x / 200 and v = 0.75 - y / 200, times `repeat`, 160.
 bool on_second(double x, double y) {
   const auto square = [](double at) { return int(std::floor(at)) & 1; };
   return (square(40 + x / 1.25) ^ square(120 - y / 1.25)) != 0;
@@ -96,8 +96,8 @@ bool on_second(double x, double y) {
 /// Whether the zigzag of period 2.5 pixels along u rises there.
 bool rising(double x, double) { return x / 2.5 - std::floor(x / 2.5) < 0.5; }
 
-/// The part of what a pixel's filter sees that lies where `inside` says. Borders lie on eighths of pixels, so that sums over
-/// 64ths are exact but for the filter's own curvature.
+/// The fraction of a pixel's filter where `inside` is true. Borders lie on eighths of pixels, so that sums over 64ths are exact
+/// except for the curvature of the filter.
 template <class Inside>
 double share(const Filter* filter, int px, int py, Inside inside) {
   constexpr double step = 1.0 / 64;
@@ -131,7 +131,7 @@ std::vector<Experiment> experiments() {
     return "BumpShader { shader: Lambertian { color: 0.8 }, height: FormulaMap { formula: \"" + formula + "\" } }";
   };
   const auto plain = [](const char* shader, double a) { return fmt::format(fmt::runtime(shader), a); };
-  // u has 2 m, a tooth is 0.0125 u long and half as long on each side: slopes of +- 0.5
+  // u spans 2 m, a tooth is 0.0125 u long, and each of its sides is half as high as wide: slopes of +- 0.5
   return {{"color", board(diffuse, 0.02, 0.9), plain(diffuse, 0.02), plain(diffuse, 0.9), on_second},
           {"roughness", board(metal, 0.15, 0.6), plain(metal, 0.15), plain(metal, 0.6), on_second},
           {"opacity", board(mask, 0.0, 0.9), plain(mask, 0), plain(mask, 0.9), on_second},
@@ -141,8 +141,8 @@ std::vector<Experiment> experiments() {
 TEST(Unbiased, EveryRendererAtAnyNumberOfSamples) {
   int seed = 1;
   for (const std::string& name : renderers_for_it()) {
-    // Pixels that share wavelengths, photons or chains err together: their spread does not tell by how much. What such
-    // renderers ask maps is what the others ask (MapsAreFilteredOnRequestByOneWidth).
+    // For renderers whose pixels share wavelengths, photons or chains, the variance between pixels does not give the error.
+    // Such renderers evaluate maps as the others do (MapsAreFilteredOnRequestByOneWidth).
     if (load_job_text(job_text(name + " {}", "PerspectiveCamera {}", 1, ""), "")->renderer->estimator() !=
         Estimator::independent)
       continue;
@@ -165,7 +165,7 @@ TEST(Unbiased, EveryRendererAtAnyNumberOfSamples) {
 }
 
 TEST(Unbiased, EveryFilmFilterForCameraSamplesAndSplats) {
-  // The table of a filter's weights is exact to about 1e-3 of what it sees.
+  // The table of a filter's weights is exact to about 1e-3.
   const std::string mixed = fmt::format("Lambertian {{ color: {} }}", fmt::format(fmt::runtime(board_of), 0.02, 0.9));
   int seed = 1000;
   for (const char* renderer : {"PathTracer", "LightTracer", "BidirectionalPathTracer"}) {
@@ -184,8 +184,8 @@ TEST(Unbiased, EveryFilmFilterForCameraSamplesAndSplats) {
   }
 }
 
-// On the film alone, up to its border: half of it is bright, and what a pixel is to show is the mean of that by the part of its
-// filter that lies on the film. Whatever the number of samples, and when pixels have different numbers of them.
+// The film alone, up to its border: a part of it is bright, and the expected pixel is the mean of that, weighted with the part
+// of its filter that lies on the film, for any number of samples, and for different numbers in different pixels.
 TEST(Unbiased, TheFilmAtItsBorder) {
   const Wavelengths w = wavelengths();
   const Xyz unit = to_xyz(Spectrum(1.0f), w);
@@ -224,7 +224,7 @@ TEST(Unbiased, TheFilmAtItsBorder) {
         }
         for (int i = 0; i < size * size; ++i) {
           const int px = i % size, py = i / size;
-          // Beside the film there is nothing: light and density of samples.
+          // Outside of the film there are no light and no samples.
           const auto pdf = [&](double x, double y) {
             if (!(x >= 0 && x < size && y >= 0 && y < size)) return 0;
             return samples > 0 ? 1 : 1 + 2 * ((int(x) + int(y)) & 1);
@@ -245,7 +245,7 @@ TEST(Unbiased, TheFilmAtItsBorder) {
       }
 }
 
-/// What footprints a map is asked with.
+/// Records the smallest and largest footprint with which a map is evaluated.
 class FootprintProbe final : public ObjectMap {
  public:
   static void describe(Description<FootprintProbe>& d) { d.summary("For tests: notes what footprints it is asked with."); }
@@ -264,7 +264,7 @@ class FootprintProbe final : public ObjectMap {
   static inline std::atomic<float> least = infinity, most = -1.0f;
 };
 
-/// What is written for a renderer to average maps: a member of its own, or of the renderer inside. Empty: it has none.
+/// The text that sets map_filter, as a member of the renderer or of its inner renderer. Empty: it has no such member.
 std::string with_map_filter(const ClassInfo& renderer, const std::string& pixels) {
   if (renderer.find("map_filter")) return "map_filter: " + pixels;
   const Member* inner = renderer.find("inner");
@@ -276,16 +276,16 @@ std::string with_map_filter(const ClassInfo& renderer, const std::string& pixels
 TEST(Unbiased, MapsAreFilteredOnRequestByOneWidth) {
   if (!Registry::instance().find("FootprintProbe")) static const Register<FootprintProbe> registered;
   const std::string shader = "Lambertian { color: FootprintProbe {} }";
-  // A lamp and a mirror, so that maps are also met later than first.
+  // A mirror, so that maps are also evaluated at later vertices.
   const std::string more =
       "Rectangle { corner: [-1, -1, 6], edge_u: [0, 2, 0], edge_v: [2, 0, 0], shader: PerfectSpecular {} }";
-  // Walks from luminaires ask for maps as they are.
+  // Light subpaths evaluate maps without a filter.
   const std::vector<std::string> from_both_ends = {
       "BidirectionalPathTracer", "InstantRadiosity",       "ManyLights",
       "MultiplexedMetropolis",   "PhotonMapper",           "PrimarySampleMetropolis",
       "ProgressivePhotonMapper", "VertexConnectionMerging"};
   for (const std::string& name : renderers_for_it()) {
-    if (name == "AmbientOcclusionRenderer") continue;  // looks at no map
+    if (name == "AmbientOcclusionRenderer") continue;  // evaluates no map
     const std::string show = name == "FeatureRenderer" ? ", feature: albedo" : "";
     FootprintProbe::clear();
     render(name, show, 2, shader, 1, "BoxFilter {}", more);
@@ -297,7 +297,7 @@ TEST(Unbiased, MapsAreFilteredOnRequestByOneWidth) {
     for (const int samples : {1, 3}) {
       FootprintProbe::clear();
       render(name, show + ", " + filtered, samples, shader, 1, "BoxFilter {}", more);
-      // Of a camera of parallel rays it is as wide everywhere.
+      // With an orthographic camera the footprint is the same everywhere.
       EXPECT_FLOAT_EQ(FootprintProbe::most, 1.5f / side) << name;
       const bool from_lights = std::ranges::find(from_both_ends, name) != from_both_ends.end();
       EXPECT_FLOAT_EQ(FootprintProbe::least, from_lights ? 0 : 1.5f / side) << name;
@@ -322,7 +322,7 @@ TEST(Unbiased, FilteringIsNamedAsABias) {
   EXPECT_NE(member->text.find("bias"), std::string::npos);
 }
 
-/// A map of each class, with edges where it has none of its own: the first map it is made from is a checkerboard.
+/// A map of each class, with edges. If it has none of its own, the first map it is made from is a checkerboard.
 std::string map_text(const ClassInfo& info, const std::string& image) {
   const std::map<std::string, std::string> own = {
       {"ImageMap", fmt::format("file: \"{}\", interpolation: \"nearest\"", image)},
@@ -334,7 +334,7 @@ std::string map_text(const ClassInfo& info, const std::string& image) {
       {"TransformedMap", "transform: rotate(20 deg, [0, 0, 1])"}};
   std::string text = info.name + " { ";
   if (const auto found = own.find(info.name); found != own.end()) text += found->second + ", ";
-  bool made = info.name == "CheckerMap";  // the first part; others stay as they are, or patterns of them would not show
+  bool made = info.name == "CheckerMap";  // only the first part; with all parts replaced, patterns would not show
   for (const Member& m : info.members) {
     const bool said = text.find(" " + m.name + ":") != std::string::npos;
     if (m.kind == Kind::component && !m.list && m.component_class == "ObjectMap" && !said && !made) {
@@ -349,9 +349,9 @@ std::string map_text(const ClassInfo& info, const std::string& image) {
 }
 
 TEST(Unbiased, EveryMapAtAnyNumberOfSamples) {
-  const ImageFile image("board.exr", {4, 4, 1, NumberType::single}, {0, 1, 0, 1, 1, 0, 1, 0, 0, 1, 0, 1, 1, 0, 1, 0});
+  const ImageFile image("board.exr", {4, 4, 1, NumberType::hero_only}, {0, 1, 0, 1, 1, 0, 1, 0, 0, 1, 0, 1, 1, 0, 1, 0});
   constexpr int size = 20, fine = 32;
-  // Squared, the mean of the map would not do; it is the part of light that a surface does not let through.
+  // The map is squared, so that using the mean of the map would be wrong; it is the opacity of a surface.
   const auto job_with = [&](const std::string& opacity, int samples, int seed) {
     return load_job_text(fmt::format(R"(Job {{ seed: {}, renderer: PathTracer {{ samples: {} }}
           camera: OrthographicCamera {{ from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], width: 1 }}
@@ -377,7 +377,7 @@ TEST(Unbiased, EveryMapAtAnyNumberOfSamples) {
     prepare_tree(*job);
     const Ref<ObjectMap> map = ref_cast<ObjectMap>(parse_component(opacity, "map"));
     prepare_tree(*map);
-    // The truth, by stratified points of every pixel, seen without a footprint.
+    // The expected value, from stratified points in every pixel, without a footprint.
     Random random(5);
     std::vector<double> truth(size * size), squares(size * size);
     double least = 1, greatest = 0;
@@ -408,15 +408,15 @@ TEST(Unbiased, EveryMapAtAnyNumberOfSamples) {
       }
       double statistic = 0;
       for (size_t i = 0; i < means.size(); ++i) {
-        // Of single samples, by what the map does in the pixel and the wavelengths; well spread samples have less. The truth
-        // itself is known to half a percent.
+        // The variance of independent samples, from the map's variation in the pixel and from the wavelengths; stratified
+        // samples have less. The expected value itself is known to half a percent.
         const double of_map = std::max(0.0, squares[i] - truth[i] * truth[i]) * white.mean() * white.mean();
         const double variance = (of_map + squares[i] * white.variance() * white.count) / (samples * trials);
         const double known = (0.005 * (greatest - least) + 1e-3) * white.mean();
         const double off = means[i].mean() - truth[i] * white.mean();
         statistic += off * off / (variance + known * known);
       }
-      // Squares of nearly normal numbers: mean 1, variance 2 and somewhat more, as some are means of few rare values.
+      // Squares of nearly normal numbers: mean 1, variance 2 and somewhat more, since some are means of few rare values.
       constexpr double n = size * size;
       EXPECT_LT(statistic, n + significant * std::sqrt(3 * n)) << info->name << ", " << samples << " samples";
     }
@@ -424,7 +424,7 @@ TEST(Unbiased, EveryMapAtAnyNumberOfSamples) {
   EXPECT_GE(varying, 25u);  // maps that had something to show
 }
 
-// Ripples of slope cos(2 pi k u) / 2, as fine as a thousandth of the surface, tilt the normal by that slope.
+// Ripples of slope cos(2 pi k u) / 2, as fine as a thousandth of the surface, tilt the shading normal by that slope.
 TEST(Unbiased, SlopesOfFineBumps) {
   for (const int k : {1, 30, 1000}) {
     const Ref<ObjectMap> height =

@@ -1,4 +1,4 @@
-// Media that differ from place to place, whose transmittance is known.
+// Heterogeneous media with known transmittance.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace etendue {
 namespace {
 
-/// Extinction grows along the object's own z: s(z) = low + slope z [1/m]; isotropic.
+/// A medium whose extinction grows along z of object space: s(z) = low + slope z [1/m]; isotropic.
 class RampVolume final : public VolumeShader {
  public:
   static void describe(Description<RampVolume>& d) {
@@ -38,10 +38,12 @@ class RampVolume final : public VolumeShader {
   float low = 0, slope = 1, top = 1, albedo = 0, glow = 0;
 };
 
-void register_ramp() { static const Register<RampVolume> registered; }  // once a test runs: others go through all classes
+void register_ramp() {
+  static const Register<RampVolume> registered;
+}  // only once a test runs: other tests go through all classes
 
-/// A box of 4 m by 4 m by 2 m around the origin of the world, turned and moved: its own z goes along the world's x, from -1 to
-/// 1, in its own units of 2 m.
+/// A box of 4 m by 4 m by 2 m around the origin of world space, rotated and translated: its object-space z points along the
+/// world's x, from -1 to 1, in units of 2 m.
 std::string box(const std::string& volume) {
   return "Box { centre: [0, 0, 0.5], size: [2, 2, 1], shader: PassThrough {}, interior: RampVolume { " + volume +
          " }, transform: translate([-1, 0, 0] m) * rotate(90 deg, \"y\") * scale(2) }\n";
@@ -81,9 +83,9 @@ const char* const plate_behind =
     "sides: "
     "both } }";
 
-// Along x the optical depth is the integral of the ramp over the own z, in the scene's metres: its 2 m are z from 0 to 1, so
-// 2 (low + slope / 2). T = exp(-2 (0.3 + 0.9 / 2)) = exp(-1.5); half of it, from the middle of the box on the dense side, would
-// be exp(-(0.3 + 0.9 * 0.75)).
+// Along x the optical depth is the integral of the ramp over object-space z, in metres of the world: 2 m are z from 0 to 1, so
+// it is 2 (low + slope / 2). T = exp(-2 (0.3 + 0.9 / 2)) = exp(-1.5); for half of it, from the middle of the box on the dense
+// side, exp(-(0.3 + 0.9 * 0.75)).
 TEST(UnevenMedia, LetThroughWhatTheIntegralSays) {
   register_ramp();
   const std::string medium = box("low: 0.3, slope: 0.9, top: 1");
@@ -91,7 +93,7 @@ TEST(UnevenMedia, LetThroughWhatTheIntegralSays) {
        {"PathTracer {}", "PathTracer { next_event: false }", "BidirectionalPathTracer {}", "LightTracer {}"}) {
     const int samples = std::string(renderer).starts_with("Light") ? 4096 : 256;
     expect(picture_mean(renderer, samples, "[3, 0, 0]", "[0, 0, 0]", medium + plate_behind), std::exp(-1.5), renderer);
-    // From the middle, looking to the dense end and past it: what lies there is lit through 0.5 <= z <= 1.
+    // From the middle, looking to the dense end and beyond: the plate there is seen through 0.5 <= z <= 1.
     const char* const ahead =
         " Rectangle { corner: [3, -0.4, -0.4], edge_u: [0, 0.8, 0], edge_v: [0, 0, 0.8], emission: DiffuseEmission { radiance: "
         "1, "
@@ -100,20 +102,20 @@ TEST(UnevenMedia, LetThroughWhatTheIntegralSays) {
   }
 }
 
-// Shadow rays go through it as camera rays do: a matt plate under a distant lamp on the other side.
+// Shadow rays are attenuated as camera rays are: a diffuse plate under a distant light on the other side.
 TEST(UnevenMedia, DimsWhatIsLitThroughIt) {
   register_ramp();
   const std::string scene =
       box("low: 0.3, slope: 0.9, top: 1") +
       " Rectangle { corner: [-1.5, -40, -40], edge_u: [0, 80, 0], edge_v: [0, 0, 80], shader: Lambertian { color: 0.5 } }\n"
       " Distant { direction: [-1, 0, 0], emission: DiffuseEmission { radiance: 1 } }";
-  // Seen from the far side of the plate's front, aslant under the box, where nothing lies between.
+  // The camera is between the box and the plate, with no medium in between.
   const double known = 0.5 / M_PI * std::exp(-1.5);
   for (const char* renderer : {"PathTracer {}", "BidirectionalPathTracer {}"})
     expect(picture_mean(renderer, 1024, "[-1.2, 0, 0]", "[-1.5, 0, 0]", scene), known, renderer);
 }
 
-// What scatters all light and absorbs none cannot be seen in even light.
+// A medium that scatters without absorption is invisible in uniform light.
 TEST(UnevenMedia, WithoutAbsorptionVanishInAFurnace) {
   register_ramp();
   const std::string scene =
@@ -130,7 +132,7 @@ TEST(UnevenMedia, ShineAsTheyAreDense) {
     expect(picture_mean(renderer, 1024, "[3, 0, 0]", "[0, 0, 0]", scene), 2 * (1 - std::exp(-1.5)), renderer);
 }
 
-// Scattered light: all algorithms that claim such media find the same.
+// Multiple scattering: all algorithms that support such media agree.
 TEST(UnevenMedia, ScatterTheSameForAllAlgorithms) {
   register_ramp();
   const std::string scene = box("low: 0.1, slope: 1.5, top: 1, albedo: 0.8") +
@@ -155,7 +157,7 @@ TEST(UnevenMedia, AreRefusedWhereTheyCannotBeRendered) {
   } catch (const std::exception& e) {
     EXPECT_NE(std::string(e.what()).find("differs from place to place"), std::string::npos) << e.what();
   }
-  // Renderers that know nothing of media say so.
+  // Renderers that do not support media report it.
   const Ref<Job> job = load_job_text(
       "Job { camera: OrthographicCamera {}, scene: EmbreeScene { objects: [ " + box("low: 1") + " ] } }", "ramp.etd");
   prepare_tree(*job);

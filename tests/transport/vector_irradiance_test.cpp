@@ -1,6 +1,6 @@
-// Points on lamps as seen from close by, to 0.05 %: the sum of their directions over their densities is the integral of the
-// direction over the lamp's solid angle, which has closed forms. Of a polygon (Lambert 1760; Arvo 1994) it is half the sum over
-// its edges of the angle under which an edge is seen, times the unit normal of the plane through edge and eye; of a ball, pi
+// Samples of points on nearby lamps, to 0.05 %: the sum of their directions over their pdfs is the integral of the direction
+// over the lamp's solid angle, which has closed forms. For a polygon (Lambert 1760; Arvo 1994) it is half the sum over its
+// edges of the angle under which an edge is seen, times the unit normal of the plane through edge and eye; for a sphere, pi
 // times the squared sine of the angle of its radius, towards its centre.
 
 #include "support/geometry_support.h"

@@ -1,5 +1,5 @@
-// Objects that the camera does not see: their light, their shadows and their images in mirrors have known sizes, and nothing is
-// seen of themselves, whichever way paths are built.
+// Objects with visible_to_camera: false. Their light, their shadows and their mirror images agree with closed forms, and they
+// are not seen themselves, for every renderer.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,14 +9,14 @@
 namespace etendue::closed_form {
 namespace {
 
-/// Irradiance at the distance r from the axis of a disc of radius R and radiance 1 that faces it from height h (Howell, "A
-/// catalog of radiation heat transfer configuration factors", B-12).
+/// Irradiance at the distance r from the axis of a disc of radius R and radiance 1 that faces the receiver from height h
+/// (Howell, "A catalog of radiation heat transfer configuration factors", B-12).
 double irradiance_by_disc(double r, double radius, double h) {
   const double a = r * r + h * h, b = radius * radius;
   return exact_pi / 2 * (1 - (a - b) / std::sqrt((a + b) * (a + b) - 4 * b * r * r));
 }
 
-/// Its mean over the square of half a side `half` around the axis.
+/// Its mean over the square of half width `half` around the axis.
 double mean_by_disc(double half, double radius, double h) {
   constexpr int steps = 200;
   double sum = 0;
@@ -32,7 +32,7 @@ std::vector<Row> rows() {
   const std::string two = "max_depth: 2", three = "max_depth: 3";
   std::vector<Row> all;
 
-  // Between the camera and a matt plate, whole and before all that is seen.
+  // An unseen lamp between the camera and a diffuse plate, covering the whole view.
   all.push_back({"DiscBefore",
                  square("[0, 0, 5]", "[0, 0, 0]", 1),
                  plate(4, 0, "shader: Lambertian { color: 0.5 }") + disc,
@@ -48,19 +48,19 @@ std::vector<Row> rows() {
                   {"DirectRenderer", "", 64},
                   {"PrimarySampleMetropolis", "inner: PathTracer { max_depth: 2 }", 1024},
                   {"MultiplexedMetropolis", two, 1024}}});
-  // The same seen from a place, which chains of paths need.
+  // The same with a perspective camera, which PathSpaceMetropolis needs.
   all.push_back({"DiscBeforeAPinhole",
                  "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], focal_length: 5, sensor_size: 1 }",
                  plate(4, 0, "shader: Lambertian { color: 0.5 }") + disc,
                  0.5 / exact_pi * mean_by_disc(0.5, 1, 1),
                  {{"BidirectionalPathTracer", two, 32}, {"PathSpaceMetropolis", two, 1024}}});
-  // What lets all light pass does not make the disc behind it seen either.
+  // A null-scattering pane in front of the disc does not make it visible.
   all.push_back({"DiscBehindAPane",
                  square("[0, 0, 5]", "[0, 0, 0]", 1),
                  plate(4, 0, "shader: Lambertian { color: 0.5 }") + plate(4, 3, "shader: PassThrough {}") + disc,
                  0.5 / exact_pi * mean_by_disc(0.5, 1, 1),
                  {{"PathTracer", two, 64}, {"BidirectionalPathTracer", two, 32}, {"LightTracer", two, 1024}}});
-  // A plate on a quarter of the picture, in even light from all around: the rest is black.
+  // A plate on a quarter of the image, in uniform light from all directions: the rest is black.
   all.push_back({"Environment",
                  square("[0, 0, 5]", "[0, 0, 0]", 2),
                  plate(0.5, 0, "shader: Lambertian { color: 0.5 }") +
@@ -74,7 +74,7 @@ std::vector<Row> rows() {
                   {"DirectRenderer", "", 128},
                   {"PrimarySampleMetropolis", "inner: PathTracer { max_depth: 2 }", 1024},
                   {"MultiplexedMetropolis", two, 1024}}});
-  // The camera looks through it into a mirror, which shows it.
+  // The camera looks through the unseen disc into a mirror, which shows the disc.
   all.push_back({"InAMirror",
                  square("[0, 0, 5]", "[0, 0, 0]", 0.5),
                  plate(400, 0, "shader: PerfectSpecular { color: 1 }") + disc,
@@ -84,7 +84,7 @@ std::vector<Row> rows() {
                   {"WhittedRenderer", three, 4},
                   {"DistributionRenderer", three, 4},
                   {"DirectRenderer", "", 4}}});
-  // A wall in the way of half of the light and of half of the view.
+  // An unseen wall that blocks half of the light, and would block half of the view.
   all.push_back({"Shadow",
                  square("[0, 0, 9]", "[0, 0, 0]", 1),
                  plate(4, 0, "shader: Lambertian { color: 0.5 }") +

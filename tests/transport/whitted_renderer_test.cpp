@@ -15,12 +15,12 @@ TEST(WhittedRenderer, PlaneUnderLightsWithoutExtent) {
   };
   expect_flat(value(distant(0, 0, -1)), 0.159155f);
   expect_flat(value(distant(1, 0, -1)), 0.159155f * std::sqrt(0.5f));
-  // Of both and of a point, each in full: nothing is chosen. E = I cos / d^2 = 6 (1/2^0.5) / 8.
+  // Two distant lights and a point light, each in full: none is sampled. E = I cos / d^2 = 6 (1/2^0.5) / 8.
   const std::string all =
       distant(0, 0, -1) + "\n" + distant(1, 0, -1) + "\nPoint { position: [2,0,2], emission: DiffuseEmission { radiance: 6 } }";
   const float root = std::sqrt(0.5f);
   expect_flat(value(all), 0.159155f * (1 + root + 6 * root / 8));
-  // In the shadow of something, and of an area light, nothing.
+  // Zero in the shadow of an object, and under an area light.
   expect_flat(value(distant(1, 0, -1) + "\nSphere { centre: [-1,0,1], radius: 0.1 }"), 0);
   expect_flat(value("Sphere { centre: [0,3,3], radius: 1, emission: " + lit + " }"), 0);
 }
@@ -37,7 +37,8 @@ TEST(WhittedRenderer, LambertSphereFromAfar) {  // the mean over its disc is (2/
   }
 }
 
-// (1-R)^2 R^(n-3) of the lower one for n = 3, 5, …, and of the upper one R for n = 2 and (1-R)^2 R^(n-3) for n = 4, 6, ….
+// The lower lamp by paths of n segments gives (1-R)^2 R^(n-3) for n = 3, 5, …; the upper one R for n = 2 and (1-R)^2 R^(n-3)
+// for n = 4, 6, ….
 TEST(WhittedRenderer, TreeOfAGlassSlab) {
   const std::string objects = slab + "Rectangle { corner: [-9,-9,-3], edge_u: [18,0,0], edge_v: [0,18,0], emission: " + lit +
                               " }\nRectangle { corner: [-9,-9,5], edge_u: [18,0,0], edge_v: [0,18,0], emission: "
@@ -69,8 +70,8 @@ TEST(WhittedRenderer, MirrorsShowLitSurfaces) {
   expect_flat(Ready(job_text(whitted(2), pinhole("[-1,0,1]", "[0,0,2]"), 1, objects)).sample(0, 0, 0).value, 0);
 }
 
-// Where there are only mirrors and glass it finds what a path tracer does, dispersion included; branches that are not
-// refracted keep their wavelengths.
+// Among mirrors and glass alone it agrees with a path tracer, dispersion included; branches that are not refracted keep their
+// wavelengths.
 TEST(WhittedRenderer, AgreesWithThePathTracerAmongMirrorsAndGlass) {
   const std::string objects = R"(
     Sphere { centre: [0,0,0], radius: 1, shader: Dielectric { ior: glass("N-SF11") } }

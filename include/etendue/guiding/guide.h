@@ -1,23 +1,23 @@
 #pragma once
-// Guide: what has been learned of where light comes from, at every place of a scene.
+// Guide: a learned distribution of the directions that light comes from, at every point of a scene (path guiding).
 //
-// Where a path goes on, a direction is chosen by the guide with probability a and by the scattering itself otherwise:
+// Where a path continues, its direction is sampled by the guide with probability a and by the scattering itself otherwise:
 //     p(w) = a p_guide(w) + (1 - a) p_scatter(w).
-// A binary tree divides space; each of its regions has lobes that point at places light comes from (lobe_mixture.h), and a.
-// Surfaces near one another that face different ways see different halves of the world, so there are seven such trees: one for
-// each axis that a surface may face along, either way, and one for points in media.
+// A binary tree divides space; each of its regions has a mixture of lobes that point at sources of light (lobe_mixture.h), and
+// its own a. Nearby surfaces with different normals see different hemispheres, so there are seven such trees: one for each
+// signed axis that a normal may be closest to, and one for points in media.
 //
-// Lobes and a are fitted together, by weighted expectation maximization (Dempster, Laird & Rubin 1977; of such lobes: Ruppert,
-// Herholz & Lensch 2020, section 4), so that the Kullback-Leibler divergence of p from f |cos| L_i falls: scattering is one
-// more component, with the weight 1 - a and a shape of its own at each sample. Lobes learn only what scattering does not
-// explain: of an evenly lit room nothing, and of a bright spot in it the spot. A sample counts as X = f |cos| L_i / p in
-// proportion.
+// Lobes and a are fitted together, by weighted expectation maximization (Dempster, Laird & Rubin 1977; for such lobes: Ruppert,
+// Herholz & Lensch 2020, section 4), so that the Kullback-Leibler divergence of p from f |cos| L_i decreases: scattering is one
+// more component, with the weight 1 - a and a given pdf at each sample. So the lobes learn only what scattering does not
+// explain: nothing in an evenly lit room, and a bright spot in it if there is one. A sample has a weight in proportion to
+//     X = f |cos| L_i / p.
 //
-// Samples come in batches, and a batch is as good as it is even: it counts as (sum X)^2 / sum X^2 effective samples (Kish
-// 1965). What is known from batches before counts as those it was made of (maximum a posteriori: the density before, as so many
-// samples, beside the new ones). So a first batch of which two samples found light says little, and is soon outvoted. A region
-// that has gathered enough effective samples is divided; both halves begin with its lobes, which are right for both, as they
-// point at places.
+// Samples come in batches. A batch with uneven weights has less information: it counts as (sum X)^2 / sum X^2 effective samples
+// (Kish 1965). The result of earlier batches counts as the effective samples that it was fitted to (maximum a posteriori
+// estimation, with the earlier distribution as the prior). So a first batch of which two samples found light has little weight,
+// and is soon replaced. A region that has gathered enough effective samples is split; both halves start with its lobes, which
+// are valid in both, as they point at positions.
 
 #include <cstddef>
 #include <cstdint>
@@ -28,30 +28,31 @@
 
 namespace etendue {
 
-/// What a path found where it went on in a direction.
+/// The light that a path found in a direction that it sampled.
 struct GuideSample {
   Point3 position;
   Vector3 direction;
   std::uint32_t region = 0;  ///< Guide::region_of
-  float nearness = 0;        ///< 1 / the distance of the place that light came from [1/m]; 0: infinitely far
-  float found = 0;           ///< X: the light that came back from there by way of this direction, over its density
+  float nearness = 0;        ///< 1 / the distance of the source of the light [1/m]; 0: infinitely far
+  float found = 0;           ///< X = f |cos| L_i / p: the light from this direction that the vertex scattered along the path,
+                             ///< over the pdf
   float scatter = 0;         ///< p_scatter [1/sr]
-  bool specular = false;     ///< a lobe that only scattering itself can choose
+  bool specular = false;     ///< a lobe that the guide cannot sample
 };
 
 struct GuideSettings {
-  float region_samples = 1000;  ///< effective samples with which a region is divided
+  float region_samples = 1000;  ///< effective samples at which a region is split
   bool learn_share = true;
-  float share = 0.5f;           ///< a, at first or always
+  float share = 0.5f;           ///< a, initially or always
   size_t memory = 64ull << 20;  ///< [bytes]
 };
 
 class Guide {
  public:
-  /// A place's densities.
+  /// The learned distribution in one region of space.
   class Region {
    public:
-    /// a; 0: nothing is known yet.
+    /// a; 0: nothing is learned yet.
     float share() const { return share_; }
     const LobeMixture& lobes() const { return lobes_; }
 
@@ -59,38 +60,39 @@ class Guide {
     friend class Guide;
     LobeMixture lobes_;
     float share_ = 0;
-    double known_ = 0;     // what lobes and share are made of, in effective samples
-    double gathered_ = 0;  // effective samples since it was divided
-    // Of X, of the last samples: a batch is weighed by more than itself, as a small one that has not the rare, large X among
-    // it would count too much, and one that has too little.
+    double known_ = 0;     // effective samples that lobes and share were fitted to
+    double gathered_ = 0;  // effective samples since the region was split
+    // Moments of X over the latest samples: the number, sum X, sum X^2. A batch is weighted by these, and not by its own
+    // moments alone: a small batch without the rare large values of X would get too much weight, and a batch with one too
+    // little.
     double seen_ = 0, found_ = 0, found_squared_ = 0;
-    // Of the positions of samples since then, for the region's centre and where to divide it.
+    // Moments of the positions of samples since the split, for the centre of the region and its next split.
     double count_ = 0, sum_[3] = {0, 0, 0}, squares_[3] = {0, 0, 0};
   };
 
   explicit Guide(const GuideSettings&);
 
-  /// `normal`: of a surface, on the side where the path came from; zero in media.
+  /// The region of a point. `normal`: of the surface, on the side from which the path came; zero in media.
   std::uint32_t region_of(const Point3& position, const Normal3& normal) const;
   const Region& region(std::uint32_t i) const { return regions_[i]; }
   size_t regions() const { return regions_.size(); }
   const Region& at(const Point3& position, const Normal3& normal) const { return regions_[region_of(position, normal)]; }
 
-  /// Learns from samples that are of one region, in their order. Different regions may learn at once.
+  /// Fits a region to samples that all lie in it, in their order. Different regions may learn at the same time.
   void learn(std::uint32_t region, std::span<const GuideSample* const>);
-  /// Divides regions that know enough. Between `learn` and this, what is asked of a guide changes.
+  /// Splits the regions that have enough effective samples. `learn` and this function change the distributions of the guide.
   void divide();
 
-  /// Of all that grows.
+  /// The memory of all members that grow.
   size_t bytes() const { return regions_.size() * sizeof(Region) + cells_.size() * sizeof(Cell); }
   std::vector<std::byte> save() const;
-  /// Error: the bytes are damaged; nothing has changed.
+  /// Throws Error if the bytes are damaged, without changes to the guide.
   void load(std::span<const std::byte>);
 
  private:
-  /// Of a tree over space: divided in two across an axis, or a region.
+  /// A node of a tree over space: an inner node, split at a plane across an axis, or a leaf with a region.
   struct Cell {
-    std::uint32_t child = 0;  // the first of two, below the plane; the second follows; 0: none
+    std::uint32_t child = 0;  // the first of two children, below the plane; the second follows it; 0: a leaf
     std::uint32_t what = 0;   // the axis, or the region
     float plane = 0;
   };

@@ -1,7 +1,7 @@
 #pragma once
-// How a path goes on from a vertex where a guide is asked:
-//     p(w) = a p_guide(w) + (1 - a) p_scatter(w)                    (one-sample mixture: Veach 1997, section 9.2.4)
-// at surfaces and in media alike; specular lobes are chosen by scattering alone, with probability 1 - a.
+// GuidedScattering: the one-sample mixture of a guide and scattering, by which a guided path samples directions at a vertex,
+//     p(w) = a p_guide(w) + (1 - a) p_scatter(w)                    (one-sample model: Veach 1997, section 9.2.4)
+// at surfaces and in media alike. Specular lobes are sampled by scattering alone, with probability 1 - a.
 
 #include "etendue/guiding/guide.h"
 #include "etendue/transport/path_vertex.h"
@@ -10,7 +10,7 @@ namespace etendue {
 
 class GuidedScattering {
  public:
-  /// Of a walk that came from `out`.
+  /// For a path that came to the vertex from the direction `out`.
   GuidedScattering(const Guide& guide, const PathVertex& v, const Vector3& out) : vertex_(v) {
     if (!v.scatters_smoothly()) return;
     region_ = guide.region_of(v.point.position, facing(v, out));
@@ -21,23 +21,23 @@ class GuidedScattering {
 
   std::uint32_t region() const { return region_; }
 
-  /// f |cos| and p, as direct light is weighted.
+  /// f |cos| and p, for the weights of next event estimation.
   ScatterValue operator()(const Vector3& in) const {
     ScatterValue f = scattering(vertex_, vertex_.out, in, Transport::radiance);
     if (share_ > 0 && !f.value.black()) f.pdf = mixed(lobes_.pdf(in), f.pdf);
     return f;
   }
 
-  /// p, where scattering alone has the density `scatter` [1/sr].
+  /// p for a direction in which scattering alone has the pdf `scatter` [1/sr].
   float pdf(const Vector3& in, float scatter) const { return share_ > 0 ? mixed(lobes_.pdf(in), scatter) : scatter; }
 
   struct Choice {
     std::optional<ScatterSample> next;
-    float scatter = 0;  ///< p_scatter [1/sr]; of a specular lobe the probability of having chosen it
+    float scatter = 0;  ///< p_scatter [1/sr]; for a specular lobe its probability
     float more = 1;     ///< p / p_scatter
   };
 
-  /// Chooses a direction; `scatter(choice)` does by scattering alone.
+  /// Samples a direction; `scatter(choice)` samples one by scattering alone.
   template <class Scatter>
   Choice sample(float choice, Point2 u, const Scatter& scatter) const {
     Choice c;
@@ -73,13 +73,14 @@ class GuidedScattering {
     return c;
   }
 
-  /// Whether only scattering chooses such directions: those of mirrors, and into bodies that light leaves elsewhere.
+  /// Whether such directions are sampled by scattering alone: those of specular lobes, and those that enter an object with
+  /// subsurface scattering.
   bool alone(const ScatterSample& s) const {
     return s.specular() || (vertex_.on_surface() && !vertex_.subsurface_exit && enters_subsurface(vertex_.point, s));
   }
 
  private:
-  /// The side of a surface where a path came from; zero in media.
+  /// The normal on the side of a surface from which a path came; zero in media.
   static Normal3 facing(const PathVertex& v, const Vector3& out) {
     if (!v.on_surface()) return {};
     return dot(v.point.normal, out) < 0 ? -v.point.normal : v.point.normal;
@@ -89,7 +90,7 @@ class GuidedScattering {
   const PathVertex& vertex_;
   std::uint32_t region_ = 0;
   float share_ = 0;  // a
-  SeenLobes lobes_;  // of share_ > 0
+  SeenLobes lobes_;  // valid if share_ > 0
 };
 
 }  // namespace etendue

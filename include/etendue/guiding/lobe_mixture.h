@@ -1,17 +1,18 @@
 #pragma once
-// LobeMixture: a density of directions that is learned, as a few lobes that point at places.
+// LobeMixture: a learned pdf of directions, as a mixture of a few lobes that point at positions.
 //
 // A lobe is a von Mises-Fisher distribution on the sphere around the unit direction m,
 //     v(w) = k / (2 pi (1 - exp(-2 k))) exp(k (m . w - 1))   [1/sr]
-// with the concentration k. One that is learned where light comes from a place near by is to be turned when the place is seen
-// from elsewhere (Ruppert, Herholz & Lensch 2020, "Robust fitting of parallax-aware mixtures for path guiding", section 5).
-// Here a lobe holds what it points at, in homogeneous coordinates: with the direction m and the distance d as seen from c,
+// with the concentration k. A lobe that points at a nearby source of light must be rotated when it is used at another point
+// (Ruppert, Herholz & Lensch 2020, "Robust fitting of parallax-aware mixtures for path guiding", section 5). Here a lobe stores
+// the position that it points at, in homogeneous coordinates: with the direction m and the distance d as seen from c,
 //     A = m + c / d,   and seen from x   v = A - x / d
-// points at the same place, c + d m; where d is infinite, 1 / d = 0 and all see it in the same direction. |v| is the distance
-// from x in units of that from c, and what has some width there is seen under an angle that goes with its inverse, so that
+// points at the same position, c + d m; if d is infinite, 1 / d = 0 and the direction is the same from all points. |v| is the
+// distance from x relative to that from c. A source of a given width is seen under an angle in proportion to the inverse
+// distance, so
 //     k(x) = k |v|^2.
 //
-// Eight lobes, each in a lane of a vector.
+// There are eight lobes, each in a lane of a vector register.
 
 #include <array>
 
@@ -24,15 +25,15 @@ using LobeLanes = float __attribute__((vector_size(32)));
 
 struct LobeMixture {
   static constexpr int size = 8;
-  /// Between these concentrations are kept: from nearly even to a cone of half a degree.
+  /// The range of concentrations: from nearly uniform to a cone of half a degree.
   static constexpr float least_concentration = 0.1f, most_concentration = 20000;
 
-  /// One lobe, as seen from somewhere.
+  /// One lobe, as seen from a point.
   struct Lobe {
     Vector3 direction;        ///< unit
     float nearness = 0;       ///< 1 / d [1/m]; 0: at infinity
     float concentration = 1;  ///< k
-    float weight = 0;         ///< of all lobes together 1
+    float weight = 0;         ///< the weights of all lobes add up to 1
   };
 
   LobeLanes x{}, y{}, z{};    ///< A
@@ -44,7 +45,7 @@ struct LobeMixture {
   void set(const Point3& c, int lobe, const Lobe&);
 };
 
-/// A mixture as it is seen from a point.
+/// A mixture as seen from a point.
 class SeenLobes {
  public:
   SeenLobes() = default;
@@ -57,22 +58,22 @@ class SeenLobes {
     for (int i = 0; i < LobeMixture::size; ++i) sum += each[i];
     return sum;
   }
-  /// Of each lobe, times its weight [1/sr].
+  /// The pdf of each lobe, times its weight [1/sr].
   LobeLanes pdfs(const Vector3& direction) const;
-  /// A direction with that density. `choice`: among lobes.
+  /// Samples a direction with that pdf. `choice` selects the lobe.
   Vector3 sample(float choice, Point2 u) const;
 
  private:
   LobeLanes x_, y_, z_;  // m
   LobeLanes concentration_;
-  LobeLanes factor_;  // the weight, times the density on the lobe's axis [1/sr]
+  LobeLanes factor_;  // the weight times the pdf on the lobe's axis [1/sr]
   LobeLanes weight_;
 };
 
 namespace detail {
 
-/// exp(x) for x <= 0, to about 2e-7: of 2^n e^r the exponent is put together from bits, e^r by a minimax polynomial
-/// (coefficients of S. Moshier's Cephes library, expf.c). Below e^-87 it stays at that.
+/// exp(x) for x <= 0, with an error of about 2e-7: of 2^n e^r, the exponent is assembled from bits, and e^r is a minimax
+/// polynomial (coefficients of S. Moshier's Cephes library, expf.c). x below -87 gives e^-87.
 inline LobeLanes exp_of_negative(LobeLanes x) {
   using Int = std::int32_t __attribute__((vector_size(32)));
   const LobeLanes least = -87.0f - LobeLanes{};

@@ -1,7 +1,8 @@
 #pragma once
-// Where photons near a point came from, as a guide to where light is (Jensen 1995, "Importance driven path tracing using the
-// photon map"): of cones of opening W around the directions of the nearest photons one is taken in proportion to what its
-// photon carries,
+// PhotonDirections: the directions of the photons near a point, as a guide to the incident light (Jensen 1995, "Importance
+// driven path tracing using the photon map"). Around the direction of each of the nearest photons there is a cone of solid
+// angle W; a cone is chosen in proportion to the flux P_k of its photon, normalized to a sum of 1, and a direction sampled
+// uniformly in it:
 //     p(w) = sum_k P_k [w in cone k] / W   [1/sr].
 
 #include <array>
@@ -13,7 +14,7 @@ namespace etendue {
 
 class PhotonDirections {
  public:
-  /// Of photons within `radius` that came to the side of the surface on which the walk came to x.
+  /// Uses the photons within `radius` of x that came to the side of the surface on which the walk came.
   PhotonDirections(const PhotonMap& map, const PathVertex& x, float radius) {
     std::vector<PointTree::Near>& near = PointTree::near_on_this_thread();
     map.tree().nearest(x.point.position, radius, most, near);

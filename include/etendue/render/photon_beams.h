@@ -46,7 +46,7 @@ struct PhotonBeam {
   float least_extinction = 0;            ///< m [1/m]
   const VolumeShader* volume = nullptr;  ///< the medium's
   std::uint32_t vertices : 29 = 0;  ///< vertices of its subpath before it is scattered; 1: it comes directly from an emitter
-  bool single : 1 = false;          ///< it carries the hero wavelength alone
+  bool hero_only : 1 = false;       ///< it carries the hero wavelength alone
   bool caustic : 1 = false;         ///< it came from the emitter by a specular chain of one vertex or more
   std::int32_t luminaire = -1;      ///< SceneObject::luminaire_index of the emitter
 

@@ -76,7 +76,7 @@ class VirtualLightProcess : public PhotonProcess {
     SubpathVertex z;
     static_cast<PathVertex&>(z) = walk.vertex;
     z.throughput = Spectrum(1.0f);
-    z.single = walk.sample.wavelengths.single();
+    z.hero_only = walk.sample.wavelengths.single();
     const float w = part(y.at.point.position, y.at.normal(), z.point.position, z.normal());
     if (!(w > 0)) return {};
     const auto c = connect(context.scene, y.at, z, walk.sample.wavelengths, numbers, walk.sample.arena);

@@ -1,5 +1,6 @@
 #pragma once
-// A subpath from the camera, a subpath from a luminaire, and every strategy that makes a path of them.
+// BidirectionalSubpaths: a subpath from the camera, a subpath from a luminaire, and every strategy that makes a path of them,
+// with its multiple importance sampling weight.
 //
 // A strategy (s, t) takes s vertices y_0 … y_{s-1} from the luminaire and t vertices z_0 … z_{t-1} from the lens. With alpha
 // the throughputs of the subpaths and w the multiple importance sampling weight of the strategy among all that can make the
@@ -9,7 +10,8 @@
 //   s = 1: next event estimation. A point of a luminaire is sampled as seen from z_{t-1}.
 //   t = 1: light tracing. y_{s-1} is connected to the lens, and the contribution is splatted where it falls on the film.
 //   other: y_{s-1} and z_{t-1} are connected.
-// Merging: a photon whose subpath has s vertices before it lies within r of z_{t-1} and is taken to lie there (photons.h).
+// Merging: a photon whose light subpath has s vertices before it lies within the radius r of z_{t-1}, and is taken to lie there
+// (photons.h).
 //
 //     BidirectionalSubpaths paths(context, lights, sample, weights);
 //     paths.from_camera(ray, limits);
@@ -39,7 +41,7 @@ struct PathContribution {
   int length() const { return s + t - 1; }
 };
 
-/// At most one per thread at a time: its vertices are stored in memory of the thread that is used again.
+/// At most one may exist per thread at a time: its vertices are stored in memory of the thread that the next one uses again.
 class BidirectionalSubpaths {
  public:
   BidirectionalSubpaths(const RenderContext&, const LightSampler&, SampleContext&, const StrategyWeights&);
@@ -60,15 +62,15 @@ class BidirectionalSubpaths {
   bool has_specular_prefix(int t) const;
   const Wavelengths& light_wavelengths() const { return light_wavelengths_; }
 
-  /// s = 0, along the segments of the camera subpath: emission of media, and emitters whose surface only scatters null.
+  /// s = 0, along the segments of the camera subpath: emission of media, and emitters whose surface has null scattering only.
   std::span<const PathContribution> segment_emission() const { return segment_emission_; }
-  /// s = 0: z_{t-1} lies on a luminaire, or the ray escapes to those at infinity. Valid until the next call.
+  /// s = 0: z_{t-1} lies on a luminaire, or the ray escapes to luminaires at infinity. Valid until the next call.
   std::span<const PathContribution> emitter_hits(int t) const;
   /// s = 1.
   std::optional<PathContribution> next_event(int t) const;
   /// s > 1, t > 1.
   std::optional<PathContribution> connect(int s, int t) const;
-  /// t = 1. s = 1: the point of the luminaire itself, as the camera sees it.
+  /// t = 1. For s = 1 the point of the luminaire itself is connected to the lens.
   std::optional<PathContribution> connect_to_lens(int s) const;
   /// A photon within r of z_{t-1}.
   std::optional<PathContribution> merge(const Photon&, int t) const;
@@ -79,8 +81,8 @@ class BidirectionalSubpaths {
  private:
   void add_emitter_hit(const SubpathVertex&, const SurfacePoint& luminaire, int t, std::vector<PathContribution>&) const;
   void add_emitter_hits(int t, std::vector<PathContribution>&) const;
-  /// The pdf [vertex_pdf] of the vertex before the last of a subpath's first `count` vertices, sampled from the other side: by
-  /// a walk that comes from the direction `from` and is scattered at the last.
+  /// The pdf (vertex_pdf) of the vertex before the last among a subpath's first `count` vertices, if it is sampled from the
+  /// opposite end: by a walk that comes to the last vertex from the direction `from` and is scattered there.
   float before_from(const std::vector<SubpathVertex>& subpath, int count, const Vector3& from, Transport) const;
 
   const RenderContext& context_;

@@ -1,24 +1,28 @@
 #pragma once
-// A walk from the camera that gathers light.
+// CameraWalk: a walk from the camera that gathers light, the core of path tracers.
 //
-// Radiance along a camera ray is the sum over the vertices x_k of its walk
-//     L = sum_k T_k [ L_e(x_k) + direct(x_k) ],
-// L_e being what x_k sends to x_{k-1} by itself, and direct(x_k) what it scatters there of light that comes straight from
-// luminaires (Kajiya 1986). This class goes from vertex to vertex and adds what it is given; which part of the two to take, by
-// what weights, and when to stop is the algorithm's:
+// The radiance along a camera ray is estimated by a sum over the vertices x_k of the walk (Kajiya 1986),
+//     L = sum_k T_k [ w_k L_e(x_k) + direct(x_k) ]
+// with the throughput T_k up to x_k (walk.h shows where its factors f |cos| / p are multiplied). The first term is the emitter
+// hit: the radiance L_e that x_k emits towards x_{k-1}. The second is next event estimation: the light that comes to x_k
+// directly from a sampled point of a luminaire and is scattered towards x_{k-1},
+//     direct = w' f |cos| L_e V / (P p_light)     (direct_light.h)
+// with the probability P of the luminaire, the pdf p_light [1/sr] of the direction to its point, and the visibility V. Both
+// terms sample the same paths, and the weights w and w' combine them (multiple_importance.h). This class traces the walk and
+// adds the terms. The algorithm decides which terms are used, with which weights, and when the walk ends:
 //
 //     CameraWalk walk(scene, sample, ray, longest);
-//     while (walk.next_vertex(weight) && !walk.at_end()) {
+//     while (walk.next_vertex(weight) && !walk.at_end()) {   // emitter hits
 //       const NumberStream::Bounce u = walk.next_bounce();
-//       walk.add_direct(lights, u, heuristic);
-//       if (walk.scatter(u) && enough) walk.end();
+//       walk.add_direct(lights, u, heuristic);               // next event estimation
+//       if (walk.scatter(u) && enough) walk.end();           // T *= f |cos| / p; roulette.survives(walk)
 //     }
 //     return walk.radiance;
 //
-// Where perfectly smooth glass is met, a walk may be divided into branches (`divide`), each a walk of its own.
+// At specular glass a walk may be split into branches (`split`), each of which is a CameraWalk.
 //
-// Light of add_direct waits for its shadow ray, which is asked together with the next segment: next_vertex must be called once
-// more (after `end`, too) before `radiance` is whole.
+// The shadow ray of add_direct is traced together with the next segment, and its light is added then. So next_vertex must be
+// called once more, after `end` too, before `radiance` is complete.
 
 #include <limits>
 
@@ -44,24 +48,25 @@ class CameraWalk : public Walk<clear> {
     if (!clear && scene.has_interiors()) media_at(scene, ray.origin, ray.time, this->media);
   }
 
-  Spectrum radiance;  ///< L, as far as it is gathered
-  Spectrum earlier;   ///< of it, what has not come along the last segment: once the walk has ended, the rest tells what a
-                      ///< direction brought
+  Spectrum radiance;  ///< the part of L that is gathered so far
+  Spectrum earlier;   ///< `radiance` without the light that arrives along the last segment. When the walk has ended, radiance
+                      ///< minus this value is the light that a sampled direction brought
 
-  /// Goes to the next vertex and adds the light of luminaires it meets, each with `weight(its point)`. False: the walk has
-  /// ended, and all that was added has arrived (light of one vertex is settled on the way to the next).
+  /// Moves to the next vertex and adds emitter hits, each with the weight `weight(point on the emitter)`. A member
+  /// `weight.through(medium, reach)`, if present, is called for media (NoEvents::through). False: the walk has ended, and all
+  /// its light is added (the direct light of a vertex is added on the way to the next).
   template <class Weight>
   [[gnu::always_inline]] bool next_vertex(const Weight& weight) {
     if (!goes_on_ || exits_subsurface_) {
       settle(awaits_ && !(clear && scene.any(direct_.shadow)));
       earlier = radiance;
       if (!exits_subsurface_) return false;
-      exits_subsurface_ = goes_on_ = false;  // it came to the vertex through a body
+      exits_subsurface_ = goes_on_ = false;  // the vertex is a subsurface exit, to which no ray leads
       sample.sink.surface(vertex.point, placed(throughput));
       return true;
     }
     if ((length & 31) == 31 && sample.aborted()) return false;
-    sample.arena.rewind(memory_);  // of earlier vertices nothing is needed any more
+    sample.arena.rewind(memory_);  // the scattering of earlier vertices is no longer needed
     const auto [blocked, found] = scene.any_and_nearest(clear && awaits_ ? &direct_.shadow : nullptr, ray, this->hit);
     settle(!blocked);
     earlier = radiance;
@@ -86,16 +91,17 @@ class CameraWalk : public Walk<clear> {
     return true;
   }
 
-  /// Whether nothing may follow the last vertex.
+  /// Whether the path has its maximum length, so that the last vertex is the end.
   bool at_end() const { return length >= longest; }
 
-  /// The numbers of the last vertex.
+  /// The primary samples for the last vertex.
   [[gnu::always_inline]] NumberStream::Bounce next_bounce() {
     return numbers.next_bounce(!one_luminaire_, !vertex.scatter || vertex.scatter->has_choice());
   }
 
-  /// Samples light that comes straight from luminaires and adds it, unless something turns out to lie between. `scattering(in)`
-  /// gives f |cos| and the density [1/sr] with which the walk will go on there: a guide's, where one chooses directions.
+  /// Next event estimation: samples a point on a luminaire and adds its light unless the shadow ray is occluded.
+  /// `scattering(in)` returns f |cos| and the pdf [1/sr] with which the walk samples `in` at this vertex, which is that of a
+  /// mixture if a guide samples directions too.
   template <class Scattering>
   [[gnu::always_inline]] void add_direct(const LightSampler& lights, const NumberStream::Bounce& u, Heuristic heuristic,
                                          const Scattering& scattering) {
@@ -115,13 +121,13 @@ class CameraWalk : public Walk<clear> {
     direct_length_ = length + 1;
   }
 
-  /// The same where the surface itself, or the medium, chooses the direction.
+  /// The same for a walk whose directions are sampled by the BSDF or the phase function alone.
   [[gnu::always_inline]] void add_direct(const LightSampler& lights, const NumberStream::Bounce& u, Heuristic heuristic) {
     add_direct(lights, u, heuristic, ScatteringOf{vertex});
   }
 
-  /// The weight of a luminaire that the walk meets, which `add_direct` could have sampled at the vertex before; behind a mirror
-  /// it could not.
+  /// The multiple importance sampling weight of an emitter hit against next event estimation at the vertex before. It is 1
+  /// after a specular lobe, where next event estimation finds nothing.
   [[gnu::always_inline]] float emitter_hit_weight(const LightSampler& lights, Heuristic heuristic,
                                                   const SurfacePoint& luminaire) const {
     if (this->specular) return 1;
@@ -129,12 +135,12 @@ class CameraWalk : public Walk<clear> {
                             next_event_pdf(lights, this->from, this->from_normal, ray.direction, luminaire));
   }
 
-  /// Goes on from the last vertex; false: it is absorbed there.
+  /// Samples the direction in which the walk leaves its last vertex: T *= f |cos| / p. False: the walk is absorbed.
   [[gnu::always_inline]] bool scatter(const NumberStream::Bounce& u) {
     const std::optional<ScatterSample> next = this->sample_direction(u.lobe_choice, u.direction);
     return next && go_on(*next);
   }
-  /// The same in a direction that was chosen already: by `sample_direction`, or by somebody else (scattered_towards).
+  /// The same with a direction that was already sampled, by `sample_direction` or by another distribution (scattered_towards).
   [[gnu::always_inline]] bool go_on(const ScatterSample& next) {
     sample.sink.scattered(next);
     if (!clear && next.lobe == null_scattering) {
@@ -150,20 +156,22 @@ class CameraWalk : public Walk<clear> {
     return goes_on_ = true;
   }
 
-  /// Adds light that somebody else gathered at the last vertex, whose way from the luminaire has so many segments: photons.
+  /// Adds light that the algorithm gathered at the last vertex in another way, such as from photons: the radiance scattered
+  /// there, and the number of segments from the luminaire to the vertex.
   void add_light(int segments_before, const Spectrum& light, const SceneObject* luminaire) {
     add(length + segments_before, placed(throughput * light), luminaire);
   }
-  /// The same where it is not known which luminaires it comes from: there are no light groups then.
+  /// The same where the luminaires are unknown: no light group receives the light.
   void add_light(int segments_before, const Spectrum& light) {
     const Spectrum here = placed(throughput * light);
     radiance += here;
     sample.sink.light(length + segments_before, here);
   }
-  /// The place among the path's wavelengths of the only one that a branch follows; -1: it follows no single one.
+  /// For a branch that follows one wavelength: the index of that among the path's wavelengths; -1: the walk follows all of
+  /// them.
   int lane() const { return lane_; }
 
-  /// Whether the walk is to be divided at its last vertex.
+  /// Whether the walk is to be split at its last vertex, which must have no lobes but specular reflection and refraction.
   [[gnu::always_inline]] bool splits(const Splitting& splitting) const {
     if (!vertex.on_surface() || !vertex.scatter || vertex.subsurface_exit) return false;
     const Lobes ways = ways_on();
@@ -171,8 +179,8 @@ class CameraWalk : public Walk<clear> {
     return (vertex.scatter->dispersed() && splitting.wavelengths > 1) || splits_reflection_and_refraction(splitting);
   }
 
-  /// Goes on from such a vertex. Light that is refracted is followed by branches where it is one part of several:
-  /// `follow(branch)` returns what a walk gathers. Reflected light is the walk's own way.
+  /// Continues from such a vertex. If there are several parts to follow, refracted light is followed by branches:
+  /// `follow(branch)` traces one and returns its radiance. This walk itself follows the reflection.
   template <class Follow>
   void split(const Splitting& splitting, const NumberStream::Bounce& u, const Follow& follow) {
     const Scatter& scatter = *vertex.scatter;
@@ -202,7 +210,7 @@ class CameraWalk : public Walk<clear> {
       end();
   }
 
-  /// Lets it end after all.
+  /// Ends the walk at its last vertex, although a direction was sampled.
   void end() { goes_on_ = exits_subsurface_ = false; }
 
  private:
@@ -221,8 +229,9 @@ class CameraWalk : public Walk<clear> {
     return bends_ < splitting.reflect_and_refract && ways_on() == reflect_and_refract;
   }
 
-  /// One of both ways, with the probability of what the walk's wavelengths together carry there: the hero may have nothing
-  /// left, or be reflected as a whole where others are refracted. `choice` becomes what is left of it.
+  /// Chooses reflection or refraction, with probabilities in proportion to what all wavelengths together carry there: the
+  /// throughput of the hero alone may be 0, or it may be totally reflected where others are refracted. `choice` is rescaled to
+  /// [0, 1).
   Lobes choose_way(const Scatter& scatter, float& choice) {
     const float reflected = (throughput * scatter.albedo(vertex.out, specular_reflection)).average(),
                 refracted = (throughput * scatter.albedo(vertex.out, specular_transmission)).average();
@@ -234,7 +243,7 @@ class CameraWalk : public Walk<clear> {
     return reflects ? specular_reflection : specular_transmission;
   }
 
-  /// The context of a branch, which has its own numbers and wavelengths.
+  /// The context of a branch, with its own primary samples and wavelengths.
   SampleContext context_of(Wavelengths& wavelengths, const NumberStream& branch_numbers) const {
     const SampleContext& s = sample;
     return {wavelengths, branch_numbers, s.arena, s.sink};
@@ -265,19 +274,20 @@ class CameraWalk : public Walk<clear> {
     if (!scatter) return;
     std::optional<ScatterSample> next = scatter->sample(vertex.out, choice, u, Transport::radiance, specular_transmission);
     if (!next) return;
-    next->dispersive = true;  // for who looks on: the branch has nothing left to drop
+    next->dispersive = true;  // for the record only: the branch has no secondary wavelengths left to drop
     follow_from_here(branch, *next, follow);
   }
 
   template <class Follow>
   void follow_from_here(CameraWalk& branch, const ScatterSample& next, const Follow& follow) {
     if (branch.go_on(next)) radiance += follow(branch);
-    sample.sink.surface(vertex.point, placed(throughput));  // what follows is told from here on
+    sample.sink.surface(vertex.point, placed(throughput));  // the record of the path continues from this vertex
   }
 
-  /// Of what a walk had where it was first sent both ways, its branches go on together, in the mean, as one where they have
-  /// been scattered without a mirror: each with the probability of its part, once the light that they meet next, which is half
-  /// of all direct light there (multiple importance sampling), has been taken.
+  /// Reduces the branches of reflect/refract splitting to one on average. At its first smooth vertex each branch gets the
+  /// survival probability part_, its part of the throughput that the walk had at the first split. The roulette is applied one
+  /// vertex later, after the emitter hit at the end of the next segment was added: with multiple importance sampling that hit
+  /// is half of the direct light of the smooth vertex.
   void come_together(const ScatterSample& next) {
     if (!this->specular) {
       this->pending_survival = part_;
@@ -287,7 +297,7 @@ class CameraWalk : public Walk<clear> {
     }
   }
 
-  /// The light of a branch of one wavelength in the place that has on the path.
+  /// The light of a branch of one wavelength, moved to the index of that wavelength on the path.
   [[gnu::always_inline]] Spectrum placed(const Spectrum& light) const {
     if (lane_ < 0) [[likely]]
       return light;
@@ -325,7 +335,8 @@ class CameraWalk : public Walk<clear> {
     sample.sink.emitter_hit(light * w, length, w);
   }
 
-  /// Adds the light that waited for its shadow ray. Whether it comes cannot be guessed, so nothing hangs on it.
+  /// Adds the light of next event estimation, given the result of its shadow ray. The processor cannot predict that result, so
+  /// the light is selected without a conditional jump.
   [[gnu::always_inline]] void settle(bool lit) {
     if (!awaits_) return;
     awaits_ = false;
@@ -335,9 +346,10 @@ class CameraWalk : public Walk<clear> {
 
   bool goes_on_ = true, exits_subsurface_ = false, awaits_ = false;
   int direct_length_ = 0;
-  int bends_ = 0;               ///< how often it was sent both ways; as often as can be: it met something else
-  float whole_ = 0, part_ = 1;  ///< see come_together
-  int lane_ = -1;               ///< the place of a branch's only wavelength among the path's; -1: it has all
+  int bends_ = 0;               ///< how often the walk was split into reflection and refraction; the largest int after a smooth
+                                ///< vertex: no more splits
+  float whole_ = 0, part_ = 1;  ///< see come_together: the throughput at the first split, and the part of this branch
+  int lane_ = -1;               ///< the index of a branch's only wavelength among the path's; -1: the walk has all
   DirectLight direct_;
   const Arena::Mark memory_;
   const bool one_luminaire_;

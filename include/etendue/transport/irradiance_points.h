@@ -1,6 +1,8 @@
 #pragma once
-// Irradiance found beforehand where photons lie (Christensen 1999, "Faster photon map global illumination"): a final gathering
-// then looks up one point in place of many photons.
+// IrradiancePoints: irradiance precomputed at photons, for final gathering (Christensen 1999, "Faster photon map global
+// illumination"). A final gather ray then looks up one point, with the estimate
+//     E = sum_p alpha_p / (n pi r^2)   [W/(m^2 nm)]
+// (Jensen 2001, section 7.1; photons.h), in place of many photons.
 
 #include "etendue/transport/photons.h"
 
@@ -8,25 +10,25 @@ namespace etendue {
 
 class IrradiancePoints {
  public:
-  /// Which photons an estimate takes: the `nearest` ones of those within `farthest` [m].
+  /// The photons of an estimate: the `nearest` ones within the distance `farthest` [m].
   struct Estimate {
     size_t nearest = 0;
     float farthest = 0;
-    double walks = 1;  ///< n
+    double walks = 1;  ///< n, the number of light subpaths
     float time = 0;    ///< [s]
   };
-  /// At every fourth photon on a surface.
+  /// Irradiance is computed at every fourth photon, if it is on a surface.
   static constexpr size_t every = 4;
   void find(const Scene&, const PhotonMap&, const Estimate&);
 
-  /// Irradiance [W/(m^2 nm)] at the point nearest to a vertex whose surface is turned as the vertex's on the side of `out`;
-  /// null: there is none within `farthest`.
+  /// The irradiance [W/(m^2 nm)] at the point nearest to a vertex whose normal agrees with that of the vertex on the side of
+  /// `out`; null: there is none within `farthest`.
   const Spectrum* at(const PathVertex&) const;
 
  private:
   struct Point {
     Point3 position;
-    Vector3 normal;  ///< on the side it counts for
+    Vector3 normal;  ///< on the side that the irradiance arrives at
     Spectrum value;
   };
   PointTree tree_;

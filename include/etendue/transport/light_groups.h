@@ -1,12 +1,12 @@
 #pragma once
-// Light groups: the light of a picture, kept apart by the luminaires that it comes from. Light adds up, so that the picture
-// with each group made brighter, darker or of another colour is the sum of the groups, each multiplied: a scene is lit anew
+// Light groups: the light of an image, stored separately for groups of luminaires. Light is additive: the image with the light
+// of each group brighter, darker or in another colour is the sum of the groups, each times a factor. So a scene can be relit
 // without rendering it again.
 //
-// Which luminaire a part of the light comes from is known where paths meet, sample, or begin at one: there `report_light` is
-// called, and `splat_light` for what is brought elsewhere on the film. What is collected is of the sample at hand on the same
-// thread (LightParts), so that nothing has to carry it along paths. It costs the test that path lengths cost already when
-// nobody wants groups.
+// The luminaire of a contribution is known where paths hit, sample, or start at one. There `report_light` is called, or
+// `splat_light` for a contribution to another film point. The contributions are added to those of the current sample on the
+// same thread (LightParts), so that paths need not carry them. Without groups the cost is the test that path lengths need
+// anyway.
 
 #include <cstdint>
 #include <span>
@@ -17,16 +17,16 @@
 
 namespace etendue {
 
-/// Which group each luminaire of a scene is in: the first of those that the image asks for which has the name of the object
-/// as the user wrote it, or of its emission; the last ("rest") if none has.
+/// The group of each luminaire of a scene: the first group of the image that has the name of the object in the file, or of its
+/// emission; the last group ("rest") if none has.
 class LightGroups {
  public:
-  /// Throws an Error at the image when a name is of no luminaire. Of a scene that is prepared.
+  /// For a prepared scene. Throws Error at the image if a name belongs to no luminaire.
   LightGroups(const Scene&, const ImageBuffer&);
 
-  /// 0: the image wants none.
+  /// The number of groups; 0: the image has none.
   int count() const { return count_; }
-  /// null: light of no luminaire, such as that of a medium.
+  /// The group of a luminaire; null: light without a luminaire, such as that of a medium.
   int of(const SceneObject* luminaire) const {
     if (!luminaire || luminaire->luminaire_index < 0) return count_ - 1;
     return group_[size_t(luminaire->luminaire_index)];
@@ -37,8 +37,8 @@ class LightGroups {
   std::vector<std::uint8_t> group_;  ///< of each luminaire
 };
 
-/// The light of a sample in the parts that a film keeps: by path length and by group. As long as it lives it collects what
-/// `report_light` is told on its thread; of several the one made last.
+/// The light of a sample in the parts that a film stores: by path length and by group. As long as it exists it collects the
+/// arguments of `report_light` on its thread; if there are several, the newest does.
 class LightParts {
  public:
   /// The groups must outlive it.
@@ -48,26 +48,26 @@ class LightParts {
   LightParts& operator=(const LightParts&) = delete;
 
   void clear();
-  /// For PathSink::lengths. Empty when neither lengths nor groups are wanted.
+  /// For PathSink::lengths. Empty if neither lengths nor groups are stored.
   std::span<Spectrum> lengths();
   /// For ImageTile::contribute.
   std::span<const Spectrum> all() const;
 
-  /// Of the one that collects on this thread, if any:
+  /// These functions call the object that collects on this thread, if any:
   static void add(const SceneObject* luminaire, const Spectrum&);
-  static void weigh(const Spectrum&);  ///< multiplies what groups have
+  static void weigh(const Spectrum&);  ///< multiplies the light of all groups
   static SplatLabel label(int length, const SceneObject* luminaire);
 
  private:
   const LightGroups& groups_;
-  const size_t lengths_;  ///< those the film keeps
+  const size_t lengths_;  ///< the number of lengths that the film stores
   size_t first_group_;
   std::vector<Spectrum> parts_;
-  LightParts* const before_;  ///< that collected on this thread
+  LightParts* const before_;  ///< the object that collected on this thread before
 };
 
-/// Light, a part of the sample's own value, that came by a path of so many segments from a luminaire (null: from none, such as
-/// that of a medium). In place of PathSink::light, where that is known.
+/// Adds light that is a part of the sample's own radiance, from a path of `length` segments that starts at a luminaire (null:
+/// at none, such as light of a medium). Replaces PathSink::light where the luminaire is known.
 [[gnu::always_inline]] inline void report_light(PathSink& sink, int length, const Spectrum& light,
                                                 const SceneObject* luminaire) {
   if (sink.lengths.empty()) [[likely]]
@@ -76,7 +76,7 @@ class LightParts {
   LightParts::add(luminaire, light);
 }
 
-/// The same of light that is brought to another place of the film.
+/// The same for light that is splatted to another film point.
 inline void splat_light(SampleContext& sample, Point2 film, const Spectrum& light, const Wavelengths& w, int length,
                         const SceneObject* luminaire) {
   if (sample.sink.splats) sample.sink.splat(film, light, w, LightParts::label(length, luminaire).packed());

@@ -1,62 +1,62 @@
 #pragma once
-// MediumStack: the objects a path is inside of. Overlapping objects are settled by priority (Schmidt & Budge 2002,
-// "Simple nested dielectrics in ray traced images").
+// MediumStack: the objects that a path is inside of. Where objects overlap, the one of highest priority fills the space (nested
+// dielectrics: Schmidt & Budge 2002, "Simple nested dielectrics in ray traced images").
 
 #include "etendue/scene_object.h"
 #include "etendue/shader.h"
 
 namespace etendue {
 
-/// Whether light gets through a surface that stands for a sheet: a thin pane, thin paper.
+/// Whether a surface transmits as a thin sheet does: a thin pane, thin paper.
 inline bool is_sheet(const Shader& shader) {
   constexpr Lobes through_a_sheet = null_scattering | diffuse_transmission;
   return !shader.transmits() && !shader.has_subsurface_exit() && (shader.possible_lobes() & through_a_sheet);
 }
 
-/// Whether paths that go through the surface of an object enter or leave its inside: it has one, and its shader lets light in.
-/// A sheet bounds nothing of itself, and the medium that an object names as its
-/// interior all the same: a balloon full of smoke.
+/// Whether paths that cross the surface of an object enter or leave its inside: it is closed, and its shader transmits. A sheet
+/// alone encloses nothing, but it bounds the medium that the object names as its interior: a balloon full of smoke.
 inline bool enterable(const SceneObject& object) {
   if (!object.shader || !object.closed()) return false;
   return object.shader->transmits() || (object.interior && is_sheet(*object.shader));
 }
 
-/// Whether the index of what is inside differs from that around: light that only goes straight on, or through a sheet, does
-/// not change its way, so what it comes to has the index of what it left.
+/// Whether the refractive index inside the object can differ from that outside. Null scattering and sheets do not change the
+/// direction of light, so behind such a boundary the index is that before it.
 inline bool has_own_index(const SceneObject& object) {
   constexpr Lobes turned = transmission_lobes & ~null_scattering;
   return object.shader && object.shader->transmits() && (object.shader->possible_lobes() & turned);
 }
 
-/// A small set of objects, each entered some number of times. The effective medium is that of the highest priority; of
-/// equal ones, that entered last. More than `capacity` objects at one point: the deepest are forgotten.
+/// A small multiset of objects. The effective medium is that of the highest priority; of equal priorities, that entered last.
+/// With more than `capacity` objects at one point, those entered first are dropped.
 ///
-/// A mesh that is inside out is left before it is entered, and then entered: a path is inside of what it has entered more often
-/// than left. So its glass refracts by its normals, and what is around it is not taken for its inside.
+/// A ray leaves a mesh with inverted normals before it enters it. Such exits without an entry are counted, and the next entry
+/// cancels one: a path is inside of an object that it has entered more often than left. So the glass of such a mesh refracts by
+/// its normals, but the space around it does not count as its inside.
 class MediumStack {
  public:
   static constexpr int capacity = 12;
 
-  /// Null: the outside of everything.
+  /// The object whose medium is effective; null: vacuum outside of everything.
   const SceneObject* current() const {
     const SceneObject* top = top_excluding(nullptr, false);
     return top ? top : surroundings_;
   }
 
-  /// Whether a surface of the object matters here: it does not when the path is inside something of higher priority.
+  /// Whether a surface of the object has an effect: it has none if the path is inside an object of higher priority.
   bool visible(const SceneObject& object) const {
     const SceneObject* top = top_excluding(&object, false);
     return top == nullptr || object.priority >= top->priority;
   }
 
-  /// Below all that the path enters there is this: the object whose inside is all of space (SceneObject::surrounds).
+  /// Sets the object whose inside is all of space (SceneObject::surrounds). It is below all objects that the path enters.
   void surround(const SceneObject& object) { surroundings_ = &object; }
 
-  /// What gives the index on the other side of the object's boundary: what would be current without it, leaving out what has
-  /// no index of its own. Where the path is about to leave the object, what it enters or leaves in the same place counts as
-  /// well.
+  /// The object that gives the refractive index on the other side of the object's boundary: the effective one without it, among
+  /// those with an index of their own. If the path is about to leave the object, coincident boundaries that it crosses with it
+  /// count as well.
   const SceneObject* outside_of(const SceneObject& object) const {
-    // Between two bricks of one kind (one object in two scenes) there is no boundary.
+    // Between two touching bricks of one kind (one object in two scenes) there is no boundary.
     for (int i = 0; i < others_; ++i)
       if (other_[i].object == &object && has_own_index(object)) return &object;
     if (others_ == 0 || !inside(object)) return beside(object);
@@ -65,7 +65,7 @@ class MediumStack {
     return beyond.beside(object);
   }
 
-  /// Boundaries that lie in the same place as the one the path has come to, in the direction it travels in: they are crossed
+  /// Boundaries that coincide with the one that the path has hit, with the side from which the path comes: they are crossed
   /// together with it, or not at all.
   void forget_others() { others_ = 0; }
   void note_other(const SceneObject& object, bool entered) {
@@ -114,7 +114,7 @@ class MediumStack {
   }
 
  private:
-  /// What has an index without the object.
+  /// The effective object with a refractive index, without the given one.
   const SceneObject* beside(const SceneObject& object) const {
     const SceneObject* top = top_excluding(&object, true);
     return top || !surroundings_ || !has_own_index(*surroundings_) ? top : surroundings_;
@@ -144,7 +144,7 @@ class MediumStack {
   static constexpr int most_owed = 4;
 
   const SceneObject* inside_[capacity];
-  const SceneObject* left_[most_owed];  // before they were entered
+  const SceneObject* left_[most_owed];  // exits before an entry: inverted meshes
   const SceneObject* surroundings_ = nullptr;
   Other other_[most_others];
   int size_ = 0, owed_ = 0, forgotten_ = 0, others_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
-// PathRecord: what a path did, for people and programs. Filled only when a sample is replayed.
+// PathRecord: the vertices and contributions of one path in readable form, for users and programs. Filled only when a sample is
+// replayed.
 
 #include <string>
 #include <vector>
@@ -12,26 +13,27 @@ namespace etendue {
 struct PathRecord {
   struct Vertex {
     std::string kind;       ///< "camera", "surface", "escaped", …
-    std::string object;     ///< its name or class
-    DoublePoint3 position;  ///< while it is filled as the renderer counts, then in the coordinates of the world
+    std::string object;     ///< the name of the object, or its class
+    DoublePoint3 position;  ///< in rendering space while the path is traced, then in world space (count_from_world)
     Normal3 normal;
-    std::string lobe;     ///< what was sampled there; empty: the path ended
+    std::string lobe;     ///< the lobe that was sampled; empty: the path ended
     float pdf = 0;        ///< [1/sr] of the sampled direction (a probability for specular lobes)
     Spectrum throughput;  ///< of the path up to here, before scattering
-    Spectrum emitted;     ///< weighted contribution of light emitted here towards the path
-    Spectrum direct;      ///< weighted contribution of light sampled from here
-    std::string note;     ///< roulette, dispersion, media…
+    Spectrum emitted;     ///< weighted contribution of the emitter hit at this vertex
+    Spectrum direct;      ///< weighted contribution of next event estimation from this vertex
+    std::string note;     ///< on roulette, dispersion, media…
   };
-  /// Light one strategy brought, as it counts in the picture.
+  /// The contribution of one strategy.
   struct Contribution {
-    std::string strategy;  ///< "luminaire met", "luminaire sampled", or how many vertices come from each end
+    std::string strategy;  ///< "emitter hit", "next event estimation", or the numbers of vertices from the luminaire and from
+                           ///< the camera
     int length = 0;        ///< segments from the lens to the luminaire
     float weight = 1;      ///< of multiple importance sampling
     Spectrum value;        ///< weighted
-    Point2 film;           ///< where it falls
-    bool splat = false;    ///< falls there by itself, not as part of the sample's own value
+    Point2 film;           ///< the film point it is added to, for splats
+    bool splat = false;    ///< added to that film point as a splat, and not part of the sample's own radiance
   };
-  /// Of endless paths this many vertices are kept, and as many contributions: all first ones, and the last.
+  /// The maximum number of vertices and of contributions that are stored of a very long path: the first ones, and the last.
   static constexpr size_t most = 10000;
   void add(Vertex v) {
     add_to(vertices, std::move(v), [](Vertex& last) { last.note = "vertices before this one are left out"; });
@@ -39,14 +41,15 @@ struct PathRecord {
   void contribute(Contribution c) {
     add_to(contributions, std::move(c), [](Contribution& last) { last.strategy += ", others before it left out"; });
   }
-  /// To be called when all is filled, with the point of the world that the renderer counts from.
+  /// Converts positions from rendering space, with the origin `centre`, to world space. To be called once, when the record is
+  /// complete.
   void count_from_world(const DoublePoint3& centre) {
     for (auto* list : {&vertices, &light_vertices})
       for (Vertex& v : *list) v.position = v.position + (centre - DoublePoint3{});
   }
 
   std::vector<Vertex> vertices;        ///< from the camera
-  std::vector<Vertex> light_vertices;  ///< from a luminaire, when the renderer begins paths there
+  std::vector<Vertex> light_vertices;  ///< from a luminaire, if the renderer traces light subpaths
   std::vector<Contribution> contributions;
   Wavelengths wavelengths;
   Spectrum result;

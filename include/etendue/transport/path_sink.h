@@ -1,6 +1,7 @@
 #pragma once
-// PathSink: where the results of a path go besides the radiance that it returns. Features of the first surface, radiance by
-// path length, splats, training samples of a guide, and the record of a replay. Each is optional: an unused one costs one test.
+// PathSink: receives the results of a path besides the radiance that it returns. These are the features of the first surface,
+// radiance by path length, splats, training samples of a guide, and the record of a replay. Each is optional: an unused one
+// costs one test.
 
 #include <algorithm>
 #include <atomic>
@@ -15,7 +16,7 @@
 
 namespace etendue {
 
-/// A contribution to another point of the film than the sample's own: of a path that began at a luminaire.
+/// A contribution to another point of the film than the sample's own, from a path that started at a luminaire.
 struct Splat {
   Point2 film;
   Spectrum value;  ///< the contribution of one path to the mean radiance over the whole film, with importance normalised to an
@@ -45,12 +46,12 @@ class RecordList {
 };
 
 struct PathSink {
-  Features* features = nullptr;              ///< filled at the first surface; null: not wanted
-  PathRecord* record = nullptr;              ///< filled when a sample is replayed; null: not wanted
+  Features* features = nullptr;              ///< filled at the first surface; null: not needed
+  PathRecord* record = nullptr;              ///< filled when a sample is replayed; null: not needed
   std::span<Spectrum> lengths = {};          ///< radiance by path length, the last entry for all longer paths too
   std::vector<Splat>* splats = nullptr;      ///< null: splats are dropped
   RecordList records = {};                   ///< of RenderProcess::film_paths<T>; empty in a replay
-  const std::atomic<bool>* abort = nullptr;  ///< true: the results are not used any more; null: they always are
+  const std::atomic<bool>* abort = nullptr;  ///< true: the results are no longer needed; null: they always are
 
   /// Whether the path may end with any result. A path or a tree of rays can take hours (between white walls, with a large
   /// `max_depth`), so every loop over vertices tests this now and then.
@@ -115,7 +116,7 @@ struct PathSink {
                       float before);
 };
 
-/// How users identify an object: by its name in the file, and its class.
+/// The description of an object for users: its name in the file, and its class.
 std::string object_name(const SceneObject&);
 
 /// "diffuse reflection", …

@@ -1,5 +1,7 @@
 #pragma once
-// Vertices of light transport paths.
+// PathVertex: the vertex of any path, with the local quantities that every light transport algorithm needs: f |cos| and the pdf
+// of scattering at the vertex, and rays that leave it or connect it to another vertex. SubpathVertex (subpath.h) adds what
+// multiple importance sampling needs, ChainVertex (light_path.h) specular chains for path space Metropolis.
 
 #include "etendue/camera.h"
 #include "etendue/scene.h"
@@ -10,30 +12,31 @@
 
 namespace etendue {
 
-/// Where a path is scattered, begins or ends.
+/// A point where a path starts, is scattered or ends.
 struct PathVertex {
   enum class Kind : std::uint8_t { camera, luminaire, surface, medium, escape };
 
   Kind kind = Kind::surface;
-  /// Of a surface: light left a body here that it entered elsewhere (Shader::sample_exit); no ray came here.
+  /// The vertex is the exit point of subsurface scattering (Shader::sample_exit): no ray of the path ends here.
   bool subsurface_exit = false;
-  SurfacePoint point;                  ///< in a medium only the position and time mean something; of an escape nothing
-  const Scatter* scatter = nullptr;    ///< of a surface; null: black
-  Lobes lobes = vertex_lobes;          ///< those of a surface among which a walk chooses
-  Medium medium;                       ///< of a vertex in a medium
-  const MediumStack* media = nullptr;  ///< around, on the side of `out`; null: nothing is tracked
-  Vector3 out;                         ///< unit, to the vertex before; of an escape: against the ray
+  SurfacePoint point;                  ///< in a medium only position and time are valid; for an escape nothing
+  const Scatter* scatter = nullptr;    ///< the BSDF, on a surface; null: black
+  Lobes lobes = vertex_lobes;          ///< the lobes of a surface that a walk samples
+  Medium medium;                       ///< the medium that scatters, for a vertex in a medium
+  const MediumStack* media = nullptr;  ///< the media around the vertex, on the side of `out`; null: media are not tracked
+  Vector3 out;                         ///< unit, to the vertex before; for an escape the direction opposite to the ray
 
   bool on_surface() const { return kind == Kind::surface; }
   bool in_medium() const { return kind == Kind::medium; }
-  /// Whether light that comes from a direction can be scattered here, and not by a mirror alone.
+  /// Whether the vertex has a lobe that is not a delta distribution, so that next event estimation and connections can reach
+  /// it.
   bool scatters_smoothly() const { return in_medium() || (on_surface() && scatter && scatter->has(smooth_lobes)); }
-  /// For a light sampler: zero where directions are not measured against a surface.
+  /// The normal for a light sampler: zero in media, where there is no surface.
   Normal3 normal() const { return in_medium() ? Normal3{} : point.normal; }
 };
 
-/// f |cos| of light scattered at a surface or a point of a medium from `out` towards `in` [1/sr], and the solid-angle density
-/// with which a walk that came from `out` is scattered to `in` [1/sr].
+/// f |cos| [1/sr] of a path that comes from `out` and continues to `in`, or the phase function in a medium; and the pdf [1/sr]
+/// with which it samples `in`.
 inline ScatterValue scattering(const PathVertex& v, const Vector3& out, const Vector3& in, Transport transport) {
   if (v.in_medium()) {
     const float phase = v.medium.phase(v.point.position, v.point.time, out, in);
@@ -41,16 +44,17 @@ inline ScatterValue scattering(const PathVertex& v, const Vector3& out, const Ve
   }
   return v.scatter ? v.scatter->value_and_pdf(out, in, transport, v.lobes) : ScatterValue{};
 }
-/// The same density alone.
+/// Only that pdf.
 inline float scattering_pdf(const PathVertex& v, const Vector3& out, const Vector3& in, Transport transport) {
   if (v.in_medium()) return v.medium.phase(v.point.position, v.point.time, out, in);
   return v.scatter ? v.scatter->pdf(out, in, transport, v.lobes) : 0;
 }
 
-/// A direction that somebody else chose, with this density [1/sr], as a walk goes on in it (Walk::leave): a guide's, a map's.
-/// Smooth lobes alone scatter there, so a guide must leave some chance to `sample_direction`, which knows of the others.
-/// `density` is that of the whole mixture; what `sample_direction` gives is to be weighted by (its density / the mixture's) if
-/// smooth, and over its share if specular. Empty: nothing is scattered that way.
+/// The sample of a direction that another distribution chose, such as a path guide, with that distribution's pdf [1/sr]; for
+/// Walk::leave. Only smooth lobes are evaluated, so a mixture must also use `sample_direction`, which samples the specular
+/// lobes. `pdf` is that of the whole mixture. The weight of a sample from `sample_direction` must be multiplied by (its pdf /
+/// pdf of the mixture) if it is smooth, and divided by the probability of that strategy if it is specular. Empty: f is 0 in
+/// this direction.
 inline std::optional<ScatterSample> scattered_towards(const PathVertex& v, const Vector3& in, float pdf, Transport transport) {
   const ScatterValue f = scattering(v, v.out, in, transport);
   if (!(pdf > 0) || f.value.black()) return {};
@@ -62,17 +66,17 @@ inline std::optional<ScatterSample> scattered_towards(const PathVertex& v, const
   return s;
 }
 
-/// A ray from one vertex to another that ends just before it.
+/// A shadow ray from one vertex to another, which ends just before it.
 Ray connecting_ray(const PathVertex& from, const PathVertex& to);
-/// Whether the camera does not see what a vertex lies on.
+/// Whether the vertex lies on an object that is invisible to the camera.
 inline bool unseen(const PathVertex& v) {
   return (v.on_surface() || v.kind == PathVertex::Kind::luminaire) && !v.point.object->visible_to_camera;
 }
-/// A ray from a vertex to a point of the lens.
+/// A shadow ray from a vertex to a point of the lens.
 Ray lens_ray(const PathVertex&, const LensSample&);
 /// A ray that leaves a vertex.
 Ray leaving_ray(const PathVertex& from, const Vector3& direction);
-/// The media along a ray that leaves a vertex; `scratch` holds them when they differ from those around the vertex.
+/// The media along a ray that leaves a vertex. `scratch` holds them if they differ from those around the vertex.
 const MediumStack* media_towards(const PathVertex&, const Vector3& direction, MediumStack& scratch);
 
 }  // namespace etendue

@@ -1,9 +1,10 @@
 #pragma once
-// A balanced tree over points: for all within a distance, or the nearest of them (Bentley 1975, "Multidimensional binary search
-// trees used for associative searching"; Jensen 2001, section 6.2).
+// PointTree: a balanced k-d tree over points, for searches within a radius and for the nearest points (Bentley 1975,
+// "Multidimensional binary search trees used for associative searching"; Jensen 2001, section 6.2).
 //
-// Points are put in an order in which each node of the tree is a range: of n points the first n/2 lie on the lower side of a
-// plane across the longest edge of their box, and so on down to a few points. Only planes are stored, about a byte a point.
+// The points are sorted so that each node of the tree is a range: of n points the first n/2 lie on the lower side of a plane
+// perpendicular to the longest edge of their bounding box, and so on down to a few points. Only planes are stored, about a byte
+// per point.
 
 #include <array>
 #include <cstdint>
@@ -17,9 +18,9 @@ namespace etendue {
 
 class PointTree {
  public:
-  static constexpr size_t leaf = 8;  ///< points that are not divided further
-  /// Builds it on all cores. Returns the order of points: the tree calls that which was the order[i]-th of them i. At most
-  /// 2^32.
+  static constexpr size_t leaf = 8;  ///< maximum number of points in a leaf
+  /// Builds the tree on all cores. Returns the order of the points: point i of the tree is points[order[i]]. At most 2^32
+  /// points.
   std::vector<std::uint32_t> build(std::span<const Point3> points);
 
   size_t size() const { return points_.size(); }
@@ -27,21 +28,21 @@ class PointTree {
   /// [bytes]
   size_t memory() const { return points_.capacity() * sizeof(Point3) + planes_.capacity() * sizeof(Plane); }
 
-  /// Calls `visit(i, squared distance)` for all points nearer than `radius`, in a fixed order.
+  /// Calls `visit(i, squared distance)` for all points within `radius`, in a fixed order.
   template <class Visit>
   void within(const Point3& p, float radius, Visit&& visit) const {
     float squared = square(radius);
     search(p, squared, [&](std::uint32_t i, float d2) { visit(i, d2); });
   }
 
-  /// Calls `visit(i, t)` for all points nearer than `radius` to the part of a line from its origin to the distance `reach`,
-  /// with t where the line passes the point; in a fixed order. `direction` is unit.
+  /// Calls `visit(i, t)` for all points within `radius` of a line segment, from its origin to the distance `reach`, with t the
+  /// parameter of the closest point of the line; in a fixed order. `direction` is unit.
   template <class Visit>
   void along(const Point3& origin, const Vector3& direction, float reach, float radius, const Visit& visit) const {
     struct Part {
       std::uint32_t begin, end;
       std::uint64_t node;
-      float from, to;  ///< of the line, as far as it can come near the node's points
+      float from, to;  ///< interval of the line in which it can be close to the node's points
     };
     std::array<Part, 64> stack;
     stack[0] = {0, std::uint32_t(points_.size()), 0, -radius, reach + radius};
@@ -55,7 +56,7 @@ class PointTree {
         }
         continue;
       }
-      // The lower side: where the line is less than `radius` above the plane. The upper one likewise.
+      // The lower child: the part of the line that is less than `radius` above the plane. The upper child likewise.
       const Plane& plane = planes_[at.node];
       const float o = origin[int(plane.axis)] - plane.at, d = direction[int(plane.axis)];
       const float below = (radius - o) / d, above = (-radius - o) / d;
@@ -83,9 +84,9 @@ class PointTree {
     std::uint32_t index;
     bool operator<(const Near& b) const { return squared != b.squared ? squared < b.squared : index < b.index; }
   };
-  /// The `count` nearest of those nearer than `radius`, in a heap with the farthest first; fewer when there are no more.
+  /// The `count` nearest points within `radius`, in a heap with the farthest first; fewer if there are no more.
   void nearest(const Point3& p, float radius, size_t count, std::vector<Near>& found) const;
-  /// A place for what is found, until the thread looks again.
+  /// A buffer for the result, valid until the next call on this thread.
   static std::vector<Near>& near_on_this_thread();
 
  private:
@@ -95,13 +96,13 @@ class PointTree {
   };
   void divide(std::span<const Point3>, std::uint32_t* order, size_t begin, size_t end, size_t node);
 
-  /// `squared` may be made smaller by `visit`.
+  /// `visit` may reduce `squared`.
   template <class Visit>
   void search(const Point3& p, const float& squared, const Visit& visit) const {
     struct Range {
       std::uint32_t begin, end;
       std::uint64_t node;
-      float least;  ///< squared distance of its side of the last plane
+      float least;  ///< lower bound of the squared distance to the points, from the planes above
     };
     std::array<Range, 64> stack;
     int waiting = 0;

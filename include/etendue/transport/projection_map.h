@@ -1,6 +1,7 @@
 #pragma once
-// Light sent where it is thrown on by mirrors and glass: Jensen's projection maps (1996, section 3.1), with spheres around such
-// objects in their place. Of all light that leaves luminaires, caustics need only what meets such an object first.
+// ProjectionMap: emission of light towards specular objects only, for caustics. It is the projection map of Jensen (1996,
+// section 3.1), with bounding spheres of these objects in place of a map of directions. Of all emitted light, caustics need
+// only that which hits such an object first.
 
 #include <vector>
 
@@ -10,20 +11,20 @@ namespace etendue {
 
 class ProjectionMap {
  public:
-  /// Spheres around what has mirror-like lobes in a prepared scene; of very many such objects neighbours share one.
+  /// Bounding spheres of the objects of a prepared scene that have specular lobes; of very many such objects, neighbours share
+  /// one.
   explicit ProjectionMap(const Scene&);
 
-  /// Whether sending light there alone saves anything: there are such objects, none without end, and they are smaller than the
-  /// scene. What is not useful must not be used.
+  /// Whether emission towards the spheres alone saves anything: there are such objects, none of them unbounded, and they are
+  /// smaller than the scene. Otherwise the map must not be used.
   bool useful() const { return useful_; }
 
-  /// As etendue::sample_emitted_light, of light that goes towards a target; other light has no chance, and that which goes on
-  /// to none of them by `sample_emitted_light` is all that is missing. From infinity a place is uniform over the discs of all
-  /// targets, across the direction:
-  ///     p = (how many of the discs it lies in) / sum pi r^2   [1/m^2].
-  /// From elsewhere half of the directions are those of the emission shader, with its density p_e, the others uniform over the
-  /// cones around targets:
-  ///     p = 1/2 p_e + 1/2 (how many of the cones it lies in) / sum of the cones   [1/sr].
+  /// Like etendue::sample_emitted_light, for light that goes towards a sphere. All such light is sampled; other light may be
+  /// missing. From infinity the rays are uniform over the discs of all spheres, across the direction:
+  ///     p = (number of discs that contain the point) / sum pi r^2   [1/m^2].
+  /// From a point of a luminaire, half of the directions are sampled by the emission shader, with its pdf p_e, the others
+  /// uniformly over the cones around the spheres:
+  ///     p = 1/2 p_e + 1/2 (number of cones that contain the direction) / sum of the solid angles of the cones   [1/sr].
   bool sample_emitted_light(const Scene&, const LightSampler&, const Wavelengths&, float time, NumberStream&,
                             EmittedLight&) const;
 
@@ -38,7 +39,7 @@ class ProjectionMap {
   int met_by(const Point3&, const Vector3& direction, bool ahead_alone) const;
 
   std::vector<Sphere> spheres_;
-  std::vector<float> up_to_;  ///< sums of r^2 up to each sphere
+  std::vector<float> up_to_;  ///< prefix sums of r^2
   bool useful_ = false;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Steps that renderers which follow trees of rays from the camera have in common.
+// Ray trees: the steps shared by renderers that trace a tree of rays from the camera.
 
 #include "etendue/transport/boundaries.h"
 #include "etendue/transport/light_groups.h"
@@ -9,15 +9,15 @@
 
 namespace etendue {
 
-/// The media around the beginning of a camera ray; null when the scene has nothing that a ray could be in.
+/// The media around the origin of a camera ray; null if the scene has no objects that a ray can be inside of.
 inline MediumStack* media_around(const Scene& scene, const Ray& ray, MediumStack& media) {
   if (!scene.has_interiors()) return nullptr;
   media_at(scene, ray.origin, ray.time, media);
   return &media;
 }
 
-/// The nearest surface on a ray; boundaries inside something of higher priority are crossed on the way, which moves the
-/// ray's origin. `media` are those around the ray; null: nothing is tracked.
+/// Finds the nearest surface on a ray. Boundaries that are hidden inside an object of higher priority are crossed on the way,
+/// which moves the ray's origin. `media` are those around the origin; null: media are not tracked.
 inline bool meet_surface(const Scene& scene, Ray& ray, MediumStack* media, Hit& hit, SurfacePoint& point) {
   for (int crossings = 0; scene.nearest(ray, hit); ++crossings) {
     scene.locate(ray, hit, point);
@@ -32,11 +32,11 @@ inline bool meet_surface(const Scene& scene, Ray& ray, MediumStack* media, Hit& 
   return false;
 }
 
-/// Makes a ray go on from a point in a sampled direction; `media` are changed when it goes through the surface. Its cone
-/// goes on as from a plane mirror.
+/// Continues a ray from a point in a sampled direction; `media` change if the ray goes through the surface. The width of the
+/// ray grows as after a plane mirror.
 inline void go_on(const SurfacePoint& point, const ScatterSample& next, Ray& ray, MediumStack* media) {
   if (media && next.transmitted()) cross_boundary(*media, *point.object, point.normal, next.direction);
-  // What goes straight on ends where the ray did (Camera::Reach).
+  // A null-scattered ray keeps its far end (Camera::Reach).
   ray.maximum = next.lobe == null_scattering ? ray.maximum - distance(ray.origin, point.position) : infinity;
   ray.origin = point.exit(next.direction);
   ray.direction = next.direction;
@@ -44,16 +44,16 @@ inline void go_on(const SurfacePoint& point, const ScatterSample& next, Ray& ray
   ray.width = point.footprint;
 }
 
-/// Light that a luminaire sends to a point, if nothing lies on the shadow ray.
+/// Unoccluded light from a point of a luminaire: the shadow ray has not been traced yet.
 struct LuminaireSample {
   Vector3 direction;  ///< unit, to the luminaire
   Spectrum radiance;  ///< [W m^-2 sr^-1 nm^-1]
-  float pdf = 0;      ///< [1/sr], without the probability of choosing this luminaire
+  float pdf = 0;      ///< [1/sr], without the probability of the luminaire
   bool delta = false;
   Ray shadow;
 };
 
-/// Chooses a point on a luminaire; false: no light comes from there.
+/// Samples a point on a luminaire as seen from a surface point; false: no light arrives from there.
 inline bool sample_luminaire(const Scene& scene, const SceneObject& luminaire, const SurfacePoint& point,
                              const Wavelengths& wavelengths, Point2 u, LuminaireSample& light) {
   SurfaceSample s = luminaire.sample_visible(point.position, u, point.time);
@@ -70,17 +70,17 @@ inline bool sample_luminaire(const Scene& scene, const SceneObject& luminaire, c
   return true;
 }
 
-/// A ray and all that belongs to it alone: branches of a tree may be in different media, and carry different wavelengths.
+/// A ray of the tree with its own state: the branches of a tree can be in different media, and carry different wavelengths.
 struct RayBranch {
   Ray ray;
   Spectrum throughput{1.0f};
   Wavelengths wavelengths;
   MediumStack media = {};
-  bool tracked = false;  ///< whether media are
+  bool tracked = false;  ///< whether media are tracked
   int depth = 1;         ///< segments from the camera to the ray's end
-  int crossings = 0;     ///< surfaces it went straight on through since it was last scattered
+  int crossings = 0;     ///< consecutive null scatterings
 
-  /// Notes a step on; false: it must end (see most_crossings).
+  /// Counts a scattering by this lobe; false: the ray must end (most_crossings).
   bool may_go_on(Lobe lobe) {
     crossings = lobe == null_scattering ? crossings + 1 : 0;
     return crossings <= most_crossings;
@@ -92,7 +92,7 @@ struct RayBranch {
   MediumStack* around() { return tracked ? &media : nullptr; }
 };
 
-/// What all branches of one sample's tree work on, and the light they gather.
+/// The state that all branches of one sample's tree share, and the radiance that they gather.
 struct RayTree {
   const Scene& scene;
   SampleContext& sample;

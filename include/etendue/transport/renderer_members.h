@@ -1,5 +1,5 @@
 #pragma once
-// Members that several renderers have, each declared once.
+// Descriptions of members that several renderers have, so that each is declared once.
 
 #include <string>
 
@@ -8,7 +8,7 @@
 
 namespace etendue {
 
-/// `int`: the longest path in segments. `more` goes on with what is said of it.
+/// `int`: the longest path in segments. `more` is appended to the help text.
 template <auto member, class R>
 Description<R>& describe_max_depth(Description<R>& d, const std::string& more = "", Range allowed = at_least(1)) {
   return d.template member<member>("max_depth", "1",
@@ -23,7 +23,7 @@ Description<R>& describe_roulette_depth(Description<R>& d) {
                                    soft(1, 64), logarithmic);
 }
 
-/// `Heuristic`; `when` it matters.
+/// `Heuristic`; `when` are conditions under which it has an effect.
 template <auto member, class R, class... Conditions>
 Description<R>& describe_heuristic(Description<R>& d, Conditions... when) {
   return d.template member<member>("heuristic", "", "how strategies that find the same light are weighted against each other",
@@ -45,8 +45,8 @@ Description<R>& describe_splitting(Description<R>& d) {
           range(1, spectrum_size));
 }
 
-/// What max_depth says of renderers that keep a walk as a whole, and how long such walks may be [segments]. A vertex takes
-/// about a kilobyte with what lies around it and how it scatters, so a walk as long as this takes 100 MB for each thread.
+/// The text that max_depth adds for renderers that store a whole subpath, and the maximum length of such subpaths [segments]. A
+/// vertex takes about a kilobyte with its medium stack and its BSDF, so a subpath of this length takes 100 MB per thread.
 inline constexpr int longest_stored_subpath = 100000;
 inline const char* const stored_subpath_depth =
     ". Walks are kept as a whole, which takes up to 1 kB for each segment and thread, hence the limit";

@@ -6,13 +6,13 @@
 
 namespace etendue {
 
-/// Ends walks that carry little, and lets others carry more: one that survives with probability q is divided by q, so what all
-/// walks carry together has the same mean. q is what is left of what the walk began with (Walk::left). What a branch of a
-/// divided walk is due (Walk::due) comes to that.
+/// Ends walks with a small throughput at random. A walk that survives with probability q is divided by q, so the mean of the
+/// throughput is unchanged. q is the throughput relative to the initial one (Walk::roulette_weight), at most 1. The pending
+/// survival probability of a branch of a split walk (Walk::pending_survival) is applied as well.
 struct Roulette {
   int depth = 5;  ///< segments before it may end a walk
 
-  /// False: the walk ends. Takes a number only where there is a choice. `left`: what counts as left of the walk.
+  /// False: the walk ends. Takes a random number only if q may be below 1. `roulette_weight` replaces that of the walk.
   template <class Walk>
   bool survives(Walk& walk) const {
     return survives(walk, walk.roulette_weight());

@@ -1,5 +1,6 @@
 #pragma once
-// How light is scattered at a point of a surface, as renderers ask for it.
+// How algorithms get the BSDF at a point of a surface: `scattering_at` binds the object's shader and applies the sides that
+// scatter.
 
 #include "etendue/describe/component.h"
 #include "etendue/scene.h"
@@ -7,10 +8,11 @@
 
 namespace etendue {
 
-/// The lobes that make a vertex of a path; what passes straight on makes none.
+/// The lobes whose scattering is a vertex of a path: all but null scattering.
 inline constexpr Lobes vertex_lobes = Lobes(all_lobes & ~null_scattering);
 
-/// How a shader scatters at a point. What its bind throws is told with its class; that costs nothing while nothing is thrown.
+/// The shader's BSDF at a point. An exception from Shader::bind is rethrown with the class of the shader; without one there is
+/// no cost.
 inline const Scatter* bound(const Shader& shader, const SurfacePoint& p, const Wavelengths& w, Arena& arena) {
   try {
     return shader.bind(p, w, arena);
@@ -19,7 +21,7 @@ inline const Scatter* bound(const Shader& shader, const SurfacePoint& p, const W
   }
 }
 
-/// What the black side of a surface leaves of its scattering: light that goes straight on, through holes and thin panes.
+/// The scattering on the black side of a one-sided surface: null scattering alone, through holes and thin panes.
 class StraightScatter final : public ScatterCombination {
  public:
   StraightScatter(const SurfacePoint& p, const Scatter& whole) : ScatterCombination(p, null_scattering), whole_(whole) {
@@ -27,7 +29,7 @@ class StraightScatter final : public ScatterCombination {
   }
   ScatterValue world_value_and_pdf(const Vector3&, const Vector3&, Transport, Lobes) const override { return {}; }
   std::optional<ScatterSample> world_sample(const Vector3& out, float, Point2, Transport transport, Lobes) const override {
-    return whole_.sample(out, 0, {}, transport, null_scattering);  // asked alone the lobe is certain
+    return whole_.sample(out, 0, {}, transport, null_scattering);  // requested alone, the lobe has probability 1
   }
   Spectrum world_albedo(const Vector3& out, Lobes) const override { return whole_.albedo(out, null_scattering); }
 
@@ -35,7 +37,7 @@ class StraightScatter final : public ScatterCombination {
   const Scatter& whole_;
 };
 
-/// How light is scattered towards `out`; null: it is not.
+/// The BSDF at a point of a surface that is seen from `out`; null: nothing is scattered.
 inline const Scatter* scattering_at(const SurfacePoint& point, const Vector3& out, const Wavelengths& wavelengths,
                                     Arena& arena) {
   const SceneObject& object = *point.object;
@@ -48,7 +50,8 @@ inline const Scatter* scattering_at(const SurfacePoint& point, const Vector3& ou
   return whole->lobes() == null_scattering ? whole : arena.make<StraightScatter>(point, *whole);
 }
 
-/// Whether a sampled direction leads into a body that light leaves elsewhere: who does not ask where loses the path.
+/// Whether a sampled direction enters an object with subsurface scattering. The algorithm must then sample an exit point
+/// (Walk::subsurface_exit_found) or end the path.
 inline bool enters_subsurface(const SurfacePoint& point, const ScatterSample& next) {
   return next.transmitted() && next.lobe != null_scattering && point.object->shader->has_subsurface_exit();
 }

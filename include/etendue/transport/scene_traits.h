@@ -1,5 +1,5 @@
 #pragma once
-// SceneTraits: what kinds of light transport a scene asks for. Renderers say by these what they cannot find.
+// SceneTraits: the kinds of objects in a scene that decide which light transport algorithms can render it (path_classes.h).
 
 #include <string>
 #include <vector>
@@ -11,28 +11,29 @@
 namespace etendue {
 
 struct SceneTraits {
-  /// Each list names objects, as the user did, each once wherever its scene stands; empty: there are none of the kind.
-  std::vector<std::string> specular;                       ///< surfaces with mirror-like lobes, pass-through aside
-  std::vector<std::string> refracting;                     ///< those of them that transmit
+  /// Each list contains the names of objects in the file, each once even if its scene is instantiated several times; empty:
+  /// there are none.
+  std::vector<std::string> specular;                       ///< surfaces with specular lobes, null scattering aside
+  std::vector<std::string> refracting;                     ///< those of them with specular transmission
   std::vector<std::string> smooth;                         ///< surfaces with diffuse or glossy lobes
   std::vector<std::string> diffuse;                        ///< surfaces with diffuse lobes
   std::vector<std::string> glossy;                         ///< surfaces with glossy lobes
-  std::vector<std::string> points;                         ///< luminaires without extent at a finite place
-  std::vector<std::string> distant;                        ///< luminaires that are a single direction
-  std::vector<std::string> areas;                          ///< luminaires with an area
-  std::vector<std::string> environments;                   ///< luminaires at infinity that rays can meet
-  std::vector<std::string> seen_areas, seen_environments;  ///< of both, those that the camera sees
-  std::vector<std::string> media;                          ///< objects with a scattering or absorbing volume
-  std::vector<std::string> emissive_media;                 ///< objects with a volume that emits
-  std::vector<std::string> heterogeneous_media;            ///< objects with a volume that differs from place to place
-  std::vector<std::string> subsurface_exits;  ///< surfaces that light which enters leaves elsewhere (subsurface scattering)
-  std::vector<std::string> null_scattering;   ///< surfaces that let light pass straight on
-  bool pinhole = true;                        ///< the camera's lens is a point (or its rays parallel): no path meets it
+  std::vector<std::string> points;                         ///< delta lights at a finite position
+  std::vector<std::string> distant;                        ///< delta lights at infinity: a single direction
+  std::vector<std::string> areas;                          ///< emitters with an area
+  std::vector<std::string> environments;                   ///< emitters at infinity that escaping rays can hit
+  std::vector<std::string> seen_areas, seen_environments;  ///< those of both that are visible to the camera
+  std::vector<std::string> media;                          ///< objects with a medium inside
+  std::vector<std::string> emissive_media;                 ///< objects with a medium that emits
+  std::vector<std::string> heterogeneous_media;            ///< objects with a heterogeneous medium
+  std::vector<std::string> subsurface_exits;  ///< surfaces with subsurface scattering that has separate exit points
+  std::vector<std::string> null_scattering;   ///< surfaces with null scattering
+  bool pinhole = true;                        ///< the camera's lens is a point (or its rays are parallel): no path hits it
 
   bool delta_luminaires() const { return !points.empty() || !distant.empty(); }
 };
 
-/// Looks at a prepared scene.
+/// The traits of a prepared scene.
 SceneTraits scene_traits(const Scene&, const Camera&);
 
 /// "'lamp', 'bulb' and 3 more"

@@ -1,17 +1,17 @@
 #pragma once
-// Walks that are kept as a whole, with the densities of their vertices from both sides: for algorithms that connect or compare
-// what two walks found.
+// SubpathVertex: the vertices of a subpath that is stored as a whole, with the pdfs by which both directions of tracing sample
+// them: for algorithms that connect two subpaths, merge them, or weight strategies against each other (bidirectional_weight.h).
 //
-// Densities of vertices are per area [1/m^2] on surfaces and per volume [1/m^3] in media, where the density of the distance
-// takes the place of the cosine: with p_w the solid-angle density of the direction from a to b and S the chance to get
-// along the edge,
+// The pdf of a vertex is per area [1/m^2] on surfaces and per volume [1/m^3] in media, where the pdf of the distance replaces
+// the cosine. With p_w the pdf [1/sr] of the direction from a to b, d their distance, S the transmittance of the segment and
+// s_b the extinction at b,
 //     p(b) = p_w S |cos_b| / d^2   or   p_w S s_b / d^2   (Veach 1997, section 8.2.2; Pauly, Kollig & Keller 2000,
-// "Metropolis light transport for participating media", section 3). Points of a luminaire at infinity have densities
-// per solid angle, and what they light has the density p_A |cos| or p_A s_b, with p_A that of its place across the direction
-// (EmissionPlane).
+// "Metropolis light transport for participating media", section 3). Points of a luminaire at infinity have pdfs per solid
+// angle, and the points that it lights have the pdf p_A |cos| or p_A s_b, with p_A [1/m^2] that of the ray's point on the plane
+// across its direction (EmissionPlane).
 //
-// These densities only weigh strategies against one another, and for that need be the same whichever strategy made
-// the path: S and s_b are means over the path's wavelengths, and specular scattering counts 1.
+// These pdfs are used in weights only, and must not depend on the strategy that made the path. So S and s_b are means over the
+// path's wavelengths, and the pdf of a specular lobe counts as 1.
 
 #include <optional>
 #include <vector>
@@ -22,48 +22,52 @@
 
 namespace etendue {
 
-/// A vertex of such a walk. What it points to lies in the sample's arena.
+/// A vertex of a stored subpath. The objects that it points to lie in the sample's arena.
 struct SubpathVertex : PathVertex {
-  bool specular = false;         ///< the walk left it by a specular lobe
-  bool infinite = false;         ///< a luminaire at infinity, or an escaped ray
-  bool single = false;           ///< the throughput holds the hero only
-  bool parallel = false;         ///< of a camera whose rays are parallel: its directions are given by places, not angles
-  Spectrum throughput;           ///< what arrives, over the walk's density: of light flux [W/nm], of the camera 1 at first
-  float extinction = 0;          ///< mean over wavelengths [1/m], in a medium
-  float mean_transmittance = 1;  ///< of getting along the edge from the vertex before
+  bool specular = false;         ///< the subpath left the vertex by a specular lobe
+  bool infinite = false;         ///< on a luminaire at infinity, or an escaped ray
+  bool hero_only = false;        ///< the throughput holds the hero wavelength only
+  bool parallel = false;         ///< the camera is orthographic: its rays have a pdf per area [1/m^2] instead of per solid
+                                 ///< angle
+  Spectrum throughput;           ///< alpha: contribution of the subpath up to here over its pdf; from a luminaire flux [W/nm],
+                                 ///< from the camera 1 at first
+  float extinction = 0;          ///< in a medium [1/m], mean over the wavelengths
+  float mean_transmittance = 1;  ///< of the segment from the vertex before
   float pdf_forward = 0,
-        pdf_reverse = 0;  ///< densities from the walk's side, and from the other: had a walk come here from the next
+        pdf_reverse = 0;  ///< by which the subpath itself sampled the vertex, and by which a subpath from the next vertex would
+                          ///< sample it
 
-  /// Whether a path that ends here can be connected to another: by what is not specular, whatever the walk chose.
+  /// Whether the vertex can be connected to a vertex of another subpath: it has a lobe that is not specular, whichever lobe the
+  /// subpath sampled.
   bool connectable() const { return on_surface() ? scatters_smoothly() : kind != Kind::escape; }
 };
 
 template <bool clear>
 class Walk;
 
-/// Who chooses directions of walks from the camera where not scattering alone does: a guide.
+/// A distribution that samples the directions of camera subpaths in place of scattering alone: a path guide.
 class CameraDirections {
  public:
   virtual ~CameraDirections() = default;
   struct Choice {
-    std::optional<ScatterSample> next;  ///< its density is that of whatever might have chosen it; empty: absorbed
-    float more = 1;                     ///< that density, over the one of scattering alone
+    std::optional<ScatterSample> next;  ///< its pdf is that of the whole mixture; empty: absorbed
+    float more = 1;                     ///< that pdf over the pdf of scattering alone
   };
-  /// Where a walk goes on from its last vertex.
+  /// Samples the direction in which a walk leaves its last vertex.
   virtual Choice sample(const Walk<false>&, float choice, Point2 u) = 0;
-  /// With which density [1/sr] a walk that came from `out` goes on to `in`, where scattering alone has `scatter`.
+  /// The pdf [1/sr] with which a walk that came from `out` samples `in`, where scattering alone has the pdf `scatter`.
   virtual float pdf(const PathVertex&, const Vector3& out, const Vector3& in, float scatter) const = 0;
 };
 
-/// How long walks are.
+/// Limits of a subpath's length, and how its directions are sampled.
 struct SubpathLimits {
-  int longest = 64;                        ///< segments
-  int roulette_depth = 5;                  ///< segments before Russian roulette may end a walk
-  CameraDirections* directions = nullptr;  ///< of walks from the camera, and in the densities of others as if from there; null:
-                                           ///< scattering alone chooses them
+  int longest = 64;                        ///< maximum length in segments
+  int roulette_depth = 5;                  ///< segments before Russian roulette may end the subpath
+  CameraDirections* directions = nullptr;  ///< for camera subpaths, and for the pdfs of other vertices as sampled from the
+                                           ///< camera; null: directions are sampled by scattering alone
 };
 
-/// Density [1/sr] with which a walk from the camera that came from `out` goes on to `in`.
+/// The pdf [1/sr] with which a camera subpath that came from `out` samples `in`; `scatter` is the pdf of scattering alone.
 inline float camera_pdf(const CameraDirections* directions, const PathVertex& v, const Vector3& out, const Vector3& in,
                         float scatter) {
   return directions ? directions->pdf(v, out, in, scatter) : scatter;
@@ -85,43 +89,46 @@ struct SegmentEvents {
 
 class ProjectionMap;
 
-/// Fills a kept vertex with what a walk has come to, for algorithms that let walks grow by themselves; set `keeps` of the walk.
-/// `before` is the vertex before, and `density` that of the direction it was left in [1/sr], 1 after a specular lobe (where
-/// Walk::direction_density is a probability). `specular` and `reverse` are known when the walk has gone on: see
-/// generate_camera_subpath.
+/// Fills a stored vertex from the last vertex of a walk, for algorithms that drive a Walk themselves; the walk must have
+/// `stores_subpath` set. `before` is the vertex before, and `pdf` that of the direction from it [1/sr], or 1 after a specular
+/// lobe (where Walk::direction_pdf is a probability). `specular` and `pdf_reverse` are only known when the walk leaves the
+/// vertex: see generate_camera_subpath.
 void store_vertex(const Walk<false>&, const SubpathVertex& before, float pdf, const EmissionPlane&, SubpathVertex&);
 
-/// The walk that begins with a camera ray, which is the sample's. An escaped one ends with a vertex of kind `escape`.
+/// Traces the subpath that starts with a camera ray, using the sample's wavelengths and primary samples. An escaped subpath
+/// ends with a vertex of kind `escape`.
 void generate_camera_subpath(const RenderContext&, const Ray&, const SubpathLimits&, SampleContext&,
                              std::vector<SubpathVertex>& walk, SegmentEvents&);
 
-/// A walk that begins at a luminaire, chosen by power. False: no light leaves there in the direction that was chosen; the walk
-/// is the place on the luminaire alone, which may be seen from elsewhere, or empty. The context's
-/// wavelengths and numbers are the walk's. `targets`, if any: it goes towards one of them.
+/// Traces a subpath that starts on a luminaire, chosen by power, using the context's wavelengths and primary samples. False: no
+/// light is emitted in the sampled direction; the subpath is then the point on the luminaire alone, which can still be
+/// connected, or empty. With `targets` the first ray is sampled by ProjectionMap::sample_emitted_light, towards specular
+/// objects.
 bool generate_light_subpath(const Scene&, const LightSampler&, float time, const SubpathLimits&, SampleContext&,
                             std::vector<SubpathVertex>& walk, EmittedLight&, const ProjectionMap* targets = nullptr,
                             SegmentEvents* events = nullptr);
 
-/// The density of a vertex b that was chosen from a by a direction of solid-angle density `density`; `direction` is unit
-/// from a to b, `chance` that of getting along the edge.
+/// The pdf of a vertex b that is sampled from a: `pdf` is that of the direction [1/sr], `direction` is unit from a to b, and
+/// `mean_transmittance` that of the segment.
 float vertex_pdf(float pdf, const SubpathVertex& a, const SubpathVertex& b, const Vector3& direction, float mean_transmittance,
                  const EmissionPlane&);
 
-/// Density of a camera ray's direction [1/sr]; of a camera with parallel rays that of its place [1/m^2].
+/// The pdf of a camera ray's direction [1/sr]; for an orthographic camera that of its position [1/m^2].
 float camera_direction_pdf(const Camera&, const Ray&);
 
-/// The density of a luminaire's point as the beginning of such a walk; `direction` is unit, from x1 to it. [1/m^2]; of a
-/// luminaire at infinity [1/sr].
+/// The pdf of a luminaire's point as the origin of a light subpath [1/m^2]; for a luminaire at infinity [1/sr]. `direction` is
+/// unit, from x1 to the point.
 float pdf_emission_origin(const LightSampler&, const SubpathVertex& x1, const SubpathVertex& luminaire,
                           const Vector3& direction);
 
-/// Its density when a luminaire is sampled as seen from x1, in the same measure.
+/// The pdf of that point by next event estimation from x1, in the same measure.
 float pdf_next_event(const LightSampler&, const SubpathVertex& x1, const SubpathVertex& luminaire, const Vector3& direction);
 
-/// For people: the vertices of a walk.
+/// Stores the vertices of a subpath in a PathRecord.
 void record_subpath(std::vector<PathRecord::Vertex>&, std::span<const SubpathVertex> walk);
 
-/// The features of the first surface along a camera ray, for renderers whose walks do not keep its hit.
+/// Passes the features of the first surface along a camera ray to the PathSink, for renderers whose subpaths do not store the
+/// intersection.
 void note_first_surface(const Scene&, const Ray&, SampleContext&);
 
 }  // namespace etendue

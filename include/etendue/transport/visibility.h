@@ -1,5 +1,5 @@
 #pragma once
-// How much of the light gets along a ray: past surfaces that let it pass straight on, and through media.
+// The transmittance of shadow rays: past null-scattering surfaces, and through media.
 
 #include "etendue/numbers.h"
 #include "etendue/scene.h"
@@ -8,12 +8,12 @@
 
 namespace etendue {
 
-/// The fraction of light that gets along a shadow ray, per wavelength: 0 when something opaque lies on it. `media` are
-/// those at the ray's origin, on the side it leaves to; null: vacuum, where nothing is tracked. Unbiased; exact for
-/// homogeneous media and for surfaces that only pass light on or block it. The ray goes against the light (radiance) or along
-/// with it (importance), for surfaces that are not the same for both. Numbers are used by media that differ from place to
-/// place. `likely`, when given, gets the same with weighting_transmittance in place of what is drawn, where anything is visible
-/// at all.
+/// The transmittance of a shadow ray per wavelength: 0 if it hits an opaque surface. `media` are those at the ray's origin, on
+/// the side of its direction; null: vacuum, media are not tracked. Unbiased; exact for homogeneous media and for surfaces with
+/// null scattering. `Transport` states whether the ray is traced against the light (radiance) or along with it (importance),
+/// for surfaces that differ in the two. Heterogeneous media take random numbers. `likely`, if given, receives the same with
+/// weighting_transmittance in place of the random estimate, for the weights of strategies; it is only valid if the
+/// transmittance is not 0.
 Spectrum shadow_transmittance_slowly(const Scene&, const Ray&, const MediumStack* media, const Wavelengths&, NumberStream&,
                                      Arena&, Transport, Spectrum* likely);
 

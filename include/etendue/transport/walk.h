@@ -1,17 +1,24 @@
 #pragma once
-// A walk: a path that grows vertex by vertex, from the camera or from a luminaire.
+// Walk: a random walk that traces a subpath vertex by vertex, from the camera or from a luminaire.
 //
-// From a vertex x_k a walk leaves in a direction w chosen with density p(w), and comes to x_{k+1} where the ray meets matter
-// that scatters. With T_0 what it begins with,
-//     T_{k+1} = T_k f |cos| / p       on a surface,
-//     T_{k+1} = T_k (phase / p)       in a medium, whose part of getting there is in T already (transport/medium.h),
-// is radiance (from the camera) or importance (from a luminaire) over the density of the whole walk (Veach 1997, section 8.2).
+// At each vertex x_k a direction w is sampled with the pdf p(w) [1/sr], and a ray in that direction leads to the next vertex
+// x_{k+1}, on a surface or at a scattering event in a medium. The walk carries the throughput T: the product of all factors of
+// the subpath's contribution, over the pdf of the subpath (Veach 1997, section 8.2; alpha in section 10.1). Each factor is
+// multiplied in one place:
+//     T_0                        what the walk starts with: 1 from the camera, L_e |cos| / pdf from a luminaire
+//                                (EmittedLight::throughput)
+//     f |cos| / p                in `leave`, on a surface: ScatterSample::weight; 1 in a medium, where p is the phase function
+//     s_s Tr / p(t)  or  Tr / P  in `come_to_vertex`, where a medium scatters at the distance t, or lets the walk through with
+//                                probability P (transport/medium.h); s_s is the scattering coefficient, Tr the transmittance
+//     n / q  or  1 / (1 - q)     in `passes`, at a null-scattering surface that lets the fraction n through
+//     1 / q                      in Roulette, for a walk that survives with probability q (transport/roulette.h)
+// So T_k times the radiance that x_k emits towards x_{k-1} is an estimate of radiance along the camera ray, and from a
+// luminaire T_k is the flux [W/nm] that the subpath carries to x_k.
 //
-// One walk goes through everything that is no vertex: media, which may scatter it on the way; boundaries that mean nothing
-// since they lie within something of higher priority; surfaces that let it pass straight on. There the walk goes on with a
-// probability q, the part of light that does (or its share of all, where more light than came is scattered as well), and both
-// outcomes are made up for: a walk that passes has T changed by (the fraction that passes) / q, and one that stays by 1 / (1 -
-// q).
+// Some events on the way are not vertices: media through which the walk passes, boundaries that are hidden because they lie
+// inside an object of higher priority (boundaries.h), and null scattering. At a surface with null scattering and other lobes,
+// the walk passes with the probability q, the fraction n that is let through (or the ratio of n to the whole albedo, where n is
+// 1 or more and light is scattered as well), and both outcomes are weighted by the inverse of their probability.
 
 #include "etendue/transport/boundaries.h"
 #include "etendue/transport/path_vertex.h"
@@ -19,24 +26,25 @@
 
 namespace etendue {
 
-/// Who listens to a walk: nothing happens unless it is overridden, by hiding the function.
+/// Events along the segments of a walk; by default they are ignored. A derived class hides the functions that it needs (calls
+/// are resolved at compile time).
 struct NoEvents {
-  /// Light that media send from the next segment to its origin, as the walk brings it.
+  /// Media on the segment emit light towards its origin: an estimate of that radiance, times the throughput.
   void emitted(const Spectrum&) const {}
-  /// A luminaire that the walk passes straight through is the vertex, for a moment.
+  /// The walk passes an emitter whose surface only scatters null: the vertex lies on it during the call.
   void crossed_luminaire() const {}
-  /// It goes into a medium, along its ray from the origin and as far as this distance [m], unless it is scattered before.
+  /// The walk enters a medium, along its ray from the origin and up to this distance [m] unless it is scattered before.
   void through(const Medium&, float) const {}
 };
 
-// Its functions are inlined where they are called, once in each algorithm, so that its state stays in registers: measured, a
-// tenth of the time of simple scenes.
-/// `clear`: the scene has neither media nor boundaries that light passes through (Scene::has_interiors, has_null_surfaces);
-/// what deals with them is left out. False is always right.
+// All functions are inlined into each algorithm, so that the state of the walk stays in registers: measured, this saves a tenth
+// of the time of simple scenes.
+/// `clear`: the scene has neither media nor null-scattering surfaces (Scene::has_interiors, has_null_surfaces), and the code
+/// for them is left out. False is always correct.
 template <bool clear>
 class Walk {
  public:
-  /// `longest`: the segments after which it ends. `throughput`: T_0.
+  /// `longest_`: the maximum length in segments. `initial_throughput_`: T_0.
   Walk(const Scene& scene_, SampleContext& sample_, const Ray& ray_, int longest_, Transport transport_ = Transport::radiance,
        const Spectrum& initial_throughput_ = Spectrum(1.0f))
       : scene(scene_),
@@ -54,30 +62,33 @@ class Walk {
 
   const Scene& scene;
   SampleContext& sample;
-  NumberStream& numbers;  ///< the sample's
-  Ray ray;                ///< along which it goes next
+  NumberStream& numbers;  ///< those of `sample`
+  Ray ray;                ///< of the next segment
   Spectrum throughput;    ///< T
-  MediumStack media;      ///< around the ray's origin; where a walk begins, its maker fills it (media_at)
+  MediumStack media;      ///< the objects around the ray's origin; the code that starts the walk fills it (media_at)
   const int longest;
   const Transport transport;
 
-  PathVertex vertex;        ///< the last. Its `media` are the walk's own, unless it `keeps`: theirs until `leave`
+  PathVertex vertex;        ///< the last vertex. Its `media` points to the walk's own stack, which `leave` changes; with
+                            ///< `stores_subpath`, to a copy in the arena
   int length = 0;           ///< segments so far
-  float direction_pdf = 0;  ///< [1/sr] of the last segment's direction, as scattering chose it
-  bool specular = true;     ///< whether a specular lobe chose it, or nobody: it is the first
-  Point3 from;              ///< the vertex before, for densities as seen from there
+  float direction_pdf = 0;  ///< [1/sr] of the last segment's direction; after a specular lobe a probability
+  bool specular = true;     ///< whether a specular lobe sampled that direction; true on the first segment, too
+  Point3 from;              ///< the vertex before, as the reference point of the pdf of next event estimation
   Normal3 from_normal;
-  Spectrum segment_transmittance;   ///< what surfaces on the last segment let through, and if it `keeps`, media, likely: for
-                                    ///< densities
-  float null_crossed_distance = 0;  ///< distance to the last boundary passed straight on [m], of the last segment
-  Hit hit;                          ///< of the last surface
+  Spectrum segment_transmittance;   ///< of the last segment, for pdfs: of its null-scattering surfaces, and with
+                                    ///< `stores_subpath` also of its media (weighting_transmittance)
+  float null_crossed_distance = 0;  ///< distance from the start of the last segment to the last boundary it crossed [m]
+  Hit hit;                          ///< the intersection with the last surface
 
-  /// A branch that follows one wavelength: among how many of them the walk was divided. Each carries so much less.
+  /// For a branch that follows one wavelength: the number of branches that the walk was split into. The throughput of each is
+  /// smaller by this factor.
   float branches = 1;
-  /// Of a branch (CameraWalk::divide): the probability by which Roulette has yet to let it go on; 1: none.
+  /// For a branch of a split walk (CameraWalk::split): a survival probability that Roulette has yet to apply; 1: none.
   float pending_survival = 1;
 
-  /// What is left of what it began with, without the change of radiance by refraction, which comes back, and by division.
+  /// The throughput relative to the initial one, for Russian roulette. Excludes the factor eta^2 of refraction, which the way
+  /// out of the medium takes back, and the weight of splitting.
   float roulette_weight() const {
     if (transport == Transport::radiance) return throughput.maximum() * eta_squared_ * branches;
     float most = 0;
@@ -86,7 +97,8 @@ class Walk {
     return most;
   }
 
-  /// Goes along the ray to the next vertex; `found` is what the scene said of it, with `hit` filled. False: the walk has ended.
+  /// Follows the ray to the next vertex, and multiplies T by the weights of the media and null-scattering surfaces on the way.
+  /// `found` is the result of Scene::nearest for the ray, which filled `hit`. False: the walk has ended.
   template <class Events>
   [[gnu::always_inline]] bool come_to_vertex(bool found, const Events& events) {
     if (!passing_) {
@@ -107,6 +119,7 @@ class Walk {
           } else {
             const FreeFlight flight = sample_free_flight(medium, ray, reach, throughput, sample.wavelengths, numbers);
             if (!flight.emitted.black()) events.emitted(throughput * flight.emitted);
+            // s_s Tr / p(t) if the medium scatters, Tr / P if not.
             throughput *= flight.weight;
             if (throughput.black()) return false;
             if (stores_subpath)
@@ -119,7 +132,7 @@ class Walk {
         vertex.kind = PathVertex::Kind::escape;
         return true;
       }
-      // What the last segment meets matters only if it shines.
+      // A surface at the end of the last segment contributes only if it is an emitter.
       if (clear && length >= longest && !observed && hit.depth == 0 && !hit.object->luminaire()) return false;
       vertex.kind = PathVertex::Kind::surface;
       vertex.subsurface_exit = false;
@@ -137,6 +150,8 @@ class Walk {
         vertex.scatter = scattering_at(vertex.point, vertex.out, sample.wavelengths, sample.arena);
       vertex.lobes = vertex_lobes;
       if (!null_surfaces_ || !vertex.scatter || !vertex.scatter->has(null_scattering)) return true;
+      // Where light is gathered, null scattering becomes one of the lobes that are sampled after next event estimation
+      // (pass_on).
       if (collects_light && length < longest && vertex.scatter->has(smooth_lobes)) {
         vertex.lobes = all_lobes;
         return true;
@@ -150,11 +165,13 @@ class Walk {
     return come_to_vertex(scene.nearest(ray, hit), events);
   }
 
-  /// Chooses where the walk goes on from its last vertex: by `choice` among lobes, by `u` among directions. Empty: absorbed.
+  /// Samples the direction in which the walk leaves its last vertex: `choice` selects the lobe, `u` the direction within it.
+  /// Empty: absorbed.
   [[gnu::always_inline]] std::optional<ScatterSample> sample_direction(float choice, Point2 u) const {
     if (vertex.in_medium()) {
       ScatterSample s;
       s.direction = vertex.medium.sample_phase(vertex.point.position, vertex.point.time, vertex.out, u, s.pdf);
+      // phase / p = 1.
       s.weight = Spectrum(1.0f);
       return s;
     }
@@ -162,7 +179,7 @@ class Walk {
     return vertex.scatter->sample(vertex.out, choice, u, transport, vertex.lobes);
   }
 
-  /// Goes on in such a direction.
+  /// Leaves the last vertex in a sampled direction: T *= f |cos| / p, and the ray of the next segment starts there.
   [[gnu::always_inline]] void leave(const ScatterSample& next) {
     throughput *= next.weight;
     if (next.dispersive) throughput *= sample.wavelengths.drop_secondary();
@@ -170,7 +187,7 @@ class Walk {
     direction_pdf = next.pdf;
     from = vertex.point.position;
     from_normal = vertex.normal();
-    // Member by member: copying a ray just written stalls for its parts to reach memory.
+    // Member by member: a copy of a ray that was just written would wait for the writes (a store-forwarding stall).
     ray.direction = next.direction;
     ray.maximum = infinity;
     ray.of_camera = false;
@@ -185,8 +202,8 @@ class Walk {
     ray.width = vertex.point.footprint;
   }
 
-  /// Goes straight on through the surface of the last vertex, which is then none: the last direction stays the one that was
-  /// chosen.
+  /// Continues through the last vertex by null scattering. The surface is then not a vertex: the segment that led to it goes
+  /// on, and direction_pdf, specular and from stay those of its start.
   void pass_on(const ScatterSample& next) {
     throughput *= next.weight;
     segment_transmittance *= next.weight;
@@ -195,8 +212,8 @@ class Walk {
     ++crossings_;
   }
 
-  /// Of light that goes into a body which scatters it: comes to where it leaves again. The way inside is one segment. False: it
-  /// does not.
+  /// For a sample that enters an object with subsurface scattering: moves the vertex to a sampled exit point
+  /// (Shader::sample_exit). The way inside counts as one segment. False: there is no exit, or the path is too long.
   bool subsurface_exit_found(const ScatterSample& next) {
     throughput *= next.weight;
     if (next.dispersive) throughput *= sample.wavelengths.drop_secondary();
@@ -204,7 +221,7 @@ class Walk {
         vertex.point.object->shader->sample_exit(vertex.point, scene, sample.wavelengths, numbers, sample.arena);
     if (!exit || !exit->scatter || ++length >= longest) return false;
     throughput *= exit->weight;
-    // It leaves on the side it came in on.
+    // The path leaves on the side of the surface from which it entered.
     const bool front = dot(vertex.point.normal, vertex.out) > 0;
     vertex.point = exit->point;
     if (tracks_) vertex.point.media = vertex.media;
@@ -214,17 +231,20 @@ class Walk {
     return true;
   }
 
-  /// Whether vertices are kept, with densities: what lies around them is then, too, and what media let through is asked for.
+  /// Whether the vertices are stored with their pdfs (subpath.h): each then has a copy of the medium stack, and
+  /// segment_transmittance includes the media.
   bool stores_subpath = false;
-  /// Whether light is gathered at vertices.
+  /// Whether light is gathered at vertices, as by next event estimation: a null-scattering surface that also has smooth lobes
+  /// is then always a vertex.
   bool collects_light = false;
-  /// Whether media only weaken it, and it scatters at surfaces alone: someone gathers along the way what media scatter.
+  /// Whether media only attenuate the walk, which then scatters at surfaces alone: the algorithm gathers the light that media
+  /// scatter along the segments (Events::through).
   bool attenuates_only = false;
-  /// Whether someone wants to know of the last segment's end although it does not shine.
+  /// Whether the end of the last segment is needed even if it is not an emitter, for features or the record of a path.
   bool observed = false;
 
  protected:
-  /// A branch that begins at the last vertex of another walk.
+  /// A branch of a split walk `w`: it starts at the last vertex of `w`.
   Walk(const Walk& w, SampleContext& own)
       : scene(w.scene),
         sample(own),
@@ -246,7 +266,7 @@ class Walk {
         tracks_(w.tracks_),
         null_surfaces_(w.null_surfaces_) {}
 
-  /// `left` in the mean over wavelengths.
+  /// roulette_weight with the mean over the wavelengths in place of the maximum.
   float mean_roulette_weight() const { return throughput.average() * eta_squared_ * branches; }
 
  private:
@@ -265,11 +285,13 @@ class Walk {
   void cross() {
     if (tracks_) cross_boundary(media, *vertex.point.object, vertex.point.normal, ray.direction);
     null_crossed_distance += hit.distance;
-    ray.maximum -= hit.distance;  // that of a camera may end (Camera::Reach)
+    ray.maximum -= hit.distance;  // a camera ray may have a far clipping plane (Camera::Reach)
     ray.origin = vertex.point.exit(ray.direction);
     ray.width = vertex.point.footprint;
   }
 
+  /// At a null-scattering surface: whether the walk passes it, with probability q. If not, the surface is the next vertex.
+  /// Either way T is divided by the probability of the outcome.
   template <class Events>
   bool passes(const Events& events) {
     const Scatter& scatter = *vertex.scatter;
@@ -293,8 +315,8 @@ class Walk {
 
   const Spectrum initial_throughput;
   float eta_squared_ = 1;
-  int crossings_ = 0;  // of the last segment
-  bool passing_ = false;
+  int crossings_ = 0;     // boundaries crossed on the last segment
+  bool passing_ = false;  // the last segment goes on (pass_on)
   const bool tracks_, null_surfaces_;
 };
 

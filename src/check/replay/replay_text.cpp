@@ -38,7 +38,7 @@ std::string vertex_text(const PathRecord::Vertex& v, const char* what, size_t pl
   add("throughput", numbers(v.throughput));
   if (!v.emitted.black()) add("emitted", numbers(v.emitted));
   if (!v.direct.black()) add("direct", numbers(v.direct));
-  if (!v.lobe.empty()) add("sampled", fmt::format("{}, density {:.6g}", v.lobe, v.pdf));
+  if (!v.lobe.empty()) add("sampled", fmt::format("{}, pdf {:.6g}", v.lobe, v.pdf));
   if (!v.note.empty()) add("note", v.note);
   return text;
 }

@@ -19,14 +19,14 @@ namespace fs = std::filesystem;
 
 constexpr const char* setting = "ETENDUE_OIDN";
 constexpr const char* file_name = "libOpenImageDenoise.so.2";
-constexpr int oldest = 20000, first_unknown = 30000;  // versions it is declared for
+constexpr int oldest = 20000, first_unknown = 30000;  // the versions whose functions are declared here
 
 std::string of_environment(const char* name) {
   const char* value = std::getenv(name);
   return value ? value : "";
 }
 
-/// The folders in `folder` whose names begin so, in order.
+/// The subfolders of `folder` whose names begin with `beginning`, sorted.
 std::vector<fs::path> folders_like(const fs::path& folder, const std::string& beginning) {
   std::vector<fs::path> found;
   std::error_code error;
@@ -36,7 +36,7 @@ std::vector<fs::path> folders_like(const fs::path& folder, const std::string& be
   return found;
 }
 
-/// Where pip puts packages: of the virtual environment at work, those of PYTHONPATH, the user's, the system's.
+/// The folders in which pip installs packages: of the active virtual environment, of PYTHONPATH, of the user, of the system.
 std::vector<fs::path> package_folders() {
   std::vector<fs::path> folders;
   const auto add_python = [&](const fs::path& prefix) {
@@ -51,7 +51,7 @@ std::vector<fs::path> package_folders() {
     if (end > at) folders.emplace_back(list.substr(at, end - at));
     at = end + 1;
   }
-  // A Python that was named for other packages may be of a virtual environment: PREFIX/bin/python.
+  // ETENDUE_PYTHON, set for other packages, may be the Python of a virtual environment: PREFIX/bin/python.
   if (const fs::path python = of_environment("ETENDUE_PYTHON"); python.has_parent_path())
     add_python(python.parent_path().parent_path());
   if (const std::string home = of_environment("HOME"); !home.empty()) add_python(fs::path(home) / ".local");
@@ -116,7 +116,7 @@ const OpenImageDenoise& OpenImageDenoise::load() {
   std::vector<std::string> tried;
   for (const std::string& path : candidates()) {
     try {
-      // Never closed: its threads may live until the end.
+      // Never closed, as threads of the library may run until the program ends.
       void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
       if (!library) throw Error(dlerror());
       loaded.reset(new OpenImageDenoise(library));

@@ -1,6 +1,6 @@
 #pragma once
-// Open Image Denoise (Áfra 2025, www.openimagedenoise.org), found while the program runs. Its functions are declared here as
-// its documentation of version 2 has them, so that nothing of it is needed to build.
+// Open Image Denoise (Áfra 2025, www.openimagedenoise.org), loaded at run time. The library's functions are declared here
+// according to its documentation of version 2, so that no part of the library is needed to build.
 
 #include <cstddef>
 #include <string>
@@ -12,9 +12,10 @@ class OpenImageDenoise {
   using Device = struct DeviceHandle*;
   using Filter = struct FilterHandle*;
 
-  /// The library, loaded once and never unloaded. It is looked for where the environment variable ETENDUE_OIDN says, else
-  /// where the system looks for libraries, else in the package pyoidn of Pythons. (No description names it: whoever opens one
-  /// would run what it names.) Throws Error that tells what was tried and how to get it.
+  /// The library, loaded once and never unloaded. Its path is that in the environment variable ETENDUE_OIDN, else the system's
+  /// search path is tried, else the package pyoidn of Python installations. (Render descriptions cannot name the library, as
+  /// opening a description would then execute a library of its choice.) Throws Error with the paths that were tried and how to
+  /// get the library.
   static const OpenImageDenoise& load();
 
   std::string version() const;  ///< "2.5.1"
@@ -28,7 +29,7 @@ class OpenImageDenoise {
   int (*device_error)(Device, const char** message) = nullptr;
   Filter (*new_filter)(Device, const char* type) = nullptr;
   void (*release_filter)(Filter) = nullptr;
-  /// Pixels at an address: of `width` x `height` pixels, offset and strides in bytes (0: packed).
+  /// Sets a filter's image to `width` x `height` pixels in memory; offset and strides are in bytes (0: packed).
   void (*set_image)(Filter, const char* name, void*, int format, std::size_t width, std::size_t height, std::size_t offset,
                     std::size_t pixel_stride, std::size_t row_stride) = nullptr;
   void (*set_switch)(Filter, const char* name, bool) = nullptr;
@@ -36,7 +37,7 @@ class OpenImageDenoise {
   void (*commit_filter)(Filter) = nullptr;
   void (*execute)(Filter) = nullptr;
 
-  // Of its enumerations OIDNDeviceType, OIDNError, OIDNFormat and OIDNQuality.
+  // Values of the library's enumerations OIDNDeviceType, OIDNError, OIDNFormat and OIDNQuality.
   static constexpr int cpu_device = 1, no_error = 0, three_floats = 3;
   static constexpr int fast_quality = 4, balanced_quality = 5, high_quality = 6;
 

@@ -1,8 +1,8 @@
 // Denoising by Open Image Denoise.
 //
-// Its networks take light without bounds, before any tone map. They were trained on pictures of RGB in which nothing is
-// negative, while colours of a spectral picture may lie outside of any display's space: they are given the primaries of ACES
-// 2065-1, in which every colour that light can have is a sum of positive parts.
+// The networks take unbounded (HDR) images, before any tone map. They were trained on RGB images without negative values, while
+// colours of a spectral image may lie outside of the RGB space of any display. So images are passed in the space ACES 2065-1,
+// in which every colour of light has components that are not negative.
 
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ std::array<size_t, 3> places(const Image& image, const std::array<const char*, 3
   return at;
 }
 
-/// Three channels, transformed.
+/// Three channels of an image, multiplied by the matrix m and clamped; values that are not finite count as 0.
 Pixels pixels_of(const Image& image, const std::array<size_t, 3>& at, const Matrix& m, float least, float most) {
   const size_t count = size_t(image.width) * size_t(image.height), stride = image.channels.size();
   Pixels pixels(3 * count);
@@ -48,7 +48,7 @@ Pixels pixels_of(const Image& image, const std::array<size_t, 3>& at, const Matr
   return pixels;
 }
 
-/// A device of the processor, and what is asked of it.
+/// A CPU device of Open Image Denoise, and its filters.
 class Session {
  public:
   Session(const OpenImageDenoise& library, int quality, int threads, int width, int height)
@@ -58,7 +58,7 @@ class Session {
         height_(size_t(height)),
         device_(library.new_device(OpenImageDenoise::cpu_device)) {
     if (!device_) raise();
-    // Its threads would be bound to cores, ours among them.
+    // Otherwise the library would bind threads to cores, also those of this program.
     library_.set_device_switch(device_, "setAffinity", false);
     if (threads > 0) library_.set_device_number(device_, "numThreads", threads);
     library_.commit_device(device_);
@@ -74,8 +74,8 @@ class Session {
     const char* name;
     Pixels* pixels;
   };
-  /// What a filter of its kind "RT" makes of pictures. `high_range`: the first has no bounds. `clean`: the others have no
-  /// noise.
+  /// The result of a filter of type "RT". `high_range`: the first input is unbounded (HDR). `clean`: the other inputs are free
+  /// of noise.
   Pixels filtered(const std::vector<Input>& inputs, bool high_range, bool clean) {
     Pixels out(3 * width_ * height_);
     const OpenImageDenoise::Filter filter = library_.new_filter(device_, "RT");

@@ -177,8 +177,9 @@ class IesEmission final : public ShapedEmission {
       case Photometry::a: f.s = a, f.t = cross(a, s), f.n = Normal3(s); break;  // pole up
       case Photometry::b: f.s = a, f.t = s, f.n = Normal3(cross(a, s)); break;  // pole to the right
     }
-    // For a mirrored object the distribution is mirrored too: the axis computed by a cross product is reversed.
-    if (dot(turned(p, cross(axis, across)), cross(a, s)) < 0) {
+    // For a mirrored object the distribution is mirrored too: the axis computed by a cross product is reversed. Whether the
+    // object is mirrored is a property of its transform, not of the normal that the distribution may be about.
+    if (dot(turned(p, cross(axis, across)), cross(turned(p, axis_), turned(p, across_))) < 0) {
       if (ies_.type == Photometry::b)
         f.n = -f.n;
       else

@@ -1,4 +1,4 @@
-// What all light samplers have in common: they have no members of their own.
+// The description of LightSampler, the base class of all light samplers; it has no members.
 
 #include "etendue/light_sampler.h"
 

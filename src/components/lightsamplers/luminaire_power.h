@@ -1,5 +1,5 @@
 #pragma once
-// The power of luminaires, for choosing between them.
+// The power of luminaires, and a table for choosing luminaires in proportion to their power.
 
 #include <unordered_map>
 
@@ -23,9 +23,10 @@ inline double luminaire_power(const SceneObject& luminaire) {
   return watts;
 }
 
-/// Powers of luminaires that may stand in many places: a map is not looked at anew for each. What is asked for as an amount is
-/// the same in all sizes, what is told as a radiance goes with the area: of a luminaire in two sizes P ~ A^k tells which, and
-/// that holds for the others. Only for choosing among them, as a stretch may change more than the area.
+/// Powers of luminaires that may have many placements, without an integration of maps for each placement. The power of an
+/// emission is the same for all sizes if an amount is requested, and proportional to the area if a radiance is given. Two
+/// placements of different area give the exponent k in P ~ A^k, which is used for the other placements. Only for choosing
+/// among luminaires, as a transform that is not a similarity may change more than the area.
 class PlacedPowers {
  public:
   double of(const SceneObject& luminaire) {
@@ -54,8 +55,9 @@ class PlacedPowers {
   std::unordered_map<const SceneObject*, Known> known_;
 };
 
-/// The powers of a scene's luminaires. A power may be an estimate (of a map, by samples) that misses what little there is:
-/// nothing that emits may have none, so each gets a thousandth of the mean besides; all alike where no power is known.
+/// The powers of a scene's luminaires. A power may be an estimate (for a map, from samples) that misses small emitting parts.
+/// As no luminaire that emits may have probability 0, a thousandth of the mean is added to each; if all powers are 0 all
+/// results are equal.
 inline std::vector<double> luminaire_powers(std::span<const SceneObject* const> luminaires) {
   std::vector<double> powers;
   double total = 0;
@@ -66,8 +68,8 @@ inline std::vector<double> luminaire_powers(std::span<const SceneObject* const> 
   return powers;
 }
 
-/// Luminaires in proportion to their powers. Random numbers have 24 bits: shares are whole multiples of 2^-24, at least one for
-/// each luminaire, so that what is said of probabilities is so.
+/// Chooses luminaires in proportion to their powers. Random numbers have 24 bits, so probabilities are multiples of 2^-24, at
+/// least 2^-24 for each luminaire: the probabilities that are returned are then exact.
 class PowerTable {
  public:
   void build(std::span<const SceneObject* const> luminaires, std::span<const double> powers) {

@@ -1,4 +1,4 @@
-// PowerLightSampler: luminaires by the power they emit.
+// PowerLightSampler: chooses luminaires in proportion to the power they emit.
 
 #include "etendue/light_sampler.h"
 #include "luminaire_power.h"
@@ -49,7 +49,7 @@ class PowerLightSampler final : public LightSampler {
   float mixed(float by_power) const { return uniform / float(count()) + (1 - uniform) * by_power; }
 
   PowerTable table_;
-  LightChoice only_;  // of one luminaire
+  LightChoice only_;  // the choice in a scene with one luminaire
 };
 
 const Register<PowerLightSampler> registered;

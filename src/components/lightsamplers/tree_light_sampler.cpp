@@ -1,4 +1,4 @@
-// TreeLightSampler: luminaires by what they may send to a point, for scenes with many of them.
+// TreeLightSampler: chooses luminaires by a bound of their contribution at a point, for scenes with many luminaires.
 
 #include "etendue/light_sampler.h"
 #include "geometry/light_tree.h"
@@ -7,9 +7,9 @@
 namespace etendue {
 namespace {
 
-// Luminaires that lie somewhere are in the tree. Those at infinity (and point lights without bounds) light every point alike:
-// one of them is chosen, by power, with probability q = n / (n + 1) for n of them, 1 when the tree is empty; so neither a sky
-// nor a lamp starves the other.
+// Luminaires with bounds are in the tree. Luminaires at infinity (and those without bounds) are independent of the point: with
+// probability q = n / (n + 1) for n of them (1 if the tree is empty) one of them is chosen, in proportion to its power. So
+// neither a sky nor lamps are undersampled.
 class TreeLightSampler final : public LightSampler {
  public:
   static void describe(Description<TreeLightSampler>& d) {
@@ -65,7 +65,7 @@ class TreeLightSampler final : public LightSampler {
       return {everywhere_[i], outside_ * shares_[i]};
     }
     if (tree_.empty()) return {};
-    // A float's 24 bits are few for a deep tree; those below are filled by a hash of the place.
+    // The 24 bits of a float are too few for a deep tree; the bits below are filled with a hash of the point and the number.
     const std::uint64_t bits = (std::uint64_t(std::bit_cast<std::uint32_t>(point.x)) << 32) ^
                                std::bit_cast<std::uint32_t>(point.y) ^
                                (std::uint64_t(std::bit_cast<std::uint32_t>(number)) << 16);
@@ -90,12 +90,12 @@ class TreeLightSampler final : public LightSampler {
  private:
   static constexpr std::uint32_t nowhere = ~0u;
 
-  const SceneObject* only_ = nullptr;  ///< when there is one: nothing is to be chosen, and the tree is not asked
+  const SceneObject* only_ = nullptr;  ///< the luminaire in a scene with one luminaire, which needs no tree; else null
   PowerTable by_power_;
   LightTree tree_;
   std::vector<const SceneObject*> luminaires_, everywhere_;
   std::vector<float> shares_;
-  std::vector<std::uint32_t> places_;  ///< in the tree, by luminaire
+  std::vector<std::uint32_t> places_;  ///< index in the tree, by luminaire_index; `nowhere`: not in the tree
   float outside_ = 0;
 };
 

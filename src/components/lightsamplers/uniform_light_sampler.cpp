@@ -1,4 +1,4 @@
-// UniformLightSampler: all luminaires alike.
+// UniformLightSampler: chooses all luminaires with equal probability.
 
 #include "etendue/light_sampler.h"
 #include "luminaire_power.h"
@@ -12,7 +12,7 @@ class UniformLightSampler final : public LightSampler {
 
   void build(const Scene& scene) override {
     luminaires_.assign(scene.luminaires().begin(), scene.luminaires().end());
-    luminaire_powers(luminaires_);  // refuses what is no power
+    luminaire_powers(luminaires_);  // only checks: throws Error if a power is negative or not finite
   }
 
   LightChoice choose(const Point3&, const Normal3&, float u) const override { return choose(u); }

@@ -12,8 +12,8 @@ enum class MapSpace : std::uint8_t { object, world, uv };
 // With a footprint of zero, the default, a map returns its value at the point; with any other (Renderer::map_filter) its mean
 // over the footprint. All maps follow this rule, and none has a filter width of its own (decision 013).
 
-/// The ellipse in which a ray's cone intersects the surface, by its two diameters: vectors in the surface, in the coordinates
-/// in which the renderer traces rays [m]. Zero without a footprint.
+/// The ellipse in which a ray's cone intersects the surface, by its two diameters: vectors in the surface, in rendering
+/// space [m]. Zero without a footprint.
 struct Footprint {
   Vector3 longer, shorter;
 };
@@ -53,10 +53,9 @@ inline Vector2 uv_box(const SurfacePoint& p) { return p.footprint > 0 ? uv_footp
 /// Computes dpdu and dpdv of a point if they are not set yet.
 void with_tangents(SurfacePoint&);
 
-/// The transform from object space to the coordinates in which the renderer traces rays, at a point. An object of a nested
-/// scene (an instance) is placed by further transforms, which the point does not store. Then the transform is reconstructed
-/// from the tangents, which is exact if the further transforms are similarities and no other map has changed the tangents
-/// before. The result may refer to `scratch`.
+/// The transform from object space to rendering space at a point. An object of a nested scene (an instance) is placed by
+/// further transforms, which the point does not store. Then the transform is reconstructed from the tangents, which is exact if
+/// the further transforms are similarities and no other map has changed the tangents before. The result may refer to `scratch`.
 const Transform& placement(const SurfacePoint&, Transform& scratch);
 
 /// A point in the space of a solid texture, in units of the texture's features, and the diameter of the circle that has the

@@ -1,10 +1,10 @@
-// The bidirectional mutation (Veach & Guibas 1997, section 5.3.1; Veach 1997, section 11.4.1): part of a path is taken away,
-// and walks from what is left on both sides are joined instead.
+// The bidirectional mutation (Veach & Guibas 1997, section 5.3.1; Veach 1997, section 11.4.1): a part of a path is removed, and
+// replaced by walks from both remaining ends, which are connected.
 //
-// r of the path's vertices go, from a place l on, and r' = r - 1, r or r + 1 come in their place. What is left on both sides
-// scatters smoothly, and r is the less likely the more of what goes does, by halves. With D the density of what comes,
-// whichever part of it each of the walks makes,
-//     T(y -> x) / T(x -> y) = P(l, r | y) D(x) / (P(l, r' | x) D(y)).
+// r of the path's vertices are removed, from index l on, and r' = r - 1, r or r + 1 are inserted. Both remaining ends are
+// smooth vertices, and the probability of a choice (l, r) halves with each further smooth vertex that is removed. With D the
+// pdf of the inserted part, averaged over the ways to divide it between the two walks (PathSpace::pdf),
+//     T(y -> x) / T(x -> y) = P(l, r' | y) D(x) / (P(l, r | x) D(y)).
 
 #include "etendue/transport/mutation.h"
 
@@ -31,7 +31,7 @@ class BidirectionalMutation final : public Mutation {
     if (l < 0) return {};
     const double v = choices.next();
     const int more = v < 0.25 ? -1 : v < 0.5 ? 1 : 0;
-    if (r + more < 1 || r + more > longest) return {};  // the way back would never be chosen
+    if (r + more < 1 || r + more > longest) return {};  // the reverse mutation would have probability 0
     space.begin(y, x, l);
     const std::vector<ChainVertex> rest(x.x.begin() + l + r, x.x.end());
     if (!space.join(y, rest, r + more, choices)) return {};
@@ -40,7 +40,7 @@ class BidirectionalMutation final : public Mutation {
   }
 
  private:
-  /// How likely it is, compared with others, that x_l … x_{l+r-1} go.
+  /// The relative probability that x_l … x_{l+r-1} are removed.
   static double likely(const LightPath& x, int l, int r) {
     if ((l > 0 && x.specular(l - 1)) || x.specular(l + r)) return 0;
     bool joins = l == 0;
@@ -49,12 +49,12 @@ class BidirectionalMutation final : public Mutation {
       smooth += !x.specular(i);
       joins = joins || !(x.specular(i - 1) || x.specular(i));
     }
-    // A chain between two places that stay cannot be made anew by walks.
+    // A specular chain between two vertices that stay cannot be sampled by walks.
     if (!joins && x.specular(l + r - 1)) return 0;
     return std::ldexp(1.0, -std::max(smooth, 1));
   }
-  /// Adds that up over all that may go, until `stop(l, r)`. Of very long paths short parts go: what is longer is as good as
-  /// never chosen.
+  /// The sum of these over all choices, until `stop(l, r)` returns true. Of very long paths only short parts are removed:
+  /// longer ones would almost never be chosen.
   template <class Stop>
   static double sum(const LightPath& x, int k, const Stop& stop) {
     double sum = 0;

@@ -1,10 +1,10 @@
 // The caustic perturbation (Veach & Guibas 1997, section 5.3.3; Veach 1997, section 11.4.2): the direction in which light
-// leaves a smooth vertex, or the luminaire, turns a little, and goes through the same kinds of mirrors and clear surfaces as
-// before; where it falls then is joined to the lens.
+// leaves a smooth vertex, or the luminaire, is rotated by a small angle, and the light is traced through specular vertices with
+// the same lobes as before; the smooth vertex that it reaches is connected to the lens.
 //
-// Turned directions are alike likely by angle, so T is the density of what they lead to for a uniform direction:
-// T(y -> x) / T(x -> y) = w(x) / w(y), w being the solid angle there over the measure of what it leads to
-// (LightPath::light_angle).
+// The azimuth of the rotation is uniform, so T is the pdf of the new vertex for a uniform direction:
+//     T(y -> x) / T(x -> y) = w(x) / w(y)
+// with w the solid angle of the direction per measure of the vertices that it leads to (LightPath::light_angle).
 
 #include "etendue/transport/mutation.h"
 
@@ -28,7 +28,7 @@ class CausticMutation final : public Mutation {
   std::optional<double> propose(const PathSpace& space, const LightPath& x, LightPath& y,
                                 ChoiceNumbers& choices) const override {
     const int k = x.length();
-    if (x.specular(k - 1)) return {};  // seen in a mirror: nothing can be joined to the lens
+    if (x.specular(k - 1)) return {};  // a specular vertex is seen, which cannot be connected to the lens
     const int from = x.smooth_before(k - 1);
     const float angle = small_change(choices.next(), smallest, largest);
     const Vector3 direction = turned(x.x[size_t(from)].out, angle, choices.next());

@@ -1,9 +1,10 @@
-// The lens perturbation (Veach & Guibas 1997, section 5.3.2; Veach 1997, section 11.4.2): the path's place on the film moves a
-// little, and what the camera sees there, in the same kinds of mirrors and through the same kinds of clear surfaces as before,
-// is joined to the rest of the path.
+// The lens perturbation (Veach & Guibas 1997, section 5.3.2; Veach 1997, section 11.4.2): the path's film point moves by a
+// small distance, and the first smooth vertex that the camera sees there, through specular vertices with the same lobes as
+// before, is connected to the rest of the path.
 //
-// The film point moves by a distance that is as likely in any direction, so T is the density of x_{k-1} as what a camera ray
-// meets: T(y -> x) / T(x -> y) = E_{k-1}(x) / E_{k-1}(y). All that is seen in mirrors follows from it.
+// The direction of the move is uniform, so T is the pdf of x_{k-1} for a camera ray:
+//     T(y -> x) / T(x -> y) = E_{k-1}(x) / E_{k-1}(y).
+// The specular vertices behind x_{k-1} follow from it.
 
 #include "etendue/transport/mutation.h"
 
@@ -24,7 +25,7 @@ class LensMutation final : public Mutation {
   std::optional<double> propose(const PathSpace& space, const LightPath& x, LightPath& y,
                                 ChoiceNumbers& choices) const override {
     const int k = x.length(), seen = x.smooth_before(k);
-    if (seen > 0 && x.specular(seen - 1)) return {};  // nothing can be joined: see MultiChainMutation
+    if (seen > 0 && x.specular(seen - 1)) return {};  // nothing can be connected: see MultiChainMutation
     const std::optional<Point2> film = moved_on_film(space, x.film, smallest, largest, choices);
     if (!film) return {};
     space.begin(y, x, seen);

@@ -1,46 +1,45 @@
 // The manifold mutation (Jakob & Marschner 2012, "Manifold exploration: a Markov chain Monte Carlo technique for rendering
-// scenes with difficult specular transport"): the film point moves a little, which leads to a place b that scatters smoothly;
-// the place a behind the mirrors and clear surfaces that light comes to b through stays where it is, and the way between them
-// is found anew. The caustic and multi-chain perturbations turn a direction there instead, and miss a if it is small or far
-// away.
+// scenes with difficult specular transport"): the film point moves by a small distance, which gives a new smooth vertex b. The
+// smooth vertex a, from which light comes to b through specular vertices, stays fixed, and a new specular chain between them is
+// found. The caustic and multi-chain perturbations rotate a direction there instead, and miss a if it is small or far away.
 //
-// The way is a root: with w the direction at b and e(w) where the chain that begins so meets the plane that touches the surface
-// at a, e(w) = a (the specular manifold, with w as its coordinates). It is found by Newton's method from the direction to where
-// the chain began before. Derivatives of e are differences of rays that are followed a little to either side: so they are there
-// for all shapes, bumps and media, whether or not a shape knows how its normals change. Where both sides tell different ones,
-// at edges and borders of shadows, nothing is proposed.
+// The chain is a root: with w the direction at b, and e(w) the point where the chain that starts with w hits the tangent plane
+// at a, e(w) = a (the specular manifold, with w as its coordinates). The root is found by Newton's method, starting with the
+// direction to the first vertex of the old chain. Derivatives of e are differences between rays that are traced at small angles
+// to either side: so they exist for all shapes, bump maps and media, even if the derivatives of the normals are unknown. Where
+// the two sides give different derivatives, at edges and borders of shadows, nothing is proposed.
 //
-// A path's chain is measured by the place s where it begins, seen from b (transport/light_path.h), and the mutation leaves a as
-// it is. With c / d^2 the solid angle of s at b over its area and D = |de/dw| [m^2/sr], what is seen per area of s is
+// The measure of a path's chain is that of its vertex s next to b (transport/light_path.h), and the mutation keeps a. With c /
+// d^2 the solid angle of s at b over its area and D = |de/dw| [m^2/sr], the density per area of s is
 //     dA_s / dA_a = 1 / (D c / d^2)
-// times as much per area of a, in which T is the density of b alone, so that
+// times that per area of a, in which T is the pdf of b alone, so that
 //     T(y -> x) / T(x -> y) = E_{k-1}(x) D(x) (c / d^2)(x) / (E_{k-1}(y) D(y) (c / d^2)(y)).
-// From y the same steps must lead back to x: a curved mirror may throw light to a place in several ways, and Newton's method
-// chooses among them.
+// The same steps from y must lead back to x: a curved reflector may have several chains between b and a, and Newton's method
+// selects one of them.
 
 #include "etendue/transport/mutation.h"
 
 namespace etendue {
 namespace {
 
-/// The way from b to a by specular lobes.
+/// The specular chain from b to a.
 class Chain {
  public:
   Chain(const PathSpace& space, LightPath& y, const ChainVertex& b, const ChainVertex& a, std::span<const Lobe> lobes)
       : space_(space), y_(y), a_(a), lobes_(lobes), plane_(a.point.normal), walk_{b} {}
 
-  /// Where a chain comes to: its distance from a, along two axes of the plane there [m].
+  /// The end of a chain: its offset from a, along two axes of the tangent plane there [m].
   struct End {
     double x = 0, y = 0;
     double off() const { return std::hypot(x, y); }
   };
-  /// Its change with the direction at b along two axes across it [m].
+  /// The derivatives of the end with respect to the direction at b, along two axes perpendicular to it [m].
   struct Derivatives {
     End u, v;
     double determinant() const { return u.x * v.y - u.y * v.x; }
   };
 
-  /// Empty: it does not come there by these lobes.
+  /// Empty: a ray does not reach the plane by these lobes.
   std::optional<End> end(const Vector3& direction) {
     walk_.resize(1);
     const std::optional<Vector3> way = space_.follow_lobes(walk_, direction, lobes_, Transport::radiance, y_);
@@ -48,12 +47,12 @@ class Chain {
     const Point3 from = walk_.back().point.position;
     const float along = dot(plane_.n, *way), t = dot(plane_.n, a_.point.position - from) / along;
     if (!(t > 0) || !std::isfinite(t)) return {};
-    // Differences first: a may be far from the origin.
+    // Differences first: the coordinates of a may be large.
     const Vector3 off = (from - a_.point.position) + t * *way;
     return End{double(dot(plane_.s, off)), double(dot(plane_.t, off))};
   }
 
-  /// By central differences. Empty: the two sides tell different things.
+  /// By central differences. Empty: the one-sided differences disagree.
   std::optional<Derivatives> derivatives(const Vector3& direction) {
     const ArenaScope memory(*y_.arena);
     const Frame across{Normal3(direction)};
@@ -72,17 +71,17 @@ class Chain {
     return Derivatives{d[0], d[1]};
   }
 
-  /// A direction that leads to a, and how the end changes there.
+  /// A direction that leads to a, and the derivatives of the end there.
   struct Solution {
     Vector3 direction;
     Derivatives derivatives;
   };
-  /// From `guess` on. Empty: none was found.
+  /// Newton's method from `guess`. Empty: no root was found.
   std::optional<Solution> solve(const Vector3& guess) {
     Vector3 direction = guess;
-    double largest = 0.1;  // a step [rad]: a shape may look different behind
+    double largest = 0.1;  // maximum step [rad]: a shape may look different farther away
     std::optional<Trial> here = trial(direction);
-    std::optional<Derivatives> d;  // there, once they were asked for
+    std::optional<Derivatives> d;  // at `here`, once they have been computed
     for (int i = 0; i <= most_steps && here; ++i) {
       const bool near = here->end.off() < tolerance * here->reach;
       if (!near && i == most_steps) return {};
@@ -95,7 +94,7 @@ class Chain {
       const Vector3 next = normalize(direction + float(part * u) * Vector3(across.s) + float(part * v) * Vector3(across.t));
       const std::optional<Trial> there = trial(next);
       const bool nearer = there && there->end.off() < here->end.off();
-      // The last step leaves rounding only, which two ways from different guesses to one solution may differ by.
+      // The last step leaves only rounding errors, by which two searches from different guesses may differ at one solution.
       if (near) return Solution{nearer ? next : direction, *d};
       if (nearer) {
         direction = next;
@@ -108,13 +107,13 @@ class Chain {
     return {};
   }
 
-  /// [rad]: rays part by more than their rounding, and by less than what shapes show.
+  /// [rad]: the rays diverge by more than their rounding errors, and by less than the detail of shapes.
   static constexpr float step = 5e-4f;
 
  private:
   struct Trial {
     End end;
-    double reach;  ///< from the last vertex before a to a [m]
+    double reach;  ///< distance from the last vertex before a to a [m]
   };
   std::optional<Trial> trial(const Vector3& direction) {
     const ArenaScope memory(*y_.arena);
@@ -123,7 +122,7 @@ class Chain {
     return Trial{*e, double(length(a_.point.position - walk_.back().point.position))};
   }
 
-  static constexpr double tolerance = 3e-5;  ///< over the distance from which light comes [rad]
+  static constexpr double tolerance = 3e-5;  ///< relative to the distance of the last vertex [rad]
   static constexpr int most_steps = 12;
 
   const PathSpace& space_;
@@ -153,7 +152,7 @@ class ManifoldMutation final : public Mutation {
   std::optional<double> propose(const PathSpace& space, const LightPath& x, LightPath& y,
                                 ChoiceNumbers& choices) const override {
     const int k = x.length(), b = x.smooth_before(k);
-    if (b == 0 || !x.specular(b - 1)) return {};  // no mirror behind what is seen: see LensMutation
+    if (b == 0 || !x.specular(b - 1)) return {};  // no specular vertex behind the one that is seen: see LensMutation
     const int a = x.smooth_before(b);
     const std::optional<Point2> film = moved_on_film(space, x.film, smallest, largest, choices);
     if (!film) return {};
@@ -180,7 +179,7 @@ class ManifoldMutation final : public Mutation {
   }
 
  private:
-  /// Whether nothing stands between the last vertex of a walk and a.
+  /// Whether the ray from the last vertex of a walk to a is unoccluded.
   static bool arrives(const PathSpace& space, const PathSpace::Walk& walk, const ChainVertex& a, LightPath& y) {
     const Vector3 way = a.point.position - walk.back().point.position;
     ChainVertex met;
@@ -188,8 +187,8 @@ class ManifoldMutation final : public Mutation {
            length(met.point.position - a.point.position) < 1e-3f * length(way);
   }
 
-  /// Directions that are one solution [rad]. Between two solutions e turns back, or has an edge; and where that is nearer than
-  /// about a step, derivatives from both sides differ, and nothing is proposed.
+  /// Directions closer than this are one solution [rad]. Between two solutions the derivative of e changes its sign, or e has
+  /// an edge; if they are closer than about a step, the one-sided differences disagree, and nothing is proposed.
   static constexpr float same_way = Chain::step;
 };
 

@@ -1,12 +1,12 @@
-// The multi-chain perturbation (Veach & Guibas 1997, section 5.3.4; Veach 1997, section 11.4.2): the film point moves a little,
-// which leads to a first place that scatters smoothly; the direction in which the path goes on from there turns a little, and
-// leads, by the same kinds of mirrors and clear surfaces as before, to the next; and so on until a place is followed by another
-// one directly, to which it is joined, or by the luminaire. Caustics that are seen in mirrors change little then, nor do glossy
-// surfaces that are seen in glossy ones.
+// The multi-chain perturbation (Veach & Guibas 1997, section 5.3.4; Veach 1997, section 11.4.2): the film point moves by a
+// small distance, which gives a new first smooth vertex; the direction in which the path continues from there is rotated by a
+// small angle, and leads, through specular vertices with the same lobes as before, to the next smooth vertex; and so on until a
+// smooth vertex is followed by another one directly, to which it is connected, or by the luminaire. Caustics that are seen by
+// specular reflection change little this way, and so do glossy reflections in glossy surfaces.
 //
-// All changes are alike likely to all sides, so
+// All moves and rotations have a uniform azimuth, so
 //     T(y -> x) / T(x -> y) = E_{k-1}(x) prod w(x) / (E_{k-1}(y) prod w(y)),
-// w being, at each place where a direction turns, the solid angle of what comes next over its area.
+// with w, at each vertex where a direction is rotated, the solid angle of the next vertex over its area.
 
 #include "etendue/transport/mutation.h"
 
@@ -32,7 +32,7 @@ class MultiChainMutation final : public Mutation {
   std::optional<double> propose(const PathSpace& space, const LightPath& x, LightPath& y,
                                 ChoiceNumbers& choices) const override {
     const int k = x.length();
-    // Where directions turn, and the last vertex that changes.
+    // The vertices at which directions are rotated, and the smooth vertex at which the changes end.
     std::vector<int> turns;
     int last = x.smooth_before(k);
     while (last > 0 && (turns.empty() || x.specular(last - 1))) {

@@ -1,4 +1,4 @@
-// What all mutations share.
+// Members that all mutations share.
 
 #include "etendue/transport/mutation.h"
 

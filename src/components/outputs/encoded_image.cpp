@@ -31,8 +31,8 @@ std::vector<T> quantized(const Image& image, const std::array<size_t, 3>& channe
   std::vector<T> out(3 * count);
   for (size_t i = 0; i < out.size(); ++i) {
     const double value = image.values[i / 3 * stride + channels[i % 3]];
-    double v = maximum * (value > 0 ? std::min(value, 1.0) : 0);  // not a number: 0
-    // Black and white stay what they are.
+    double v = maximum * (value > 0 ? std::min(value, 1.0) : 0);  // NaN becomes 0
+    // Black and white are not dithered.
     if (dither && v > 0 && v < maximum) v += double(to_unit_float(std::uint32_t(mix_bits(i + 1) >> 32))) - 0.5;
     out[i] = T(std::clamp(v + 0.5, 0.0, maximum));
   }

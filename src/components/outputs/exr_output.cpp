@@ -40,7 +40,7 @@ class ExrOutput final : public Output {
 
     std::vector<ImageHeader::Channel> channels;
     for (const size_t c : kept) {
-      // Halves hold whole numbers up to 2048 and lengths to three digits: layers keep their precision.
+      // A half represents integers only up to 2048 and lengths to three digits, so layers are written in single precision.
       const bool color = image.channels[c].find('.') == std::string::npos;
       channels.push_back({image.channels[c], precision == Precision::half && color ? NumberType::half : NumberType::single});
     }
@@ -59,7 +59,7 @@ class ExrOutput final : public Output {
       for (size_t k = 0; k < kept.size(); ++k) {
         const double v = image.values[i + kept[k]];
         const double limit = header.channels[k].type == NumberType::half ? 65504 : double(std::numeric_limits<float>::max());
-        // Infinite values, such as an unknown variance, are meant.
+        // Infinite values, such as an unknown variance, are intended and are written.
         const bool exceeds = std::isfinite(v) && std::abs(v) > limit;
         over += exceeds;
         values[at++] = float(exceeds ? std::copysign(limit, v) : v);
@@ -70,7 +70,7 @@ class ExrOutput final : public Output {
   }
 
  private:
-  /// Light groups are in the same space as the picture, so that programs which know nothing of them can add them up.
+  /// Converts light groups to the RGB space of the image, so that other programs can add them up.
   static void convert_light_groups(Image& image, const RgbSpace& space) {
     if (space.name == "xyz") return;
     const auto is = [&](size_t c, const char* end) {
@@ -86,7 +86,7 @@ class ExrOutput final : public Output {
       }
     }
   }
-  /// Where a cropped picture lies within the whole.
+  /// Sets the position of a cropped image within the whole image.
   static void place(ImageHeader& header, const Image& image) {
     const auto number = [&](const char* key, int otherwise) {
       const auto found = image.metadata.find(key);

@@ -26,7 +26,7 @@ class HdrOutput final : public Output {
     constexpr double limit = 0x1.fep126;
     for (size_t i = 0; i < values.size(); ++i) {
       const double v = image.values[i / 3 * stride + red + i % 3];
-      values[i] = v > 0 ? float(std::min(v, limit)) : 0;  // not a number: 0
+      values[i] = v > 0 ? float(std::min(v, limit)) : 0;  // NaN becomes 0
     }
     write_encoded(path, extension(), ImageHeader(image.width, image.height, 3, NumberType::single), values);
   }

@@ -32,7 +32,7 @@ class NpyOutput final : public Output {
     for (size_t c = 0; layers && c < image.channels.size(); ++c)
       if (image.channels[c].find('.') != std::string::npos) kept.push_back(c);
 
-    // Magic, version, length of the text, the text: padded so that the numbers begin at a multiple of 64 bytes.
+    // Magic number, version, length of the text, and the text, padded so that the numbers begin at a multiple of 64 bytes.
     std::string text = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}, {}), }}", image.height,
                                    image.width, kept.size());
     const size_t header = (10 + text.size() + 1 + 63) / 64 * 64;

@@ -1,4 +1,4 @@
-// BlendPhase: of two kinds of particles.
+// BlendPhase: a mixture of two phase functions, as of two kinds of particles.
 
 #include <algorithm>
 
@@ -8,8 +8,8 @@
 namespace etendue {
 namespace {
 
-// p = (1 - w) p_1 + w p_2. One number does for both steps: below w it is spread over [0, 1) for the second function, above for
-// the first.
+// p = (1 - w) p_1 + w p_2. One random number chooses the function and samples it: numbers below w are rescaled to [0, 1) for
+// the second function, the others for the first.
 class BlendPhase final : public PhaseFunction {
  public:
   static void describe(Description<BlendPhase>& d) {

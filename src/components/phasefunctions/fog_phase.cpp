@@ -1,4 +1,4 @@
-// FogPhase: droplets of water.
+// FogPhase: the phase function of water droplets.
 
 #include <cmath>
 
@@ -9,16 +9,17 @@
 namespace etendue {
 namespace {
 
-// Mie's theory of a droplet gives a narrow peak straight on, a broad lobe and more straight back than sideways. Jendersie &
-// d'Eon (2023, An approximate Mie scattering function for fog and cloud rendering) fit it by a lobe of Henyey and Greenstein,
-// the peak, and one of Draine (2003, Scattering by interstellar dust grains, eq. 8), the rest, in the ratio 1 - w to w:
+// By Mie's theory a droplet has a narrow forward peak, a broad lobe, and scatters more light backwards than sideways. Jendersie
+// & d'Eon (2023, An approximate Mie scattering function for fog and cloud rendering) fit this by a Henyey-Greenstein lobe for
+// the peak and a lobe of Draine (2003, Scattering by interstellar dust grains, eq. 8) for the rest, in the ratio 1 - w to w:
 //     p_D = (1 - g^2) / (4 pi (1 + g^2 - 2 g c)^(3/2)) (1 + a c^2) / (1 + a (1 + 2 g^2) / 3)  [1/sr],   c = cos(theta),
 // with parameters that are functions of the droplets' diameter between 5 and 50 micrometres (their table 1).
 //
-// Sampling Draine's. With s^2 = 1 + g^2 - 2 g c, which goes from 1 - g straight on to 1 + g back, A = 1 + g^2 and B = 2 g, it
-// is c = (A - s^2) / B, and the probability of an angle up to that of s is N (F(s) - F(1 - g)) with
+// Sampling Draine's lobe. Let s^2 = 1 + g^2 - 2 g c, with s from 1 - g forward to 1 + g backward, A = 1 + g^2 and B = 2 g. Then
+// c = (A - s^2) / B, and the probability of an angle up to that of s is N (F(s) - F(1 - g)) with
 //     F(s) = -1/s + a / B^2 (-A^2 / s - 2 A s + s^3 / 3),   N = (1 - g^2) / (B (1 + a (1 + 2 g^2) / 3)).
-// F rises, as its derivative is (1 + a c^2) / s^2; N (F(s) - F(1 - g)) = u is solved by Newton's steps, which bisection guards.
+// F increases, as its derivative is (1 + a c^2) / s^2; N (F(s) - F(1 - g)) = u is solved by Newton's method, with bisection as
+// a safeguard.
 class FogPhase final : public PhaseFunction {
  public:
   static void describe(Description<FogPhase>& d) {
@@ -67,8 +68,8 @@ class FogPhase final : public PhaseFunction {
     return clamp(float((s - (1 - g_)) * (s + (1 - g_)) / B), 0, 2);
   }
 
-  double g_ = 0, a_ = 0, whole_ = 1;  // Draine's
-  float peak_ = 0, broad_ = 0;        // g of the peak, and the part that the broad lobe has
+  double g_ = 0, a_ = 0, whole_ = 1;  // of Draine's lobe: g, a, 1 + a (1 + 2 g^2) / 3
+  float peak_ = 0, broad_ = 0;        // g of the peak, and the weight w of Draine's lobe
 };
 
 const Register<FogPhase> registered;

@@ -1,6 +1,6 @@
 #pragma once
 // Henyey's and Greenstein's phase function (1941, "Diffuse radiation in the galaxy", eq. 2). With theta the angle between the
-// ways light travels before and after, and g = mean of cos(theta),
+// directions of propagation before and after scattering, and g = mean of cos(theta),
 //     p(theta) = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos(theta))^(3/2))  [1/sr].
 // Everything is written in h = 1 - cos(theta), so that nothing cancels in the narrow peak of a large g:
 //     1 + g^2 - 2 g cos(theta) = (1 - g)^2 + 2 g h.
@@ -24,7 +24,7 @@ inline float value(float g, float h) {
   return (1 - g) * (1 + g) / (4 * pi * d * std::sqrt(d));
 }
 
-/// The h of a uniform number.
+/// Samples h by a uniform number u.
 inline float sample(float g, float u) {
   const float q = 1 + g - 2 * g * u;
   return std::min(square((1 - g) / q) * u * (1 + g + q), 2.0f);

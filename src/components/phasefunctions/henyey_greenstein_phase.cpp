@@ -1,4 +1,4 @@
-// HenyeyGreensteinPhase: a single lobe.
+// HenyeyGreensteinPhase: a single Henyey-Greenstein lobe.
 
 #include "henyey_greenstein.h"
 
@@ -21,7 +21,7 @@ class HenyeyGreensteinPhase final : public PhaseFunction {
   void prepare() override {
     if (!(anisotropy < 1)) fail("anisotropy", "must be less than 1");
   }
-  // A lobe backwards is the same lobe of the angle to the way back.
+  // A backward lobe is the same function of the angle to the backward direction.
   float value(float h) const override { return henyey_greenstein::value(std::abs(anisotropy), anisotropy < 0 ? 2 - h : h); }
   float sample(float u) const override {
     const float h = henyey_greenstein::sample(std::abs(anisotropy), u);

@@ -1,4 +1,4 @@
-// What all phase functions have in common: they have no members of their own.
+// The description of PhaseFunction, the base class of all phase functions; it has no members.
 
 #include "etendue/phase_function.h"
 

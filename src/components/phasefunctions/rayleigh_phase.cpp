@@ -1,4 +1,4 @@
-// RayleighPhase: particles much smaller than the wavelength, as the air's molecules.
+// RayleighPhase: the phase function of particles much smaller than the wavelength, such as the molecules of air.
 
 #include <cmath>
 
@@ -8,15 +8,15 @@
 namespace etendue {
 namespace {
 
-// A small round particle is a dipole that swings with the light's field (Rayleigh 1871). With c = cos(theta), of unpolarized
-// light
+// A small spherical particle is a dipole that oscillates with the light's field (Rayleigh 1871). With c = cos(theta), for
+// unpolarized light
 //     p = 3 / (16 pi) (1 + c^2)  [1/sr].
-// Molecules that are not round send part of it out otherwise polarized. With rho the ratio of the weaker to the stronger
-// polarization at right angles (of natural light) and gamma = rho / (2 - rho) (Chandrasekhar 1950, Radiative transfer, section
+// Molecules that are not spherical depolarize part of the light. With rho the ratio of the weaker to the stronger polarization
+// of unpolarized light scattered at right angles, and gamma = rho / (2 - rho) (Chandrasekhar 1950, Radiative transfer, section
 // 18; Bucholtz 1995, Rayleigh-scattering calculations for the terrestrial atmosphere, eq. 12),
 //     p = 3 / (16 pi (1 + 2 gamma)) ((1 + 3 gamma) + (1 - gamma) c^2).
 //
-// Sampling. With a = (1 + 3 gamma) / (1 - gamma), the probability of a cosine of c at least is
+// Sampling. With a = (1 + 3 gamma) / (1 - gamma), the probability that the cosine is at least c is
 //     P(c) = 1/2 - (3 a c + c^3) / (2 (3 a + 1)),
 // so that c^3 + 3 a c = (1 - 2 u)(3 a + 1) = q. Its one real root is c = 2 sqrt(a) sinh(t) with
 // 8 a^(3/2) sinh^3(t) + 6 a^(3/2) sinh(t) = 2 a^(3/2) sinh(3 t) = q.

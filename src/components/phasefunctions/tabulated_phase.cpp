@@ -1,4 +1,4 @@
-// TabulatedPhase: measured, or computed elsewhere.
+// TabulatedPhase: a phase function given by a table, measured or computed elsewhere.
 
 #include <fmt/format.h>
 
@@ -11,10 +11,11 @@
 namespace etendue {
 namespace {
 
-// Linear in c = cos(theta) between the table's places, and scaled so that it integrates to 1. Kept by h = 1 - c, rising: at
-// places h_0 = 0 < ... < h_n = 2 with values v_k, the area up to h_k is A_k = 2 pi sum (v_i + v_{i+1}) / 2 (h_{i+1} - h_i).
+// Linear in c = cos(theta) between the table's nodes, and scaled so that it integrates to 1. Stored by increasing h = 1 - c:
+// with nodes h_0 = 0 < ... < h_n = 2 and values v_k, the area up to h_k is A_k = 2 pi sum (v_i + v_{i+1}) / 2 (h_{i+1} - h_i).
 //
-// Sampling. In the interval that holds u A_n, with r = u A_n - A_k, width d and ends v, v', the place is t d with
+// Sampling. In the interval that contains u A_n, with r = u A_n - A_k, width d and values v, v' at its ends, h is h_k + t d
+// with
 //     2 pi d (v t + (v' - v) t^2 / 2) = r,   t = 2 s / (v + sqrt(v^2 + 2 (v' - v) s)),   s = r / (2 pi d),
 // the form of the root that does not cancel, whichever end is higher.
 class TabulatedPhase final : public PhaseFunction {
@@ -46,7 +47,7 @@ class TabulatedPhase final : public PhaseFunction {
   }
 
   float value(float given) const override {
-    const float h = clamp(given, 0, 2);  // beyond which rounding may bring it
+    const float h = clamp(given, 0, 2);  // by rounding `given` may lie outside
     const size_t k = interval(h_, double(h));
     return float(std::lerp(v_[k], v_[k + 1], (double(h) - h_[k]) / (h_[k + 1] - h_[k])));
   }
@@ -71,13 +72,13 @@ class TabulatedPhase final : public PhaseFunction {
     for (double& v : v_) v /= whole;
     for (double& a : area_) a /= whole;
   }
-  /// The k with rising[k] <= x < rising[k + 1], or the nearest there is.
+  /// The k with rising[k] <= x < rising[k + 1], or the nearest k.
   static size_t interval(const std::vector<double>& rising, double x) {
     const auto after = std::upper_bound(rising.begin() + 1, rising.end() - 1, x);
     return size_t(after - rising.begin()) - 1;
   }
 
-  std::vector<double> h_, v_, area_;  // places, density there [1/sr], probability up to there
+  std::vector<double> h_, v_, area_;  // at the nodes: h, pdf [1/sr], CDF
 };
 
 const Register<TabulatedPhase> registered;

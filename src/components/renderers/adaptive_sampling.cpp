@@ -1,20 +1,21 @@
-// Adaptive sampling without bias, around any renderer whose samples stay in their pixels.
+// Adaptive sampling without bias, around any renderer whose samples contribute to their own pixel only.
 //
-// Pixel i has the mean Y_i of its samples, of variance V_i. Of N samples in all, n_i of them there make the sum of squared
-// relative errors sum_i V_i / (n_i (Y_i + e)^2) least when
+// Let the samples of pixel i have the mean Y_i and the variance V_i. Of N samples in all, pixel i gets n_i. The sum of squared
+// relative errors sum_i V_i / (n_i (Y_i + e)^2) is least when
 //     n_i ~ sqrt(V_i) / (Y_i + e)
-// (Lagrange's multiplier). V and Y are unknown, and are estimated from the samples so far, over the pixels around.
+// (by a Lagrange multiplier). V and Y are unknown, and are estimated from the samples so far, over the neighbouring pixels.
 //
-// To stop where few samples say that all is well is a bias: those that happened to lack a rare bright path are kept, the others
-// are averaged away (Kirk & Arvo 1991, "Unbiased sampling techniques for image synthesis"). Here, therefore,
-//   - every pixel gets one sample at least in every step, and
+// To stop sampling a pixel where few samples suggest a small error is biased: a pixel that happened to miss a rare bright path
+// stops, while in one that found it further samples average it away (Kirk & Arvo 1991, "Unbiased sampling techniques for image
+// synthesis"). Therefore
+//   - every pixel gets at least one sample in every step, and
 //   - each step has the same weight in every pixel, however many samples it has there:
 //         I_i = 1/K sum_k m_ik,    m_ik the mean of the n_ik samples of step k.
-// How many those are follows from the steps before an epoch. What an epoch draws is independent of them (its own random seed),
-// so given the past E[m_ik] = I_i whatever n_ik, and the expectation of the sum is I_i: exactly, not only in the limit. The
-// price is that steps with few samples in a pixel weigh as much there as those with many. Epochs are of 1, 1, 2, 4, 8, ...
-// steps: within one a pixel's numbers are well spread, and the film's error, from the spread of whole steps, knows nothing of
-// how many samples they had.
+// All n_ik of an epoch are computed from the steps before it. The samples of an epoch have a random seed of their own and are
+// independent of earlier steps, so given the past E[m_ik] = I_i for any n_ik, and the expectation of the sum is I_i: exactly,
+// not only in the limit. The price is that a step with few samples in a pixel weighs as much there as one with many. Epochs
+// have 1, 1, 2, 4, 8, ... steps: within an epoch a pixel's samples are well stratified. The error of the film is estimated from
+// the variance between whole steps and does not depend on their numbers of samples.
 
 #include <algorithm>
 #include <bit>
@@ -66,14 +67,14 @@ class AdaptiveSampling final : public Renderer {
   Expectation expectation() const override { return inner ? inner->expectation() : Expectation::unbiased; }
   PathClasses finds() const override { return inner ? inner->finds() : no_paths; }
 
-  /// Of a whole step, per pixel: enough that some can have fewer.
+  /// Mean samples per pixel in a whole step: enough that some pixels can have fewer.
   static constexpr std::uint32_t mean_samples = 8;
 
  private:
   std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;
 };
 
-/// What is known of a pixel's samples: their number and the sums of their luminances and squares.
+/// Statistics of a pixel's samples: their number and the sums of their luminances and squared luminances.
 struct Luminances {
   double count = 0, sum = 0, squares = 0;
   void add(const Luminances& more) {
@@ -108,7 +109,7 @@ class AdaptiveProcess final : public RenderProcess {
     renderer.fail({}, "how many samples a pixel has follows from all steps before, so that none can be replayed by itself");
   }
 
-  // What is planned follows from steps before the epoch, so it is kept, too.
+  // The plan depends on the steps before the epoch, so it is saved with the state.
   std::vector<std::byte> save_state() const override {
     std::vector<std::byte> bytes(known_.size() * (sizeof(Luminances) + sizeof(std::uint32_t)));
     std::memcpy(bytes.data(), known_.data(), known_.size() * sizeof(Luminances));
@@ -129,7 +130,7 @@ class AdaptiveProcess final : public RenderProcess {
   static constexpr int tile = 8;
 
   size_t place(int x, int y) const { return size_t(y - area_.y0) * size_t(area_.width()) + size_t(x - area_.x0); }
-  // Tiles lie as those of the whole picture, so that a crop's sums are of the same parts.
+  // Tiles are aligned to the whole image, so that the sums of a crop are over the same tiles.
   int first_column() const { return area_.x0 / tile; }
   int first_row() const { return area_.y0 / tile; }
   std::uint64_t columns() const { return std::uint64_t((area_.x1 + tile - 1) / tile - first_column()); }
@@ -144,12 +145,12 @@ class AdaptiveProcess final : public RenderProcess {
   const AdaptiveSampling& settings_;
   const std::unique_ptr<RenderProcess> inner_;
   const PixelArea area_;
-  std::vector<Luminances> known_;       // of each pixel, from all steps so far
+  std::vector<Luminances> known_;       // for each pixel, from all steps so far
   std::vector<std::uint32_t> planned_;  // samples of each pixel in a step of this epoch
 };
 
-/// sqrt(V) / (Y + e) of each pixel, with variances within pixels and means from 5 x 5 pixels around it; the same for all when
-/// nothing is known.
+/// The relative errors sqrt(V) / (Y + e) of all pixels, to which their samples are proportional. Variances within pixels and
+/// means are averaged over 5 x 5 pixels around each. All are 1 before the first samples.
 std::vector<float> AdaptiveProcess::wishes() const {
   constexpr int reach = 2;
   double total = 0, count = 0;
@@ -174,9 +175,10 @@ std::vector<float> AdaptiveProcess::wishes() const {
   return wishes;
 }
 
-/// One sample for each pixel, and of the others, (mean - 1) for each, shares in proportion to the wishes, up to `most` times
-/// the mean. What is cut off there goes to the others, in a few rounds, and what nobody wishes to all alike: the film takes
-/// steps to be of as many samples. Rounded so that running sums are exact to one sample.
+/// Plans the samples of the next epoch: one for each pixel, and (mean - 1) times the number of pixels distributed in proportion
+/// to `wishes`, up to `most` times the mean per pixel. Samples that this limit cuts off are distributed among the other pixels
+/// in a few rounds, and the remainder evenly over all pixels, since the film expects the full number of samples in each step.
+/// The numbers are rounded so that running sums are exact to one sample.
 void AdaptiveProcess::plan() {
   const std::vector<float> wished = wishes();
   constexpr double mean = AdaptiveSampling::mean_samples;
@@ -209,7 +211,7 @@ void AdaptiveProcess::step(Schedule& schedule, const Step& step) {
   const std::uint32_t epoch = std::uint32_t(std::bit_width(step.number)),
                       first_step = step.number == 0 ? 0 : std::bit_floor(step.number),
                       count = step.samples.end - step.samples.begin;
-  // A part of a step, where a render was to end within one, is sampled evenly with numbers of its own.
+  // A partial step, when the render ends within a step, is sampled evenly with its own random seed.
   const bool whole = count == AdaptiveSampling::mean_samples && step.samples.begin % count == 0;
   const std::uint64_t seed = mix_bits(context.seed + mix_bits(whole ? epoch : std::uint64_t(step.samples.begin) + 64));
   const bool wants_features = context.image.wants_features();
@@ -241,7 +243,7 @@ void AdaptiveProcess::step(Schedule& schedule, const Step& step) {
             results.push_back(of_pixel);
           }
       });
-  if (schedule.aborted()) return;  // what was found is thrown away
+  if (schedule.aborted()) return;  // the samples of an aborted step are discarded
   size_t next = 0;
   for (std::uint64_t item = 0; item < items; ++item) {
     const PixelArea area = item_area(item);

@@ -1,9 +1,9 @@
-// How open surfaces lie to their surroundings.
+// Ambient occlusion: the unoccluded fraction of the hemisphere over each surface point.
 //
 //     A(x) = 1/pi * integral over the hemisphere of V(x, w) cos(w) dw
-// (Zhukov, Iones & Kronin 1998, "An ambient light illumination model", eq. 4; Landis 2002), V being 1 where a ray of the
-// given length meets nothing. Directions are drawn with density cos / pi, so A is the mean of V. With unlimited rays
-// the picture's Y is that of white matt surfaces under a sky of radiance 1, one reflection deep.
+// (Zhukov, Iones & Kronin 1998, "An ambient light illumination model", eq. 4; Landis 2002), where V is 1 if a ray of the given
+// length hits nothing. Directions are sampled with the pdf cos / pi, so A is the mean of V. With unlimited rays the image's Y
+// is that of direct light on white diffuse surfaces under a sky of radiance 1.
 
 #include "display_colors.h"
 #include "etendue/core/warp.h"
@@ -42,7 +42,7 @@ class AmbientOcclusionRenderer final : public Renderer {
                                                        soft(0, 1));
   }
 
-  PathClasses finds() const override { return no_paths; }  // it shows how open surfaces are
+  PathClasses finds() const override { return no_paths; }  // it does not render light
 
   Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
     const Scene& scene = context.scene;
@@ -60,7 +60,8 @@ class AmbientOcclusionRenderer final : public Renderer {
       sample.sink.first_surface(scene, point, hit, scatter, out, sample.wavelengths);
     }
 
-    // The side that is seen; directions under the true surface, which shading normals may lead to, are blocked.
+    // The hemisphere is on the side that is seen. Directions below the geometric surface, which shading normals allow, count as
+    // occluded.
     const float side = dot(point.normal, out) < 0 ? -1.0f : 1.0f;
     const Normal3 normal = shading_normals ? point.shading_normal : point.normal;
     const Frame frame(dot(normal, point.normal) * side < 0 ? -normal : normal);

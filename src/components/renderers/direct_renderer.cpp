@@ -1,17 +1,17 @@
-// Emitted and direct light only, with the choice of how luminaires are found.
+// Emitted and direct light only, with a choice of the strategies that sample luminaires.
 //
-// Light that reaches a surface point straight from luminaires and is scattered towards `out` is
+// Direct light that a surface point scatters towards `out` is
 //     L = integral of f(out, w) L_e(w) |cos w| dw.
-// n_l directions are drawn by choosing points on luminaires, with density p_l(w) (the probability of the luminaire included),
-// n_s by the shader, with density p_s(w). The multi-sample estimator (Veach & Guibas 1995; Veach 1997, eq. 9.4) is
+// n_l directions are sampled by points on luminaires, with the pdf p_l(w) (the probability of the luminaire included), and n_s
+// by the shader, with the pdf p_s(w), both [1/sr]. The multi-sample estimator (Veach & Guibas 1995; Veach 1997, eq. 9.4) is
 //     sum over both strategies k, and their samples i, of   w_k(w_ki) f L_e |cos| / (n_k p_k),
-// with w_k = (n_k p_k)^b / sum_j (n_j p_j)^b, b = 1 for the balance and 2 for the power heuristic. Either strategy alone has
-// w = 1. Only the shader finds light by way of specular lobes, and only luminaire samples that of luminaires
-// without extent: these count in full.
+// with w_k = (n_k p_k)^b / sum_j (n_j p_j)^b, where b = 1 for the balance heuristic and 2 for the power heuristic. If only one
+// strategy is used, w = 1. Only the shader samples specular lobes, and only luminaire samples find delta luminaires (point,
+// spot and directional lights): these count in full.
 //
-// Where mirrors show surfaces, a perfect mirror or refraction leads to one direction w_k each, and what comes from there is the
-// same sum, of the surface that is seen: L = L_e + direct + sum_k a_k L(x_k, -w_k), up to a depth, with direct light of the
-// other lobes alone.
+// If mirrors show surfaces, a perfect mirror or refraction leads to one direction w_k each, along which the radiance is the
+// same sum for the surface there: L = L_e + direct + sum_k a_k L(x_k, -w_k), up to a depth. Direct light is then computed for
+// the non-specular lobes alone.
 
 #include "etendue/render/renderer.h"
 #include "etendue/transport/direct_light.h"
@@ -75,18 +75,18 @@ class DirectRenderer final : public Renderer {
   }
 
  private:
-  /// Of which lobes light is direct. What passes straight on is followed apart, and is no scattering; so is what is mirrored
-  /// and refracted where surfaces are shown there.
+  /// The lobes that direct light is computed for. Null scattering is no scattering, and is followed separately; so are specular
+  /// lobes if mirrors show surfaces.
   Lobes direct_lobes() const { return mirrors == Shown::surfaces ? smooth_lobes : Lobes(all_lobes & ~null_scattering); }
 
-  /// What passes straight on goes on as the branch itself.
+  /// Follows a branch. Null scattering continues the branch itself, in a loop instead of a recursion.
   void follow(RayTree& tree, RayBranch& branch) const {
     while (!tree.sample.aborted() && to_next_surface(tree, branch)) {
     }
   }
 
-  /// Adds the light of the surface that a branch meets, and of what it shows. Returns whether anything passes straight on
-  /// there.
+  /// Adds the light of the next surface that a branch hits, and what that surface reflects and refracts. Returns whether the
+  /// branch continues by null scattering.
   bool to_next_surface(RayTree& tree, RayBranch& branch) const {
     const Scene& scene = tree.scene;
     SampleContext& sample = tree.sample;
@@ -131,13 +131,13 @@ class DirectRenderer final : public Renderer {
     tree.sample.sink.emitter_hit(light, branch.depth, 1);
   }
 
-  /// One branch goes on for each perfect mirror and refraction.
+  /// Follows one new branch for each perfect mirror and refraction.
   void follow_mirrors(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const Scatter& scatter) const {
     SampleContext& sample = tree.sample;
     bool first = true;
     for (const Lobe lobe : {specular_reflection, specular_transmission}) {
       if (!scatter.has(lobe)) continue;
-      const float choice = sample.numbers.next();  // a surface may have several mirrors
+      const float choice = sample.numbers.next();  // a surface may have several lobes of this kind
       const auto next = scatter.sample(-branch.ray.direction, choice, sample.numbers.next_pair(), Transport::radiance, lobe);
       if (!next || enters_subsurface(point, *next)) continue;
       RayBranch child = branch;
@@ -146,14 +146,14 @@ class DirectRenderer final : public Renderer {
       if (child.throughput.black() || !child.may_go_on(lobe)) continue;
       ++child.depth;
       go_on(point, *next, child.ray, child.around());
-      if (!first) sample.sink.surface(point, branch.throughput);  // each branch is told from its surface on
+      if (!first) sample.sink.surface(point, branch.throughput);  // path records of a branch begin at this surface
       first = false;
       sample.sink.scattered(*next);
       follow(tree, child);
     }
   }
 
-  /// Lets a ray go straight on through a surface. Returns the fraction that does; none when all is scattered or absorbed.
+  /// Continues a ray by null scattering. Returns the fraction of light that passes; nullopt if all is scattered or absorbed.
   static std::optional<Spectrum> pass_straight(const SurfacePoint& point, const Scatter& scatter, Ray& ray,
                                                MediumStack* media) {
     if (!scatter.has(null_scattering)) return std::nullopt;
@@ -163,7 +163,7 @@ class DirectRenderer final : public Renderer {
     return straight->weight;
   }
 
-  /// Calls `add(light, luminaire)` for light that is scattered towards `out`; so does by_shader.
+  /// Calls `add(light, luminaire)` for the light scattered towards `out`, found by luminaire samples; by_shader by directions.
   template <class Add>
   void by_luminaires(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const Scatter& scatter,
                      const Add& add) const {
@@ -172,7 +172,7 @@ class DirectRenderer final : public Renderer {
     const float n = float(light_samples);
     LuminaireSample light;
     for (int i = 0; i < light_samples && !sample.aborted(); ++i) {
-      // Choices in equal strata over all samples: together they still choose luminaires as one choice does.
+      // Stratified choices: together, all samples choose luminaires with the same probabilities as one choice.
       const float choice = std::min((float(i) + sample.numbers.next()) / n, one_minus_epsilon);
       const Point2 u = sample.numbers.next_pair();
       const LightChoice chosen = light_sampler->choose(point.position, point.normal, choice);

@@ -1,10 +1,9 @@
 #pragma once
-// Colours for what is no light.
+// Colours of renderers that show quantities other than light.
 //
-// A renderer that shows something else than light must not depend on the wavelengths a sample happens to have, yet the
-// picture makes each sample's XYZ from a spectrum at a few wavelengths. So it puts wavelengths of its own choice in the
-// place of the sample's, such that each primary of sRGB is a sum of three of them with no negative part: samples are then
-// exactly the colour wanted.
+// Such colours must not depend on the wavelengths of a sample, yet the film computes each sample's XYZ from a spectrum at a few
+// wavelengths. So these renderers replace the sample's wavelengths by fixed ones, chosen such that each sRGB primary is a
+// non-negative sum of three of them: then every sample has exactly the intended colour.
 
 #include <algorithm>
 #include <array>
@@ -19,7 +18,7 @@ class DisplayColors {
   Wavelengths wavelengths;
 
   DisplayColors() {
-    // The corners of a quadrangle of chromaticities around the gamut; no triangle of spectral colours is large enough.
+    // The corners of a quadrilateral of chromaticities around the sRGB gamut; no triangle of spectral colours is large enough.
     static_assert(spectrum_size >= lines);
     constexpr float nanometres[lines] = {460, 490, 535, 650};
     for (int i = 0; i < spectrum_size; ++i) wavelengths.place(i, nanometres[i % lines], 1 / (wavelength_high - wavelength_low));
@@ -40,7 +39,7 @@ class DisplayColors {
   static double determinant(const Xyz& a, const Xyz& b, const Xyz& c) {
     return a.x * (b.y * c.z - b.z * c.y) - b.x * (a.y * c.z - a.z * c.y) + c.x * (a.y * b.z - a.z * b.y);
   }
-  /// A colour as the sum of three lines, by Cramer's rule; false when one of them would be negative.
+  /// Solves for a colour as a sum of three of the spectral lines, by Cramer's rule; false if one of them would be negative.
   bool mix(const Xyz& color, int without, Spectrum& sum) const {
     std::array<int, 3> use;
     std::array<Xyz, 3> light;

@@ -1,23 +1,23 @@
 // Distribution ray tracing: rays spread over luminaires, lobes, the lens and time.
 //
-// Cook, Porter & Carpenter 1984, "Distributed ray tracing", spread one tree of rays over all that is to be blurred. Lens,
-// time and wavelengths come with the camera ray. At a surface the tree splits: n_l rays go to points on luminaires, n_d and n_g
-// along directions of the diffuse and the glossy lobes, n_s along each perfect mirror or refraction, so that each kind of
-// blur gets the rays it needs.
+// Cook, Porter & Carpenter 1984, "Distributed ray tracing", distribute one tree of rays over all dimensions to be blurred. The
+// lens, the time and the wavelengths are sampled with the camera ray. At a surface the tree splits: n_l rays go to points on
+// luminaires, n_d and n_g along directions of the diffuse and the glossy lobes, n_s along each perfect mirror or refraction, so
+// that each kind of blur gets as many rays as it needs.
 //
-// With p_d, p_g the solid-angle densities with which the two kinds of lobes, each asked alone, give w, the n_d + n_g lobe
-// rays together are one stratified sample of the density
+// Let p_d and p_g [1/sr] be the pdfs of w if the diffuse or the glossy lobes alone are sampled. The n_d + n_g lobe rays are
+// together one stratified sample of the density
 //     N(w) = n_d p_d(w) + n_g p_g(w),
-// so that what arrives along each of them counts f |cos| / N, f being that of both kinds: the balance heuristic between
-// the lobes (Veach 1997, section 9.2.2). Light straight from luminaires is found by the luminaire rays as well, with
-// n_l p_l(w). The two are combined by the power heuristic (ibid., section 9.2.3),
+// so the radiance along each of them is multiplied by f |cos| / N, with f of both kinds of lobes: the balance heuristic between
+// the lobes (Veach 1997, section 9.2.2). The luminaire rays find direct light as well, with n_l p_l(w). Lobe rays and luminaire
+// rays are combined by the power heuristic (ibid., section 9.2.3),
 //     w_lobes = N^2 / (N^2 + (n_l p_l)^2),    w_luminaires = 1 - w_lobes,
-// so emission that a lobe ray meets counts w_lobes f |cos| L_e / N, and a luminaire ray w_luminaires f |cos| L_e / (n_l p_l).
-// Rays from the camera and from specular lobes take the emission they meet in full. A kind of lobe that gets no rays leaves N,
-// and its direct light comes from luminaire rays alone; only then is anything left out.
+// so an emitter hit of a lobe ray counts w_lobes f |cos| L_e / N, and a luminaire ray w_luminaires f |cos| L_e / (n_l p_l).
+// Emitter hits of rays from the camera and from specular lobes count in full. A kind of lobe without rays is not in N, and its
+// direct light comes from luminaire rays alone; its indirect light, and nothing else, is left out.
 //
-// Beyond `split_depth` segments one ray goes on, along any lobe, and one to a luminaire: the tree's branches end as the paths
-// of a path tracer, cut by Russian roulette, and with all kinds of lobes followed the expectation is the path tracer's.
+// Beyond `split_depth` segments the tree does not split: one ray continues along any lobe, and one goes to a luminaire, as in a
+// path tracer with Russian roulette. If all kinds of lobes are followed, the expectation is that of the path tracer.
 
 #include "etendue/render/renderer.h"
 #include "etendue/transport/direct_light.h"
@@ -75,16 +75,16 @@ class DistributionRenderer final : public Renderer {
  private:
   struct Branch : RayBranch {
     using RayBranch::RayBranch;
-    float share = 1;        ///< of the tree: what splitting made the throughput smaller by
-    float eta_squared = 1;  ///< what refraction made it larger by
-    // How the ray's direction was found: where, with which density N [1/sr] (0: not by a smooth lobe), beside how many
-    // luminaire rays.
+    float share = 1;        ///< of the tree: the product of 1 / (rays) over its splits, a factor of the throughput
+    float eta_squared = 1;  ///< the product of eta^2 over refractions, which divides the throughput
+    // How the ray's direction was sampled: at which point, with which density N [1/sr] (0: not from a smooth lobe), next to how
+    // many luminaire rays.
     Point3 from = {};
     Normal3 from_normal = {};
     float pdf = 0, luminaire_rays = 0;
   };
 
-  /// What is known of a surface at which branches go on.
+  /// A surface point at which branches continue.
   struct Place {
     const SurfacePoint& point;
     const Scatter& scatter;
@@ -96,7 +96,7 @@ class DistributionRenderer final : public Renderer {
     return all_lobes & ~(diffuse_samples > 0 ? 0 : diffuse_lobes) & ~(glossy_samples > 0 ? 0 : glossy_lobes);
   }
 
-  /// Light of a luminaire that a branch meets.
+  /// Adds an emitter hit of a branch.
   void add_emission(RayTree& tree, const Branch& branch, const SurfacePoint& point) const {
     const Vector3& direction = branch.ray.direction;
     Spectrum light = branch.throughput * point.object->emission->radiance(point, -direction, branch.wavelengths);
@@ -140,7 +140,7 @@ class DistributionRenderer final : public Renderer {
         const Spectrum direct = direct_light(tree, branch, place);
         sample.sink.next_event(direct, branch.depth + 1, 1);
       }
-      // What goes straight on is no longer for it, so the last segment may do that.
+      // Null scattering does not count as a segment, so the last segment may still pass null-scattering surfaces.
       const Lobes lobes = last ? Lobes(null_scattering) : followed();
       if (place.splits) {
         if (!split(tree, branch, place, lobes)) return;
@@ -151,7 +151,8 @@ class DistributionRenderer final : public Renderer {
       if (!next || enters_subsurface(place.point, *next)) return;
       branch.throughput *= next->weight;
       step(sample, branch, place, *next, next->pdf, 1);
-      // Radiance that refraction changed comes back when the path leaves the medium: that decides as little as splitting.
+      // The factor of radiance by refraction is taken back when the path leaves the medium, so it does not enter the survival
+      // probability, and neither does the factor of splitting.
       if (branch.depth > roulette_depth) {
         const float survival = std::min(0.95f, branch.throughput.maximum() * branch.eta_squared / branch.share);
         if (sample.numbers.next() >= survival) return;
@@ -161,8 +162,8 @@ class DistributionRenderer final : public Renderer {
     }
   }
 
-  /// Follows each kind of lobe with as many branches as it gets. What passes straight on goes on as the branch itself, since
-  /// that may happen a thousand times one after the other; returns whether anything does.
+  /// Follows each kind of lobe with its number of branches. Null scattering continues the branch itself, since it may happen a
+  /// thousand times in a row; returns whether it does.
   bool split(RayTree& tree, Branch& branch, const Place& place, Lobes lobes) const {
     struct Kind {
       Lobes lobes, rivals;
@@ -195,7 +196,7 @@ class DistributionRenderer final : public Renderer {
         }
         step(sample, child, place, *next, pdf, kind.count + rivals);
         if (child.throughput.black() || !child.may_go_on(next->lobe)) continue;
-        if (!first) sample.sink.surface(place.point, branch.throughput);  // each branch from its surface on
+        if (!first) sample.sink.surface(place.point, branch.throughput);  // path records of a branch begin at this surface
         first = false;
         sample.sink.scattered(*next);
         if (kind.lobes == null_scattering) {
@@ -209,13 +210,13 @@ class DistributionRenderer final : public Renderer {
     return goes_on;
   }
 
-  /// Sends a branch on in a sampled direction; its throughput holds the sample's weight already.
+  /// Continues a branch in a sampled direction; its throughput already contains the sample's weight.
   void step(SampleContext& sample, Branch& branch, const Place& place, const ScatterSample& next, float pdf, int rays) const {
     if (next.dispersive) branch.throughput *= branch.wavelengths.drop_secondary();
     branch.eta_squared *= next.eta * next.eta;
     go_on(place.point, next, branch.ray, branch.around());
     if (!place.splits) sample.sink.scattered(next);
-    if (next.lobe == null_scattering) return;  // as if nothing had been there
+    if (next.lobe == null_scattering) return;  // a null-scattering surface is not a vertex of the path
     ++branch.depth;
     branch.share /= float(rays);
     branch.pdf = next.specular() ? 0 : pdf;
@@ -224,7 +225,7 @@ class DistributionRenderer final : public Renderer {
     branch.from_normal = place.point.normal;
   }
 
-  /// f of the lobes that are followed, and N.
+  /// f |cos| of the lobes that are followed (as `value`), and N (as `pdf`).
   ScatterValue lobe_rays(const Place& place, const Vector3& in) const {
     if (!place.splits) return place.scatter.value_and_pdf(place.out, in, Transport::radiance, followed());
     ScatterValue sum;
@@ -237,7 +238,7 @@ class DistributionRenderer final : public Renderer {
     return sum;
   }
 
-  /// Adds light straight from luminaires that is scattered towards `out`; returns it.
+  /// Adds next event estimation: direct light scattered towards `out`; returns its sum.
   Spectrum direct_light(RayTree& tree, const Branch& branch, const Place& place) const {
     const int count = place.splits ? light_samples : 1;
     const Lobes alone = smooth_lobes & ~followed();
@@ -245,7 +246,7 @@ class DistributionRenderer final : public Renderer {
     Spectrum sum;
     LuminaireSample light;
     for (int i = 0; i < count && !sample.aborted(); ++i) {
-      // Choices in equal strata over all rays: together they still choose luminaires as one choice does.
+      // Stratified choices: together, all rays choose luminaires with the same probabilities as one choice.
       const float choice = std::min((float(i) + sample.numbers.next()) / float(count), one_minus_epsilon);
       const Point2 u = sample.numbers.next_pair();
       const LightChoice chosen = light_sampler->choose(place.point.position, place.point.normal, choice);

@@ -1,7 +1,7 @@
-// What surfaces are like, as colours: normals, distances, names.
+// Properties of the first surfaces as colours: normals, depth, object identifiers and others.
 //
-// Except the albedo these are no light, and must not depend on the wavelengths a sample happens to have: they are shown by
-// DisplayColors, exactly and without noise.
+// All but the albedo are no light and must not depend on the wavelengths of a sample: they are shown by DisplayColors, exactly
+// and without noise.
 
 #include <algorithm>
 
@@ -37,12 +37,12 @@ class FeatureRenderer final : public Renderer {
                     "facing"));
   }
 
-  PathClasses finds() const override { return no_paths; }  // it shows what surfaces are like
+  PathClasses finds() const override { return no_paths; }  // it does not render light
 
   std::unique_ptr<RenderProcess> begin(const RenderContext& context) const override;
 };
 
-/// Knows the objects of a scene by numbers.
+/// Has a number for each object of the scene.
 class FeatureProcess final : public RenderProcess {
  public:
   FeatureProcess(const FeatureRenderer& r, const RenderContext& c) : RenderProcess(r, c), feature(r.feature) {
@@ -66,7 +66,7 @@ class FeatureProcess final : public RenderProcess {
     sample.sink.first_surface(scene, point, hit, scatter, out, sample.wavelengths);
 
     Spectrum value;
-    if (feature == Feature::albedo) {  // light after all: white light, scattered
+    if (feature == Feature::albedo) {  // the albedo is shown as scattered white light
       if (scatter) value = scatter->albedo(out) * white_->evaluate(sample.wavelengths, ColorUse::radiance);
     } else {
       value = display_colors()(
@@ -104,7 +104,7 @@ class FeatureProcess final : public RenderProcess {
     return {part(v.x), part(v.y), part(v.z)};
   }
 
-  /// Components between 0.1 and 1, so that nothing is as dark as the background.
+  /// Components between 0.1 and 1, so that no colour is as dark as the background.
   static Vector3 id_color(std::uint64_t id) {
     const std::uint64_t bits = mix_bits(id + 0x9e3779b97f4a7c15ull);
     const auto part = [&](int shift) { return 0.1f + 0.9f / 255 * float((bits >> shift) & 255); };
@@ -125,7 +125,7 @@ class FeatureProcess final : public RenderProcess {
     return count;
   }
 
-  /// Gives all objects their numbers, those of nested scenes too.
+  /// Numbers all objects, those of nested scenes too.
   void number(const Scene& scene) {
     for (const Ref<SceneObject>& object : scene.objects) {
       objects_.emplace_back(object.get(), objects_.size() + 1);
@@ -133,7 +133,7 @@ class FeatureProcess final : public RenderProcess {
     }
   }
 
-  /// A number for the object that was hit in this place: a scene that stands in several places holds several objects.
+  /// A number for the hit object in this instance: an instanced scene gives its objects a different number in each instance.
   std::uint64_t object_number(const Hit& hit) const {
     const auto of = [&](const SceneObject* object) {
       const auto place = std::lower_bound(objects_.begin(), objects_.end(), std::pair(object, size_t(0)));
@@ -146,7 +146,7 @@ class FeatureProcess final : public RenderProcess {
 
   const Feature feature;
   Color white_;
-  std::vector<std::pair<const SceneObject*, size_t>> objects_;  // sorted by address, each with its number by place in the file
+  std::vector<std::pair<const SceneObject*, size_t>> objects_;  // sorted by address, with numbers in the file's order
 };
 
 std::unique_ptr<RenderProcess> FeatureRenderer::begin(const RenderContext& context) const {

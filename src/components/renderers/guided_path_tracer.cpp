@@ -1,21 +1,21 @@
-// Path guiding: path tracing that learns where light comes from.
+// Path guiding: path tracing that learns the distribution of incident light from its own paths.
 //
 // As in path tracing, radiance along a ray is the sum over the vertices x_k of a random walk
 //     L = sum_k T_k [ L_e(x_k) + direct(x_k) ],   T_{k+1} = T_k f |cos| / p,
-// with luminaires found in two ways that are weighted against each other (path_tracer.cpp). A walk goes on in directions of a
-// density p that is in part the scattering's and in part learned (guiding/guided_scattering.h, guiding/guide.h): in the way of
-// Müller, Gross & Novák 2017, "Practical path guiding for efficient light-transport simulation", with the densities of Ruppert,
-// Herholz & Lensch 2020, "Robust fitting of parallax-aware mixtures for path guiding".
+// with next event estimation and emitter hits weighted against each other (path_tracer.cpp). Directions are sampled from a
+// mixture p of the scattering's pdf and a learned pdf (guiding/guided_scattering.h, guiding/guide.h). The algorithm follows
+// Müller, Gross & Novák 2017, "Practical path guiding for efficient light-transport simulation", with the distributions of
+// Ruppert, Herholz & Lensch 2020, "Robust fitting of parallax-aware mixtures for path guiding".
 //
-// For each vertex a path notes the light that came back by way of the direction it chose, over its throughput there:
-//     X_k = mean over wavelengths of (L - what came otherwise) / T_k,
-// the mean over a path's wavelengths, which are drawn as the eye is sensitive, and how far away the next vertex was. The guide
-// learns after each step, and samples of a step see that of the steps before: each is unbiased, so all count in the picture
-// alike.
+// For each vertex x_k a path records the light that arrived along the sampled direction, divided by the throughput there:
+//     X_k = mean over wavelengths of (L - L_earlier) / T_k,
+// with L_earlier the radiance gathered before and at x_k, over the path's wavelengths, which are sampled in proportion to the
+// eye's sensitivity; and the distance of the next vertex. The guide learns after each step, and the samples of a step use the
+// guide of the steps before: each sample is unbiased, so all have the same weight in the image.
 //
-// Russian roulette ends a walk by what would be left of it had scattering alone chosen the same directions: T itself is small
-// just where a guide leads into light. It ends fewer walks than a path tracer's: where lobes leave little variance of where
-// paths go, most is left by paths that end (docs/decisions/028-guiding.md has the numbers).
+// Russian roulette uses the throughput that the path would have if scattering alone had sampled the same directions: T itself
+// is small just where a guide leads into light. It ends fewer walks than in a path tracer: where the guide leaves little
+// variance in directions, most of the remaining variance is from roulette (docs/decisions/028-guiding.md has the numbers).
 
 #include "etendue/guiding/guided_scattering.h"
 #include "etendue/render/guided_process.h"
@@ -73,25 +73,26 @@ class GuidedPathTracer final : public Renderer {
 
 namespace {
 
-/// What a path found from the vertices it left, as far as a guide learns from them.
+/// The training samples of a path: one for each vertex it left, up to `longest`.
 class Trail {
  public:
-  static constexpr int longest = 16;  ///< vertices deeper in a path are left out
+  static constexpr int longest = 16;  ///< deeper vertices of a path give no training samples
 
   void left(const GuideSample& sample, const Spectrum& throughput) {
     waits_ = length_ < longest;
     if (!waits_) return;
-    if (!sample.specular) begun_ = length_;  // behind a mirror a place is as far as the way to it is long
+    if (!sample.specular) begun_ = length_;  // distances through mirrors are summed over the specular chain
     left_[length_++] = {sample, throughput, {}, 0};
   }
-  /// The light of a path that has not come along its last segment, which is so long [m].
+  /// Completes the last segment, of length `distance` [m]. `earlier`: the radiance of the path without light from this segment
+  /// on.
   void arrived(const Spectrum& earlier, float distance) {
     if (!waits_) return;
     for (int i = begun_; i < length_; ++i) left_[i].distance += distance;
     left_[length_ - 1].earlier = earlier;
     waits_ = false;
   }
-  /// Tells what was found, given all light of the path.
+  /// Computes X of all vertices from the radiance of the whole path, and stores the training samples.
   void record(const Spectrum& all, SampleContext& sample) {
     for (int i = 0; i < length_; ++i) {
       GuideSample& s = left_[i].sample;
@@ -108,7 +109,7 @@ class Trail {
     Spectrum throughput, earlier;
     float distance;
 
-    /// X: the mean over those wavelengths that were still carried.
+    /// X, as a mean over the wavelengths that the path still carried.
     float found(const Spectrum& all) const {
       float sum = 0;
       int carried = 0;
@@ -134,7 +135,7 @@ class GuidedPathProcess final : public GuidedProcess<ShownProcess> {
         clear_(!c.scene.has_interiors() && !c.scene.has_null_surfaces()) {}
 
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
-    Trail* const trail = trail_of(sample);  // before the walk, which takes back what was made since it began
+    Trail* const trail = trail_of(sample);  // allocated before the walk, which rewinds the arena to its own beginning
     return clear_ ? follow(CameraWalk<true>(context.scene, sample, ray, settings_.max_depth), trail)
                   : follow(CameraWalk<false>(context.scene, sample, ray, settings_.max_depth), trail);
   }
@@ -148,17 +149,17 @@ class GuidedPathProcess final : public GuidedProcess<ShownProcess> {
     return s;
   }
 
-  /// Where the trail of a path is kept; null: nothing is learned from it.
+  /// The trail of a path, in the sample's arena; null: the path is no training path.
   Trail* trail_of(const SampleContext& sample) const { return guide()->teaches(sample) ? sample.arena.make<Trail>() : nullptr; }
 
-  /// Russian roulette lets go on so many times as many walks.
+  /// Factor of the survival probability of Russian roulette.
   static constexpr float kept = 2;
 
   template <class Walk>
   [[gnu::always_inline]] Spectrum follow(Walk&& walk, Trail* trail) const {
     const LightSampler& lights = *settings_.light_sampler;
     const Roulette roulette{settings_.roulette_depth};
-    float more = 1;  // the product of p / p_scatter: by so much more would be left without a guide
+    float more = 1;  // the product of p / p_scatter; T times this is the throughput without a guide
     const auto met = [&](const SurfacePoint& luminaire) {
       return settings_.next_event ? walk.emitter_hit_weight(lights, settings_.heuristic, luminaire) : 1.0f;
     };

@@ -1,11 +1,11 @@
 // Instant radiosity (Keller 1997, "Instant radiosity"; Kollig & Keller 2004, "Illumination in the presence of weak
 // singularities").
 //
-// Each step has n walks from luminaires. All their vertices are virtual lights, and light the first place z that each camera
-// ray comes to and that is no mirror:
-//     L(z) = (light straight from luminaires) + 1/n sum_y w f_z G V f_y alpha_y + (the walk that goes on from z, times 1 - w)
-// (render/virtual_lights.h says what w is). Neighbouring pixels are lit by the same lights: the picture has little noise and
-// many faint shadows, which fade as steps with other lights are added.
+// Each step has n light subpaths. All their vertices y with smooth lobes are virtual lights, which light the first non-specular
+// vertex z of each camera subpath:
+//     L(z) = (direct light) + 1/n sum_y w f_z G V f_y alpha_y + (1 - w) (the continued camera subpath at its next vertex)
+// (render/virtual_lights.h defines w). Neighbouring pixels are lit by the same virtual lights: the image has little noise but
+// many faint shadow edges, which fade as steps with other virtual lights are added.
 
 #include "etendue/render/virtual_lights.h"
 

@@ -1,13 +1,14 @@
-// Many lights: virtual lights in such numbers that each place takes a few of them alone (Walter et al. 2005, "Lightcuts: a
+// Many lights: so many virtual lights that each shading point samples only a few of them (Walter et al. 2005, "Lightcuts: a
 // scalable approach to illumination"; Yuksel 2019, "Stochastic lightcuts").
 //
-// As in instant radiosity each step has n walks from luminaires, whose vertices light the first place z that each camera ray
-// comes to and that is no mirror; but there are thousands, in a tree (virtual_light_tree.h). A cut through the tree, made for
-// z, divides them into groups, and one light of each group, over the probability to be chosen, stands for it:
-//     L(z) = (light straight from luminaires) + 1/n sum_{groups} w f_z G V f_y alpha_y / P(y) + (the walk that goes on, times 1
-//     - w).
-// No error is let pass as in the original, which shows a group's middle: the mean is right, and what differs within groups is
-// noise.
+// As in instant radiosity (instant_radiosity.cpp) each step has n light subpaths, whose vertices light the first non-specular
+// vertex z of each camera subpath; but there are thousands of virtual lights, in a tree (virtual_light_tree.h). A cut through
+// the tree, chosen for z, divides them into groups. One light y of each group, sampled with the probability P(y), represents
+// the group:
+//     L(z) = (direct light) + 1/n sum_{groups} w f_z G V f_y alpha_y / P(y)
+//            + (1 - w) (the continued camera subpath at its next vertex).
+// The original lightcuts use one fixed representative light per group, with a bounded error. Here the representative is
+// sampled, so the mean is right, and the differences within a group are noise instead of a bias.
 
 #include "virtual_light_tree.h"
 

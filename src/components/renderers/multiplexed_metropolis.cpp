@@ -1,15 +1,16 @@
 // Multiplexed Metropolis light transport (Hachisuka, Kaplanyan & Dachsbacher 2014, "Multiplexed Metropolis light transport").
 //
-// A bidirectional path tracer makes all paths that its two walks can make; most of them bring little. Here numbers choose one:
-// how many segments k the path has, with probability P(k), and which of its strategies makes it, s of its k + 1 vertices being
-// taken from the luminaire. The walks are then as long as they must be, and no longer, and
+// A bidirectional path tracer makes all paths that its two subpaths can make, most of which contribute little. Here primary
+// samples choose one path: its number of segments k with the probability P(k), and uniformly the strategy that makes it, which
+// takes s of its k + 1 vertices from the light subpath. The subpaths are traced only as far as this strategy needs, and
 //     F = (number of strategies / P(k)) w_s C_s,
-// with C_s what the strategy brings and w_s its multiple-importance weight (transport/bidirectional_subpaths.h). The mean of F
-// over the numbers is all light of all lengths. Chains mutate the numbers (render/primary_sample_chains.h), the choices among
-// them: they come most often to strategies that bring most of a path's light, in proportion to w_s.
+// with C_s the unweighted contribution of the strategy and w_s its multiple importance sampling weight
+// (transport/bidirectional_subpaths.h). The mean of F over the primary samples is all light of all lengths. Chains mutate the
+// primary samples (render/primary_sample_chains.h), including those that choose k and s: so a path is made most often by the
+// strategies that contribute most to it, in proportion to w_s.
 //
-// P is any distribution that gives each length a chance. Each step of the render takes it from a few paths of its own: a part
-// of the light that was found with k segments and a part that falls as 1 / k.
+// P may be any distribution that is positive for all lengths. Each step of the render estimates it from a few paths of its own:
+// 3/4 in proportion to the light that was found with k segments, and 1/4 in proportion to 1 / k.
 
 #include <numeric>
 
@@ -51,10 +52,10 @@ class MultiplexedMetropolis final : public Renderer {
 
 namespace {
 
-/// No roulette: how long walks are is chosen.
+/// Subpaths without Russian roulette: their length is already chosen.
 SubpathLimits exactly(int segments) { return {segments, segments + 1}; }
 
-/// The sum of the contributions of one strategy.
+/// The sum of the contributions of one strategy, or of all.
 struct Sum {
   SampleContext& sample;
   const BidirectionalSubpaths& walks;
@@ -76,7 +77,7 @@ struct Sum {
   }
 };
 
-/// Paths of which each is made by one strategy.
+/// Estimates F: each sample is one path, made by one strategy.
 class StrategyProcess final : public RenderProcess {
  public:
   StrategyProcess(const MultiplexedMetropolis& r, const RenderContext& c)
@@ -101,7 +102,7 @@ class StrategyProcess final : public RenderProcess {
     const auto i = std::min(size_t(std::ranges::upper_bound(sums_, u) - sums_.begin()), sums_.size() - 1);
     const double P = (sums_[i] - (i > 0 ? sums_[i - 1] : 0)) / sums_.back();
     const int k = first_ + int(i);
-    // A luminaire that the camera sees is met, and not connected to the lens.
+    // For k = 1, only emitter hits (s = 0) are used; the luminaire is not connected to the lens.
     const int strategies = k == 1 ? 1 : k + 1;
     const int s = std::min(int(sample.numbers.fork("strategy").next() * float(strategies)), strategies - 1), t = k + 1 - s;
 
@@ -129,14 +130,15 @@ class StrategyProcess final : public RenderProcess {
  private:
   const MultiplexedMetropolis& settings_;
   const int first_;           ///< length of the shortest paths
-  std::vector<double> sums_;  ///< of P up to each length, times a constant
+  std::vector<double> sums_;  ///< the cumulative distribution of P, times a constant
 
   void choose_lengths_by(const std::vector<double>& weights) {
     sums_.resize(weights.size());
     std::partial_sum(weights.begin(), weights.end(), sums_.begin());
   }
 
-  /// Luminance, times a constant, of the light of the shorter lengths, from a quarter as many paths as a pool has.
+  /// The luminance of each path length from first_ to at most 64, times a constant, from a quarter as many paths as the
+  /// bootstrap pool has.
   std::vector<double> light_by_length(Schedule& schedule, const Step& step) const {
     constexpr std::uint32_t item_size = 256;
     const PixelArea area = context.image.sampled_area();
@@ -169,7 +171,7 @@ class StrategyProcess final : public RenderProcess {
   }
 };
 
-/// All strategies for luminaires that are seen and light straight from them.
+/// Visible emitters and direct light, by all strategies with up to two segments.
 class DirectProcess final : public RenderProcess {
  public:
   DirectProcess(const MultiplexedMetropolis& r, const RenderContext& c) : RenderProcess(r, c), settings_(r) {}

@@ -1,20 +1,22 @@
-// Metropolis light transport in the space of paths (Veach & Guibas 1997; Veach 1997, chapter 11).
+// Metropolis light transport in path space (Veach & Guibas 1997; Veach 1997, chapter 11).
 //
-// A state is a whole path x (transport/light_path.h), which brings f(x) to the film; I(x) is the luminance of that. Mutations
-// (transport/mutation.h), chosen by their shares, propose y, accepted with the probability
+// A state is a whole path x (transport/light_path.h) with the contribution f(x) to the film; I(x) is the luminance of f(x).
+// Mutations (transport/mutation.h), chosen in proportion to their shares, propose y with the pdf T(x -> y), and y is accepted
+// with the probability
 //     a = min(1, I(y) T(y -> x) / (I(x) T(x -> y))).
-// With a probability p the proposal is an independent path instead. Its length k is chosen with probability P(k), falling as
-// 1 / k, and how many of its vertices come from either end is, too; with D the mean of the densities of all such ways its
-// density is
+// With a probability p the proposal is an independent path instead. Its length k is chosen with the probability P(k), in
+// proportion to 1 / k, and then how many of its vertices are sampled from the luminaire and how many from the lens. With D the
+// mean of the pdfs of all these ways, the pdf of the path is
 //     T(y) = P(k) D(y),
-// and F = f / T an estimate of the picture by itself. States count as in all Metropolis renderers here (StateWeights), in terms
-// of F. Mirrors and clear surfaces are vertices of paths like others (transport/light_path.h).
+// and F = f / T is an estimate of the image by itself. States are weighted as in all Metropolis renderers here (StateWeights),
+// in terms of F. Mirrors and clear surfaces are vertices of paths like others (transport/light_path.h).
 //
-// Brightness is measured by two walks at a time and all paths y_j that they make, as in bidirectional path tracing
-// (PathSpace::all_ways), of the weights w_j: sum w_j I(y_j) is on average the integral of I T. One of them, taken in proportion
-// to its own part of the sum and standing for all of it, is what a chain may begin with (Veach 1997, section 11.3.1).
+// Brightness is measured by pairs of subpaths, with all paths y_j that a pair makes, as in bidirectional path tracing
+// (PathSpace::all_ways). With their weights w_j, the expectation of sum w_j I(y_j) is the integral of I T, I being that of F.
+// One of the y_j, chosen in proportion to its part of the sum and representing the whole sum, may be the first state of a chain
+// (Veach 1997, section 11.3.1).
 //
-// What paths of one or two segments bring is found sample by sample, by a bidirectional path tracer.
+// Paths of one or two segments are estimated sample by sample, by a bidirectional path tracer.
 
 #include "etendue/render/primary_sample_chains.h"
 #include "etendue/transport/mutation.h"
@@ -102,26 +104,26 @@ class PathSpaceProcess final : public RenderProcess, Chains {
   const PathSpaceMetropolis& settings_;
   const Ref<Renderer> direct_renderer_;
   const std::unique_ptr<RenderProcess> direct_;
-  std::vector<double> shares_, lengths_;  ///< sums, of what mutations and lengths are chosen in proportion to
+  std::vector<double> shares_, lengths_;  ///< cumulative sums: of the mutations' shares, of 1 / k
 
-  /// Where a number falls among such sums.
+  /// Samples an index in proportion to the terms of cumulative sums.
   static size_t chosen(const std::vector<double>& sums, double u) {
     return std::min(size_t(std::ranges::upper_bound(sums, u * sums.back()) - sums.begin()), sums.size() - 1);
   }
   /// P(k)
   double length_share(int k) const { return 1.0 / k / lengths_.back(); }
-  /// T of an independent path.
+  /// T(y), the pdf of an independent path.
   double pdf(const LightPath& y) const { return length_share(y.length()) * PathSpace::pdf(y, 0, y.length()); }
-  /// F
+  /// F = f / T; empty if no path was found.
   void contribution(const LightPath& y, bool found, Contribution& F) const {
     F.clear();
     if (!found) return;
-    // Both are far out of the range of floats where vertices lie near one another, and their quotient is not.
+    // Where vertices lie near one another both f and T are far out of the range of floats, but their quotient is not.
     const double of_f = y.scale / pdf(y);
     const Spectrum light = map(y.f, [of_f](float f) { return float(double(f) * of_f); });
     F.add({y.film, light, y.seen, y.length()}, {0, 0, context.image.width, context.image.height});
   }
-  /// A path without vertices, of new wavelengths and a new place on the lens.
+  /// Begins a path without vertices, with new wavelengths and a new lens sample.
   void begin_anew(const PathSpace& space, Arena& arena, ChoiceNumbers& choices, LightPath& y) const {
     LightPath none;
     none.wavelengths = wavelengths({}, std::min(float(choices.next()), one_minus_epsilon));
@@ -135,7 +137,8 @@ class PathSpaceProcess final : public RenderProcess, Chains {
     return space.join(y, {space.lens(y)}, k, choices);
   }
 
-  /// The one path that stands for all that two walks make: y, and its F. The sum of their brightness, 0: there is none.
+  /// Samples the path y that represents all paths of a pair of subpaths, and its F. Returns the sum of their brightness; 0:
+  /// none.
   double begun(const PathSpace& space, Arena& arena, ChoiceNumbers& choices, LightPath& y, Contribution& F) const {
     LightPath each;
     begin_anew(space, arena, choices, each);
@@ -173,7 +176,7 @@ class PathSpaceProcess final : public RenderProcess, Chains {
     Contribution current, proposed;  // F
     ChoiceNumbers start(first), choices(own_seed);
     begun(space, *arena, start, *x, current);
-    double I = current.brightness(v), waiting = 0;  // what x counts for that is not added yet
+    double I = current.brightness(v), waiting = 0;  // the weight of x that is not added to the film yet
     for (std::uint64_t i = 0; i < states && !(abort && abort->load(std::memory_order_relaxed)); ++i) {
       const Arena::Mark before = arena->mark();
       const bool large = choices.next() < double(settings_.large_steps);
@@ -201,7 +204,7 @@ class PathSpaceProcess final : public RenderProcess, Chains {
         waiting = now;
         if (!(I > 0)) {
           arena->rewind(before);
-        } else if (++accepted % 256 == 0) {  // what vertices that are gone pointed to is left behind
+        } else if (++accepted % 256 == 0) {  // frees the memory of vertices that are no longer used
           arena = &arenas[arena == &arenas[0]];
           arena->reset();
           space.move(*x, *arena);

@@ -2,16 +2,16 @@
 //
 // Radiance along a ray is the sum over the vertices x_k of a random walk
 //     L = sum_k T_k [ L_e(x_k) + direct(x_k) ],   T_{k+1} = T_k f |cos| / p,
-// where at each x_k light is found in two ways: by sampling a luminaire (next event estimation), and by the walk itself
-// meeting one. Both find the same light, so they are combined by multiple importance sampling; a walk that comes from a
-// specular lobe can meet luminaires in the second way only and takes that in full (Kajiya 1986; Veach 1997, section 9).
-// Russian roulette ends walks with a probability that keeps their expectation.
+// where light is found in two ways at each x_k: by sampling a luminaire (next event estimation), and by emitter hits of the
+// walk. Both find the same light, so they are combined by multiple importance sampling; after a specular lobe only an emitter
+// hit can find a luminaire, and counts in full (Kajiya 1986; Veach 1997, section 9). Russian roulette ends walks without
+// changing the expectation.
 //
-// At perfectly smooth glass the integral over directions is a sum of two, and with dispersion one for each wavelength: there a
-// walk is divided, and its branches are walks of their own (transport/camera_walk.h, Splitting).
+// At perfectly smooth glass the integral over directions is a sum of reflection and refraction, and with dispersion refraction
+// is a sum over the wavelengths: there a walk can be split into branches (transport/camera_walk.h, Splitting).
 //
-// In a medium the phase function takes the place of f |cos|. Weights compare the densities of directions alone, which is the
-// same comparison whichever strategy made the path, so they add up to one.
+// In a medium the phase function takes the place of f |cos|. The weights compare the pdfs [1/sr] of directions alone, without
+// transmittances. Both strategies compute the same weights for a path, so the weights add up to one.
 
 #include "etendue/render/renderer.h"
 #include "etendue/transport/camera_walk.h"
@@ -62,7 +62,7 @@ class PathTracer final : public Renderer {
   [[gnu::always_inline]] Spectrum follow(Walk&& walk) const {
     const Roulette roulette{roulette_depth};
     const Splitting splitting{split_depth, split_wavelengths};
-    // Of light that the walk meets, against having sampled it.
+    // The weight of an emitter hit against next event estimation.
     const auto met = [&](const SurfacePoint& luminaire) {
       return next_event ? walk.emitter_hit_weight(*light_sampler, heuristic, luminaire) : 1.0f;
     };

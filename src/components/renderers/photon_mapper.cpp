@@ -1,18 +1,27 @@
 // Photon mapping with final gathering (Jensen 1996, "Global illumination using photon maps"; Jensen 2001, "Realistic image
 // synthesis using photon mapping").
 //
-// Light at the first vertex x of a walk from the camera that scatters smoothly is divided by the way it came from a luminaire:
-//     straight        sampled, and met, as in path tracing;
-//     by mirrors and glass alone (caustics)    the k photons of the caustic map nearest to x;
-//     from another smooth vertex y             the walk goes on from x and finds y, where all light is that of the k photons of
-//                     the global map nearest to y. Where y is too near to x for photons to tell it apart, y takes the place of
-//                     x.
-// The light of k photons within the distance r_k of the farthest is
-//     L = sum_p f alpha_p / (n pi r_k^2),        in media sum_p phase alpha_p / (n 4/3 pi r_k^3)
-// without the farthest itself (transport/photons.h). Directions from x are chosen by the shader, or towards where photons near
-// x came from (Jensen 1995, "Importance driven path tracing using the photon map"): of cones of opening W around the directions
-// of the K nearest one is taken in proportion to what its photon carries, so that with a share q
-// In media no light is gathered: photons at the vertex bring all that was scattered before.
+// Let x be the first vertex of a camera subpath that has smooth (non-delta) lobes. The radiance that x scatters is split by the
+// light's way from the emitter to x:
+//     direct          next event estimation and emitter hits, weighted as in path tracing;
+//     caustics        by a specular chain: the k photons of the caustic map nearest to x;
+//     indirect        from another vertex y with smooth lobes: final gathering. The camera subpath continues from x to y, where
+//                     the reflected radiance, direct light included, is that of the k photons of the global map nearest to y.
+//                     Where y is nearer to x than the maximum photon distance, photons cannot resolve the two, and y takes the
+//                     place of x.
+// With r_k the distance of the k-th nearest of the photons of n light subpaths, the radiance estimate is
+//     L = sum_p f alpha_p / (n pi r_k^2),        in media sum_p phase alpha_p / (n 4/3 pi r_k^3),
+// where the k-th photon gives r_k and is not part of the sum (transport/photons.h).
+//
+// Directions of final gathering are sampled from the BSDF, with the pdf p_f, or from the photons near x (Jensen 1995,
+// "Importance driven path tracing using the photon map"): the K nearest ones each have a cone of solid angle W around their
+// direction, and cone k is chosen with the probability P_k = alpha_k / sum_j alpha_j. Photons are chosen with the probability q
+// (`importance`), so the pdf of a direction is
+//     p(w) = (1 - q) p_f(w) + q sum_k P_k [w in cone k] / W     [1/sr]
+// (guiding/photon_directions.h), which also is the pdf in the weights of direct light. Specular lobes are sampled by the BSDF
+// alone, with 1 - q times their probability. Without photons near x, q = 0.
+//
+// Final gathering is not used in media: at a vertex there, photons carry all light that was scattered before.
 
 #include "etendue/guiding/photon_directions.h"
 #include "etendue/render/photon_process.h"
@@ -110,9 +119,9 @@ class PhotonMapperProcess final : public PhotonProcess {
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
     CameraWalk walk(context.scene, sample, ray, settings_.max_depth);
     enum class Seeks : std::uint8_t {
-      all,         // mirrors and glass alone were passed: whatever shines
-      gathered,    // a smooth surface was left: luminaires straight ahead, and what other smooth surfaces send
-      luminaires,  // those straight ahead: photons brought the rest
+      all,         // only specular vertices so far: all emitter hits count
+      gathered,    // after a smooth vertex: direct emitter hits, and light from other smooth vertices
+      luminaires,  // direct emitter hits alone: photons contributed the other light
     } seeks = Seeks::all;
     const auto met = [&](const SurfacePoint& luminaire) {
       if (walk.specular && seeks != Seeks::all) return 0.0f;
@@ -135,13 +144,13 @@ class PhotonMapperProcess final : public PhotonProcess {
   }
 
  private:
-  /// Whether photons can tell the last vertex from the one before, from which light is gathered.
+  /// Whether the last vertex is so far from the one before, where light is gathered, that photons can resolve the two.
   template <class Walk>
   bool is_far(const Walk& walk) const {
     return length_squared(walk.vertex.point.position - walk.from) > square(settings_.farthest * pixel_);
   }
 
-  /// Light of the nearest photons: of caustics, of what was scattered otherwise, or of all that came here.
+  /// Adds the radiance estimate of the nearest photons: of caustics, of other indirect light, or of all light.
   template <class Walk>
   void add_photons(Walk& walk, const Photons& photons, int nearest, float farthest, PhotonKinds kinds) const {
     const PathVertex& v = walk.vertex;
@@ -151,7 +160,7 @@ class PhotonMapperProcess final : public PhotonProcess {
     photons.map.tree().nearest(v.point.position, radius, size_t(nearest), near);
     if (near.size() == size_t(nearest)) {
       radius = std::sqrt(near.front().squared);
-      near.front().squared = infinity;  // the farthest says how large the disc is, and lies on its edge
+      near.front().squared = infinity;  // the k-th photon gives r_k and is left out of the sum
     }
     const float place = v.in_medium() ? 4 * pi / 3 * radius * radius * radius : pi * square(radius);
     for (const PointTree::Near& each : near) {
@@ -164,18 +173,18 @@ class PhotonMapperProcess final : public PhotonProcess {
     }
   }
 
-  /// All light of a surface that is seen while gathering.
+  /// Adds the reflected radiance at a vertex that final gathering reached.
   template <class Walk>
   void add_all(Walk& walk) const {
     const PathVertex& v = walk.vertex;
     const Spectrum* irradiance = settings_.irradiance ? irradiance_.at(v) : nullptr;
     if (!irradiance) return add_photons(walk, global_, settings_.nearest, settings_.farthest, PhotonKinds::all);
-    // As if all came along the normal, which is the same for a matt surface.
+    // The irradiance is taken to arrive along the normal; for a diffuse surface the direction makes no difference.
     const Vector3 normal = on_side(Vector3(v.point.normal), v.out);
     walk.add_light(1, v.scatter->evaluate(v.out, normal, Transport::radiance, v.lobes) * *irradiance);
   }
 
-  /// Adds light straight from luminaires and chooses where the walk goes on, towards where photons came from if `guided`.
+  /// Adds next event estimation and samples the next direction, from the photons too if `guided` (final gathering).
   template <class Walk>
   bool go_on(Walk& walk, bool guided) const {
     const PathVertex& v = walk.vertex;

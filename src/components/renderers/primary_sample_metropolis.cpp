@@ -1,12 +1,12 @@
-// Metropolis light transport in the space of numbers (Kelemen, Szirmay-Kalos, Antal & Csonka 2002, "A simple and robust
+// Metropolis light transport in primary sample space (Kelemen, Szirmay-Kalos, Antal & Csonka 2002, "A simple and robust
 // mutation strategy for the Metropolis light transport algorithm"), around any renderer.
 //
-// A path is a function of numbers u in [0, 1): those of its place on the film, its lens point, time and wavelengths, and all
-// that the algorithm inside draws (RenderProcess::path). F(u) is what it brings to the film. Chains of vectors u find it where
-// there is much of it (render/primary_sample_chains.h), with the mean that the renderer inside has.
+// A path is a function of primary samples u in [0, 1): those of its film point, lens point, time and wavelengths, and all that
+// the inner renderer draws (RenderProcess::path). F(u) is the contribution of the path to the film. Chains of vectors u sample
+// F in proportion to its brightness (render/primary_sample_chains.h); the mean is that of the inner renderer.
 //
-// What paths of one and two segments bring (luminaires seen, and light straight from them) is better found by samples that are
-// well spread over the film: `direct` has the renderer inside find it that way, and the chains carry the rest.
+// Paths of one and two segments (visible emitters and direct light) are better estimated by samples that are well distributed
+// over the film: with `direct` the inner renderer estimates them that way, and the chains carry the remaining light.
 
 #include "etendue/render/primary_sample_chains.h"
 
@@ -50,7 +50,7 @@ class PrimarySampleMetropolis final : public Renderer {
 
 namespace {
 
-/// The same algorithm for direct light alone, as far as it has such a limit.
+/// A copy of the inner renderer whose max_depth, if it has that member, is that of direct light.
 Ref<Renderer> for_direct_light(const Renderer& inner) {
   const Ref<Renderer> renderer = ref_cast<Renderer>(copy(inner));
   if (renderer->class_info().find("max_depth")) {

@@ -1,30 +1,29 @@
 // Progressive photon mapping (Hachisuka, Ogaki & Jensen 2008; Hachisuka & Jensen 2009, "Stochastic progressive photon mapping",
 // in the form of Knaus & Zwicker 2011, "Progressive photon mapping: a probabilistic approach").
 //
-// A walk from the camera goes through mirrors and glass to the first vertex x that scatters smoothly. There, with T its
-// throughput,
+// A camera subpath passes specular vertices up to its first vertex x that has smooth (non-delta) lobes. With T the throughput
+// of the subpath,
 //     L = T [ L_e(x) + direct(x) + sum_p f(x, w, w_p) alpha_p / (n pi r^2) ],
-// the sum being over photons p within r of x, of n walks from luminaires (transport/photons.h). Each step has new photons and a
-// smaller r, so the mean over steps goes to the truth.
+// where the sum is over the photons p within r of x, from n light subpaths (transport/photons.h). Each step has new photons and
+// a smaller r, so the mean over steps converges to the true value.
 //
-// What media scatter towards the camera is found in one of three ways:
-//     points       the walk is scattered in media as well, and x may lie there: f is the phase function then, and pi r^2
-//     becomes
-//                  4/3 pi r^3.
-//     along_rays   It is gathered all along the way, from photons within r of the ray, a beam of it (Jarosz, Zwicker & Jensen
-//                  2008, "The beam radiance estimate for volumetric photon mapping"), T(t) being what the medium lets through
-//                  as far as t:
+// Radiance that media scatter towards the camera is estimated in one of three ways:
+//     points       The subpath is scattered in media as well, and x may lie in one: then f is the phase function, and the
+//                  volume 4/3 pi r^3 replaces pi r^2.
+//     along_rays   Each camera ray gathers the photons within r of it (the beam radiance estimate: Jarosz, Zwicker & Jensen
+//                  2008, "The beam radiance estimate for volumetric photon mapping"). With t_p the distance of photon p along
+//                  the ray and T(t) the transmittance up to t,
 //                      L = T sum_p T(t_p) phase(x_p, w, w_p) alpha_p / (n pi r^2).
-//     beams        It is gathered all along the way, from all the ways of walks from luminaires that pass the ray within r
-//                  (render/photon_beams.h, which has the formula). What media let through then is exact on both sides, which
-//                  it is only in media that are the same everywhere; in others light is gathered along rays.
+//     beams        Each camera ray gathers the photon beams that pass it within r (render/photon_beams.h has the formula). The
+//                  transmittance is then exact along both the ray and the beam, which needs homogeneous media; heterogeneous
+//                  media are rendered as `along_rays`.
 //
-// Photons of caustics, light that mirrors and glass alone threw on, come from walks of their own that begin towards such
-// objects (transport/projection_map.h); the others leave those out.
+// Caustic photons, which arrive from the emitter by a specular chain, come from light subpaths of their own that start towards
+// specular objects (transport/projection_map.h); the other light subpaths store no caustic photons.
 //
-// direct(x) is light straight from luminaires, found by sampling them and by going on from x to see whether one is met,
-// weighted as in path tracing; photons then are those that were scattered before. A walk that has gone on for that sees
-// luminaires alone: all else that comes to x is photons.
+// direct(x) is direct light, estimated by next event estimation and by emitter hits of the subpath continued from x, weighted
+// as in path tracing; photons then carry only light that was scattered before. The continued subpath counts emitter hits alone,
+// since photons represent all other light that arrives at x.
 
 #include "etendue/render/photon_process.h"
 #include "etendue/render/shrinking_bias.h"
@@ -151,17 +150,17 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     return walk.radiance;
   }
 
-  /// What a walk meets on its way.
+  /// Receives the emitter hits and the medium intervals of a subpath.
   template <class Walk>
   struct Met {
     const ProgressivePhotonProcess& self;
     Walk& walk;
 
-    /// The weight of a luminaire, against having sampled it.
+    /// The weight of an emitter hit against next event estimation.
     float operator()(const SurfacePoint& luminaire) const {
       return walk.emitter_hit_weight(*self.settings_.light_sampler, self.settings_.heuristic, luminaire);
     }
-    /// A medium, for so far. What it sends to a smooth vertex photons have brought there.
+    /// A medium interval of length `reach`. After a smooth vertex none is gathered: photons there contain in-scattered light.
     void through(const Medium& medium, float reach) const {
       if (walk.attenuates_only && walk.specular) self.gather_along(walk, medium, reach);
     }
@@ -200,12 +199,12 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     if (settings_.media != InMedia::beams || !medium.volume->homogeneous()) return;
     const MediumInterval there = medium_interval(medium, ray, reach);
     const Ray within = there.within(ray);
-    // Of the step's wavelengths, as the beams': a walk may have dropped some.
+    // At the wavelengths of the step, which the beams have: the subpath may have dropped some.
     const VolumeCoefficients c = medium.coefficients(ray.origin, ray.time, wavelengths({}, 0));
     const auto add_beam = [&](const PhotonBeam& b, float s, float t, float width) {
       if (walk.length + int(b.vertices) > settings_.max_depth) return;
       const float phase = medium.phase(within(t), ray.time, -ray.direction, -b.direction);
-      walk.add_light(int(b.vertices), carried(b.light(s, t, c), b.single, to) * (phase / width), b.from(context.scene));
+      walk.add_light(int(b.vertices), carried(b.light(s, t, c), b.hero_only, to) * (phase / width), b.from(context.scene));
     };
     beams_.along(context.scene, medium, within, there.length(), numbers, add_beam);
     caustic_beams_.along(context.scene, medium, within, there.length(), numbers, add_beam);

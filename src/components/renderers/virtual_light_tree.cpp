@@ -59,7 +59,7 @@ VirtualLightTree::Place VirtualLightTree::place(const PathVertex& v, float neare
 }
 
 double VirtualLightTree::bound(const Node& node, const Place& z) {
-  double squared = 0, above = 0;  // above: of the corner farthest in front
+  double squared = 0, above = 0;  // above: the largest dot(normal, corner - z) over the box's corners
   for (int axis = 0; axis < 3; ++axis) {
     const float below = node.low[axis] - z.position[axis], over = z.position[axis] - node.high[axis];
     const double apart = double(std::max({below, over, 0.0f}));

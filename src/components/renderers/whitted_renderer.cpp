@@ -1,12 +1,13 @@
-// Ray tracing as Whitted described it: a tree of mirrored and refracted rays, and shadow rays to lights without extent.
+// Whitted's ray tracing: a tree of mirrored and refracted rays, and shadow rays to delta lights.
 //
-// The light of luminaires without extent arrives at a point x from one direction w_i each, so what x sends towards `out` is
-// a plain sum, and perfect mirrors and refraction lead to one direction w_k each (Whitted 1980, "An improved illumination
-// model for shaded display", eq. 2, with the surfaces' own f in place of his constants):
+// Light of a delta luminaire (point, spot or directional light) arrives at a point x from one direction w_i, so the radiance
+// that x scatters towards `out` is a plain sum, and perfect mirrors and refraction lead to one direction w_k each (Whitted
+// 1980, "An improved illumination model for shaded display", eq. 2, with the surfaces' own f in place of his constants):
 //     L(x, out) = L_e + sum_i f(out, w_i) E_i V_i |cos w_i| + sum_k a_k L(x_k, -w_k),
-// with E_i the irradiance across the light, V_i what of it is not in shadow, and a_k the fraction that specular lobe k
-// scatters. There is no integral to estimate: only wavelengths, the place on the film, the lens and time are drawn, and
-// where refraction disperses light the refracted branch, alone, follows the hero wavelength.
+// with E_i the irradiance perpendicular to w_i, V_i the transmittance of the shadow ray, and a_k the fraction of light that
+// specular lobe k scatters. No integral over directions is estimated: only wavelengths, the film point, the lens point and the
+// time are sampled. Where refraction is dispersive, the refracted branch, and no other, continues with the hero wavelength
+// alone.
 
 #include "etendue/render/renderer.h"
 #include "etendue/transport/ray_tree.h"
@@ -43,14 +44,14 @@ class WhittedRenderer final : public Renderer {
   }
 
  private:
-  /// What passes straight on goes on as the branch itself, since that may happen a thousand times one after the other; mirrored
-  /// and refracted rays, at most `max_depth` deep, are branches of their own.
+  /// Null scattering continues the branch itself, since it may happen a thousand times in a row; mirrored and refracted rays,
+  /// at most `max_depth` deep, are new branches.
   void follow(RayTree& tree, RayBranch& branch) const {
     while (!tree.sample.aborted() && to_next_surface(tree, branch)) {
     }
   }
 
-  /// Returns whether anything passes straight on there.
+  /// Adds the light of the next surface that a branch hits. Returns whether the branch continues by null scattering.
   bool to_next_surface(RayTree& tree, RayBranch& branch) const {
     const ArenaScope memory(tree.sample.arena);
     const Scene& scene = tree.scene;
@@ -85,9 +86,9 @@ class WhittedRenderer final : public Renderer {
 
     bool first = true, goes_on = false;
     for (const Lobe lobe : {specular_reflection, specular_transmission, null_scattering}) {
-      // What goes straight on is no longer for it, so the last segment may do that.
+      // Null scattering does not count as a segment, so the last segment may still pass null-scattering surfaces.
       if (!scatter->has(lobe) || (last && lobe != null_scattering)) continue;
-      const float choice = sample.numbers.next();  // a surface may have several mirrors
+      const float choice = sample.numbers.next();  // a surface may have several lobes of this kind
       const auto next = scatter->sample(out, choice, sample.numbers.next_pair(), Transport::radiance, lobe);
       if (!next || enters_subsurface(point, *next)) continue;
       RayBranch child = branch;
@@ -96,7 +97,7 @@ class WhittedRenderer final : public Renderer {
       if (child.throughput.black() || !child.may_go_on(lobe)) continue;
       if (lobe != null_scattering) ++child.depth;
       go_on(point, *next, child.ray, child.around());
-      if (!first) sample.sink.surface(point, branch.throughput);  // each branch is told from its surface on
+      if (!first) sample.sink.surface(point, branch.throughput);  // path records of a branch begin at this surface
       first = false;
       sample.sink.scattered(*next);
       if (lobe == null_scattering) {
@@ -109,7 +110,7 @@ class WhittedRenderer final : public Renderer {
     return goes_on;
   }
 
-  /// Adds light of all luminaires without extent; returns their sum.
+  /// Adds the direct light of all delta luminaires; returns its sum.
   static Spectrum direct_light(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const Scatter& scatter) {
     SampleContext& sample = tree.sample;
     const Vector3 out = -branch.ray.direction;

@@ -1,13 +1,13 @@
-// IndependentSampler: plain pseudo-random numbers.
+// IndependentSampler: independent pseudo-random numbers.
 
 #include "etendue/sampler.h"
 
 namespace etendue {
 namespace {
 
-// Counter based: a number is a hash of its own indices. The counter (sample, dimension) times an odd constant is one to
-// one, and its exclusive or with the pixel's hash walks through another part of the hash's domain in every pixel, as
-// splitmix64 does with its state (Steele, Lea & Flood 2014).
+// Counter based: a number is a hash of its own indices. The product of the counter (sample, dimension) and an odd constant is a
+// bijection of the counter; its exclusive or with the pixel's hash runs through another part of the hash's domain in every
+// pixel, like the state of splitmix64 (Steele, Lea & Flood 2014).
 std::uint64_t bits(SampleKey key, std::uint32_t dimension) {
   const std::uint64_t counter = (std::uint64_t(key.sample) << 32) | dimension;
   return mix_bits(key.walk ^ ((counter + 1) * 0x9e3779b97f4a7c15ull));

@@ -1,4 +1,4 @@
-// What all samplers have in common: they have no members of their own.
+// The description of Sampler, the base class of all samplers; it has no members.
 
 #include "etendue/sampler.h"
 

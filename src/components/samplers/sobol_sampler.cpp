@@ -18,7 +18,8 @@ constexpr std::uint32_t reverse(std::uint32_t x) {
   return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
 }
 
-/// Both halves reversed at once: the upper half of the result is the lower one of x reversed, and the other way round.
+/// Reverses the bits of both halves at once, and swaps them: the upper half of the result is the reversed lower half of x, the
+/// lower half the reversed upper half.
 constexpr std::uint64_t reverse_both(std::uint64_t x) {
   x = __builtin_bswap64(x);
   x = ((x >> 4) & 0x0f0f0f0f0f0f0f0full) | ((x & 0x0f0f0f0f0f0f0f0full) << 4);
@@ -26,7 +27,7 @@ constexpr std::uint64_t reverse_both(std::uint64_t x) {
   return ((x >> 1) & 0x5555555555555555ull) | ((x & 0x5555555555555555ull) << 1);
 }
 
-/// Four of them at once, in what follows as well.
+/// Four numbers at once, here and in the functions below.
 using Four = std::uint32_t __attribute__((vector_size(16)));
 inline Four reverse(Four x) {
   x = (x >> 16) | (x << 16);
@@ -61,12 +62,12 @@ constexpr Bits sobol_second_reversed(Bits x) {
   return x;
 }
 
-/// The place of a sample in this dimension's own order of the points.
+/// The index of a sample's point: each pair of dimensions has its own random order of the points.
 std::uint32_t shuffled(std::uint32_t sample, std::uint64_t hash) {
   return reverse(permute_reversed(reverse(sample), std::uint32_t(hash)));
 }
 
-/// The key is well mixed already: one multiplication, folded, spreads the dimension over all bits.
+/// The key is well mixed already: one multiplication, whose halves are combined, spreads the dimension over all bits.
 std::uint64_t hash(SampleKey key, std::uint32_t dimension) {
   __extension__ using Wide = unsigned __int128;
   const Wide product = Wide(key.walk ^ ((std::uint64_t(dimension) + 1) * 0x9e3779b97f4a7c15ull)) * 0xd6e8feb86659fd93ull;

@@ -1,4 +1,5 @@
-// BruteForceScene: tests everything. For a few dozen triangles the fastest, and for all others the one to compare with.
+// BruteForceScene: tests every object for every ray. It is the fastest structure for a few dozen triangles, and the reference
+// with which other structures are compared.
 
 #include "etendue/scene.h"
 #include "etendue/shader.h"
@@ -44,7 +45,7 @@ class BruteForceScene final : public Scene {
   }
 
  private:
-  // Apart from the above, so that what the case without others needs is a jump.
+  // Not inlined, so that find_nearest and find_any are a mere jump to the triangles' test if there are no other objects.
   [[gnu::noinline]] bool nearest_of_all(const Ray& ray, Hit& hit) const {
     if (!has_finite_squares(ray)) return false;
     bool found = triangles_.nearest(ray, hit);
@@ -73,7 +74,8 @@ class BruteForceScene final : public Scene {
     Bounds3 bounds;
   };
 
-  /// For tests against boxes (Kay & Kajiya 1986). Rounding may make a box look smaller by a few units: it is widened.
+  /// Slab tests of boxes (Kay & Kajiya 1986). Rounding may make a box appear smaller by a few units in the last place, so the
+  /// interval of t is widened.
   struct Inverse {
     Point3 origin;
     Vector3 d;

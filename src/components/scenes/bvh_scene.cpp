@@ -1,4 +1,4 @@
-// BvhScene: a bounding volume hierarchy of our own.
+// BvhScene: Étendue's own bounding volume hierarchy, with eight children per node (wide_bvh.h).
 
 #include "etendue/scene.h"
 #include "etendue/shader.h"  // objects own shaders
@@ -8,15 +8,15 @@
 namespace etendue {
 namespace {
 
-/// Triangles side by side; lanes that hold none have all corners in one place, which no ray meets.
+/// Triangles in SIMD layout. In lanes without a triangle all corners are the same point, which no ray hits.
 struct Block {
   Floats corner[3][3] = {};                             ///< by corner and axis
-  std::uint32_t owner[lanes] = {}, number[lanes] = {};  ///< whose triangle, and which of its own
+  std::uint32_t owner[lanes] = {}, number[lanes] = {};  ///< the triangle's object, and its number within this object
 
   Floats operator()(int k, int axis) const { return corner[k][axis]; }
 };
 
-/// Where a ray meets the triangles of a block: bits of those met at a t in (0, limit).
+/// The hits of a ray on the triangles of a block. `met` has the bits of the triangles that are hit at a t in (0, limit).
 struct BlockHit {
   CornerWeights<Floats> weights;
   Floats t;
@@ -139,8 +139,8 @@ class BvhScene final : public Scene {
   }
 
  private:
-  /// Whether a hit on one of this scene's own objects is in a list already: whoever asks with a hit that he has wants the
-  /// others.
+  /// Whether a hit on one of this scene's own objects is in a list already. A caller that passes a list with a known hit needs
+  /// only the hits on other objects.
   static bool holds(const HitList& list, const SceneObject* object) {
     for (int i = 0; i < list.size; ++i)
       if (list.hits[i].object == object && list.hits[i].depth == 0) return true;
@@ -153,7 +153,7 @@ class BvhScene final : public Scene {
     hit.depth = 0;
   }
 
-  /// Puts what a leaf holds into blocks or the list of objects, and lets the leaf say where.
+  /// Copies the primitives of a leaf to blocks or to the list of objects, and sets the leaf's range to these.
   void fill_leaf(std::uint32_t& child, std::uint32_t& count) {
     const std::span<const std::uint32_t> own(bvh_.order.data() + child, count & ~WideNode::objects);
     if (count & WideNode::objects) {

@@ -1,5 +1,5 @@
 #pragma once
-// What scenes share that divide space into cells: a primitive may lie in several of them.
+// CellScene: base class of scenes that divide space into cells. A primitive may lie in several cells.
 
 #include <algorithm>
 
@@ -10,12 +10,13 @@
 
 namespace etendue {
 
-/// The last primitives a ray was tested against, so that one that lies in several cells need not be tested again. It may
-/// forget, never confuse. Each ray has its own, so nothing is written that other threads see.
+/// The last primitives that a ray was tested against (mailboxing), so that a primitive in several cells is not tested again.
+/// Entries may be overwritten, so that a primitive is tested twice, but no primitive is skipped that was not tested. Each ray
+/// has its own mailbox, so no data is shared between threads.
 class Mailbox {
  public:
   Mailbox() { std::fill(std::begin(last_), std::end(last_), ~0u); }
-  /// Whether it was met before; from now on it was.
+  /// Whether a primitive is known to have been tested; marks it as tested.
   bool met(std::uint32_t primitive) {
     std::uint32_t& last = last_[primitive % std::size(last_)];
     if (last == primitive) return true;
@@ -27,11 +28,12 @@ class Mailbox {
   std::uint32_t last_[32];
 };
 
-/// A ray in double, its direction free of zeros: (plane - origin) * inverse is never not-a-number, and a ray that lies within
-/// a plane is at a place just beside it. (The smallest float is 1e-45, the largest number of these 1e45 * 1e38.)
+/// A ray in double whose direction has no zero components: (plane - origin) * inverse is never NaN, and a ray that lies within
+/// a plane is treated as if it crossed the plane very slowly. (The smallest float is 1e-45, so for other directions the largest
+/// of these numbers is 1e45 * 1e38.)
 struct CellRay {
   double origin[3], direction[3], inverse[3];
-  bool sound;  ///< others are in no cell
+  bool sound;  ///< the ray is finite; other rays visit no cell
   explicit CellRay(const Ray& ray) : sound(has_finite_squares(ray)) {
     for (int k = 0; k < 3; ++k) {
       origin[k] = double(ray.origin[k]);
@@ -42,9 +44,9 @@ struct CellRay {
   }
 };
 
-/// `Structure` derives from this and has a function walk(ray, limit, visit): calls visit(primitives) for the cells along the
-/// ray, near ones first, until it returns true or `limit`, which visit may lower, is reached. Cells that share a primitive
-/// share what was found on it: hits need not lie in the cell.
+/// `Structure` derives from this class and implements walk(ray, limit, visit), which calls visit(primitives) for the cells
+/// along the ray, near ones first, until visit returns true or `limit`, which visit may lower, is reached. A hit on a primitive
+/// is accepted in the first of its cells that is visited, so hits need not lie in the visited cell.
 template <class Structure>
 class CellScene : public Scene {
  public:
@@ -87,7 +89,7 @@ class CellScene : public Scene {
         if (mailbox.met(i)) continue;
         HitList own;
         primitives_.all(i, ray, sheared, own);
-        for (int k = 0; k < own.size; ++k)  // the mailbox may have forgotten; the same test finds the same again
+        for (int k = 0; k < own.size; ++k)  // without an entry in the mailbox the same hit is found again
           if (std::none_of(list.hits + before, list.hits + list.size, [&](const Hit& h) { return same(h, own.hits[k]); }))
             list.add(own.hits[k]);
       }

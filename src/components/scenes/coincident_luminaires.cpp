@@ -13,13 +13,14 @@
 namespace etendue {
 namespace {
 
-/// Another surface in the place of a point, with the hit that found it.
+/// A surface at the position of a point, with the hit that found it.
 struct Coincident {
   SurfacePoint point;
   Hit hit;
 };
 
-/// Whether both are the same part of the same object. Parts of others than meshes meet in edges alone.
+/// Whether both points lie on the same part of the same object. Only meshes are divided into parts here: the parts of other
+/// objects touch along edges only.
 bool same_part(const SurfacePoint& a, const SurfacePoint& b) {
   return a.object == b.object && (a.primitive == b.primitive || !a.object->original().triangles());
 }
@@ -29,7 +30,7 @@ bool in_one_place(const Scene& scene, const SurfacePoint& a, const SurfacePoint&
   return apart <= std::max(reach_of_coincidence(scene, a), reach_of_coincidence(scene, b));
 }
 
-/// Calls for every other surface in the place of a point.
+/// Calls found(coincident) for every surface close to a point along its normal, including the point's own surface.
 template <class Found>
 void for_coincident(const Scene& scene, const SurfacePoint& p, const Found& found) {
   const float reach = 2 * reach_of_coincidence(scene, p);
@@ -52,12 +53,12 @@ bool emits_to(const SurfacePoint& p, const Vector3& direction) {
   return p.object->luminaire() && p.object->emission->emits(p, direction);
 }
 
-/// Lets the error of a point reach beyond another surface in its place.
+/// Enlarges the error of a point to include a coincident surface.
 void widen_by(SurfacePoint& p, const SurfacePoint& other) {
   p.error = std::max(p.error, std::abs(dot(p.normal, other.position - p.position)) + other.error);
 }
 
-/// Luminaires that would send light to the same side from the same place, told of once.
+/// Collects luminaires that are hidden by coincident luminaires emitting to the same side, for a single warning.
 class Hidden {
  public:
   void look(const SurfacePoint& shown, const SurfacePoint& hidden) {
@@ -84,7 +85,7 @@ class Hidden {
   const SceneObject *first_ = nullptr, *before_ = nullptr;
 };
 
-/// A time at which something moves, [0, 1) over all of them; else 0.
+/// The time at the fraction u, in [0, 1), of the interval in which an object moves; 0 if it does not move.
 float time_of(const SceneObject& object, float u) {
   if (!object.transform.animated()) return 0;
   const auto& keys = object.transform.keys();
@@ -93,7 +94,7 @@ float time_of(const SceneObject& object, float u) {
 
 }  // namespace
 
-/// Luminaires and what is in one place with them, once each, as they were found.
+/// Pairs of a luminaire and a coincident surface, each pair of objects once, in the order in which they were found.
 struct CoincidentLuminaires::Pairs {
   void add(const SurfacePoint& luminaire, const SurfacePoint& other) {
     if (known.insert({luminaire.object, other.object}).second) found.push_back({luminaire, other});
@@ -109,7 +110,7 @@ std::shared_ptr<const CoincidentLuminaires> CoincidentLuminaires::of(const Scene
 }
 
 void CoincidentLuminaires::note(const Scene& scene) {
-  // So many points in all, to take no time that is noticed.
+  // The number of points in all, so that the time is negligible, and the largest number for one luminaire.
   constexpr size_t together = size_t(1) << 17, most = 512;
   const std::span<const SceneObject* const> luminaires = scene.luminaires();
   const size_t step = luminaires.size() / together + 1;
@@ -117,7 +118,7 @@ void CoincidentLuminaires::note(const Scene& scene) {
   Pairs pairs;
   for (size_t i = 0; i < luminaires.size(); i += step)
     if (!luminaires[i]->infinite() && !luminaires[i]->delta()) look_at(scene, *luminaires[i], count, pairs);
-  // Luminaires first, in their own order.
+  // The numbers for the fourth rule: luminaires first, in the order of the scene.
   std::unordered_set<const SceneObject*> shared;
   for (const Pair& p : pairs.found) shared.insert({p.luminaire.object, p.other.object});
   for (const SceneObject* luminaire : luminaires)
@@ -139,7 +140,7 @@ void CoincidentLuminaires::look_at(const Scene& scene, const SceneObject& lumina
                    std::min(float(y - std::floor(y)), one_minus_epsilon)};
     const SurfaceSample s = luminaire.sample_area(u, time_of(luminaire, (float(i) + 0.5f) / float(count)));
     if (!(s.pdf > 0)) continue;
-    const SceneObject* own = nullptr;  // by the name that hits give it
+    const SceneObject* own = nullptr;  // the luminaire, as hits refer to it
     bool shared = false;
     for_coincident(scene, s.point, [&](const Coincident& c) {
       if (same_part(c.point, s.point)) {
@@ -170,7 +171,7 @@ void CoincidentLuminaires::settle(const Scene& scene, const Ray& ray, Hit& hit) 
   if (!met_.contains(hit.object)) return;
   SurfacePoint first;
   scene.locate_alone(ray, hit, first);
-  // All hits of the same ray a little farther on: distances are rounded, and surfaces are known to within their errors.
+  // All hits of the same ray up to a slightly larger distance, as distances are rounded and surface points have errors.
   const float across = std::max(std::abs(dot(first.normal, ray.direction)), 1e-4f);
   Ray longer = ray;
   longer.maximum =

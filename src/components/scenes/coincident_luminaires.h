@@ -1,5 +1,5 @@
 #pragma once
-// CoincidentLuminaires: what is met where a luminaire and another surface lie in one place.
+// CoincidentLuminaires: decides which surface is visible where a luminaire coincides with another surface.
 
 #include <memory>
 #include <unordered_map>
@@ -9,31 +9,31 @@
 
 namespace etendue {
 
-/// A lamp may lie in the plane of the ceiling, or two lamps in one another. Which of the surfaces a ray meets there is then a
-/// matter of rounding, another one for each ray; and to light that begins on one of them, or is looked for there, the others
-/// are not in the way, as rays begin and end beyond the errors of places. So that all ways to make paths find the same light,
-/// one of the surfaces alone is there, seen from either side:
-///   1. one that lets no light through, before one that does, as everywhere (resolve_coincident);
-///   2. one that sends light to that side: a lamp in the plane of the ceiling shines;
-///   3. of those that send none there, one that scatters light, before one that is black;
-///   4. the luminaire that stands first in the scene.
-/// A ray that meets any of them meets that one (`settle`), and what leaves one of the others does not arrive (`in_front`).
-/// Only places on luminaires are looked for, and only if there are such do rays take notice.
+/// A lamp may lie in the plane of the ceiling, or two lamps may coincide. Which of the surfaces a ray hits is then decided by
+/// rounding, differently for each ray. The other surfaces do not occlude light that starts on one of the surfaces or is sampled
+/// there, as rays begin and end beyond the error bounds of points. So that all sampling techniques find the same light, only
+/// one of the surfaces exists, as seen from each side:
+///   1. a surface that transmits no light, before one that does, as everywhere (resolve_coincident);
+///   2. a surface that emits to this side: a lamp in the plane of the ceiling shines;
+///   3. of surfaces that do not emit to this side, one that scatters light, before a black one;
+///   4. the luminaire that comes first in the scene.
+/// A ray that hits any of the surfaces gets the hit on this one (`settle`), and light sampled on any other does not contribute
+/// (`in_front`). Only luminaires are searched for coincident surfaces, and rays are checked only if there are any.
 class CoincidentLuminaires {
  public:
-  /// Looks at some hundred points of each luminaire of a scene. Null: none of them lies in one place with anything else.
+  /// Tests up to 512 points of each luminaire of a scene. Null: no luminaire coincides with another surface.
   static std::shared_ptr<const CoincidentLuminaires> of(const Scene&);
 
-  /// Replaces the nearest hit of a ray by that of the surface which is there.
+  /// Replaces the nearest hit of a ray by the hit on the surface that the rules choose.
   void settle(const Scene&, const Ray&, Hit&) const;
-  /// Whether a point of a luminaire is what is there, seen from a direction. If so its error becomes that of all surfaces
-  /// there, so that rays begin and end beyond them.
+  /// Whether the rules choose the luminaire at a point of it, seen from a direction. Enlarges the point's error to include all
+  /// coincident surfaces, so that rays begin and end beyond them.
   bool in_front(const Scene&, SurfacePoint&, const Vector3& direction) const;
-  /// Of the point of a hit: lets its error be that of all surfaces there.
+  /// Enlarges the error of a hit's point to include all coincident surfaces.
   void widen(const Scene&, const Hit&, SurfacePoint&) const;
 
  private:
-  /// Whether `a` is what is there, and not `b`, seen from a direction.
+  /// Whether the rules choose `a` rather than `b`, seen from a direction.
   bool goes_before(const SurfacePoint& a, const SurfacePoint& b, const Vector3& direction) const;
   struct Pair {
     SurfacePoint luminaire, other;
@@ -42,8 +42,8 @@ class CoincidentLuminaires {
   void note(const Scene&);
   void look_at(const Scene&, const SceneObject& luminaire, size_t points, Pairs&);
 
-  std::unordered_set<const SceneObject*> met_;           // what hits name of objects that are in one place with a luminaire
-  std::unordered_map<const SceneObject*, int> numbers_;  // and what points on them name, in the order of the fourth rule
+  std::unordered_set<const SceneObject*> met_;           // objects that coincide, as Hit::object refers to them
+  std::unordered_map<const SceneObject*, int> numbers_;  // as SurfacePoint::object does, with their order in the fourth rule
 };
 
 }  // namespace etendue

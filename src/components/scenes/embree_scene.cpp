@@ -1,8 +1,8 @@
 // EmbreeScene: a bounding volume hierarchy by Embree (Wald et al. 2014, "Embree: a kernel framework for efficient CPU
-// ray tracing"). Triangles are Embree's own, those of meshes that change their shape too, and so are nested scenes and
-// instances that stand still. Everything else comes in as user geometry: what moves as a whole as well, for Embree
-// interpolates transforms in single precision, between evenly spaced keys and by another decomposition than
-// AnimatedTransform, and rays would miss where points were found.
+// ray tracing"). Triangles, also those of deforming meshes, are Embree's own geometry, and so are nested scenes and instances
+// that do not move. All other objects are user geometry. So are objects with an animated transform: Embree interpolates
+// transforms in single precision, between evenly spaced keys and by another decomposition than AnimatedTransform, so rays
+// would not hit where surface points were sampled.
 
 #include "components/objects/meshes/triangle_object.h"
 #include "etendue/scene.h"
@@ -46,7 +46,7 @@ class EmbreeScene final : public Scene {
     }
   }
 
-  // Hits are noted as Embree finds them, and denied, so that it goes on.
+  // The filter function records each hit that Embree finds and rejects it, so that Embree continues the search.
   void find_all(const Ray& ray, HitList& list) const override {
     Context context{{}, *this, ray, nullptr, &list};
     rtcInitIntersectContext(&context.embree);
@@ -107,24 +107,24 @@ class EmbreeScene final : public Scene {
   }
 
  private:
-  /// Triangles of an object, or another scene within an object; neither: all others.
+  /// A geometry of Embree: an object's triangles, or an object's nested scene (`inner`); neither: all other objects.
   struct Geometry {
     const SceneObject* object = nullptr;
     const EmbreeScene* inner = nullptr;
-    std::uint32_t view = 0;  // of triangles: which of views_
+    std::uint32_t view = 0;  // for triangles: index in views_
   };
   Geometry triangles_of(const SceneObject* object, const MovingTriangleView& view) {
     views_.push_back(view);
     return {object, nullptr, std::uint32_t(views_.size() - 1)};
   }
 
-  /// What callbacks need: Embree hands its address back to them.
+  /// The data of callbacks, which get the address of `embree`.
   struct Context {
     RTCIntersectContext embree;
     const EmbreeScene& scene;
     const Ray& ray;
     Hit* hit;
-    HitList* list;  ///< where to note all hits instead
+    HitList* list;  ///< null, or where all hits are recorded instead
   };
 
   void note(unsigned id, const Geometry& geometry) {
@@ -132,8 +132,9 @@ class EmbreeScene final : public Scene {
     geometries_[id] = geometry;
   }
 
-  /// Fills a hit of triangles (those of user geometry were filled when they were found), and adds the way out. The ray is in
-  /// the coordinates of the scene that holds the triangle. False: it does not meet it after all.
+  /// Completes a hit: fills it for triangles (hits on user geometry were filled when they were found), and adds the nested
+  /// scenes around the object. The ray is in the coordinates of the scene that contains the triangle. False: the ray does not
+  /// hit the triangle by the exact distance.
   bool complete(const RTCHit& found, const Ray& ray, Hit& hit) const {
     const unsigned instance = found.instID[0];
     const EmbreeScene& owner = instance == RTC_INVALID_GEOMETRY_ID ? *this : *geometries_[instance].inner;
@@ -151,11 +152,11 @@ class EmbreeScene final : public Scene {
     note_way_out(instance, hit);
     return true;
   }
-  /// The same for a hit that Embree asks about while it searches.
+  /// The same for a hit that Embree passes to a filter function.
   static bool complete(const RTCFilterFunctionNArguments& asked, Hit& hit) {
     const Context& context = *reinterpret_cast<const Context*>(asked.context);
     Ray ray = ray_of(context, *reinterpret_cast<const RTCRay*>(asked.ray));
-    ray.maximum = context.ray.maximum;  // not where the hit is
+    ray.maximum = context.ray.maximum;  // tfar is the distance of the hit here
     return context.scene.complete(*reinterpret_cast<const RTCHit*>(asked.hit), ray, hit);
   }
 
@@ -169,7 +170,7 @@ class EmbreeScene final : public Scene {
       static_cast<const Instance*>(object)->note_way_out(hit);
   }
 
-  /// The triangles of a mesh that changes its shape by this scene's clock, which the first such mesh sets.
+  /// The triangles of a deforming mesh, if its times agree with this scene's clock, which the first such mesh sets.
   std::optional<MovingTriangleView> moving_triangles(const SceneObject& object) {
     const auto* mesh = dynamic_cast<const TriangleObject*>(&object);
     std::optional<MovingTriangleView> view = mesh ? mesh->moving_triangles() : std::nullopt;
@@ -182,21 +183,22 @@ class EmbreeScene final : public Scene {
     return !clock.runs() || clock == clock_;
   }
 
-  /// The scene in an object if Embree can go into it on its own: it does so once, and only into what stands still.
+  /// The nested scene of an object, if Embree can traverse it as an instance: Embree supports RTC_MAX_INSTANCE_LEVEL_COUNT
+  /// levels of instances, and only instances that do not move are passed to it. Else null.
   const EmbreeScene* instanced(const SceneObject& object) {
     const auto* inner = dynamic_cast<const EmbreeScene*>(scene_within(object));
     if (!inner || inner->levels_ >= RTC_MAX_INSTANCE_LEVEL_COUNT || object.transform.animated()) return nullptr;
-    // What the camera does not see Embree knows nothing of.
+    // Objects that are invisible to the camera are in a structure of their own, which Embree does not search.
     if (inner->has_unseen() || !inverted_well(object.transform.still(), object.bounds()) || !keeps_time(inner->clock_))
       return nullptr;
     levels_ = std::max(levels_, 1 + inner->levels_);
     return inner;
   }
 
-  /// Whether the inverse in single precision is as good as Scene::locate_nested trusts it to be: seen from outside, it
-  /// moves points of the box by no more than rounding their coordinates four times does.
+  /// Whether the inverse in single precision is as accurate as Scene::locate_nested assumes: measured in the outer scene, it
+  /// displaces points of the box by no more than four roundings of their coordinates.
   static bool inverted_well(const Transform& placement, const Bounds3& box) {
-    // As Embree does: cofactors over the determinant, then the translation.
+    // Computed as by Embree: cofactors over the determinant, then the translation.
     const auto& m = placement.matrix();
     const Vector3 x{m[0], m[4], m[8]}, y{m[1], m[5], m[9]}, z{m[2], m[6], m[10]};
     const float scale = 1 / dot(x, cross(y, z));
@@ -244,7 +246,7 @@ class EmbreeScene final : public Scene {
 
   static void bounds_of(const RTCBoundsFunctionArguments* arguments) {
     const Bounds3 box = object_of(arguments->geometryUserPtr, arguments->primID).bounds();
-    // A little wider: Embree's test of a flat box must not miss what lies exactly in its plane.
+    // Slightly enlarged: Embree's test of a flat box must not miss objects that lie exactly in its plane.
     const auto margin = [](float low, float high) { return 1e-6f * std::max(std::abs(low), std::abs(high)) + 1e-30f; };
     const Vector3 m{margin(box.low.x, box.high.x), margin(box.low.y, box.high.y), margin(box.low.z, box.high.z)};
     RTCBounds& b = *arguments->bounds_o;
@@ -256,7 +258,7 @@ class EmbreeScene final : public Scene {
     b.upper_z = box.high.z + m.z;
   }
 
-  /// The ray a callback is asked about; within an instance Embree has taken it there.
+  /// The ray of a callback; within an instance the ray that Embree has transformed.
   static Ray ray_of(const Context& context, const RTCRay& query) {
     Ray ray = context.ray;
     ray.maximum = query.tfar;
@@ -295,9 +297,9 @@ class EmbreeScene final : public Scene {
   }
 
   EmbreeSceneHandle scene_;
-  std::vector<Geometry> geometries_;        // by Embree's number
-  std::vector<MovingTriangleView> views_;   // of all triangles, still or moving
-  std::vector<const SceneObject*> others_;  // by Embree's number within the geometry that has no object
+  std::vector<Geometry> geometries_;        // by Embree's geometry id
+  std::vector<MovingTriangleView> views_;   // of all triangles, static or moving
+  std::vector<const SceneObject*> others_;  // by Embree's primitive id within the user geometry
   int levels_ = 0;                          // of instances, as Embree counts them
   EmbreeClock clock_;
 };

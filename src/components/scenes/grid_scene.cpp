@@ -1,4 +1,4 @@
-// GridScene: space divided into equal cells.
+// GridScene: a uniform grid.
 
 #include "cell_scene.h"
 
@@ -32,7 +32,7 @@ class GridScene final : public CellScene<GridScene> {
     }
     if (!(entry <= exit)) return;
     int cell[3], step[3];
-    double next[3];  // where the ray leaves the cell across each axis
+    double next[3];  // t at which the ray leaves the cell along each axis
     const auto boundary = [&](int k) {
       return (box_.low[k] + (cell[k] + (step[k] > 0)) * edge_[k] - r.origin[k]) * r.inverse[k];
     };
@@ -49,7 +49,7 @@ class GridScene final : public CellScene<GridScene> {
       if (next[k] > double(limit)) return;
       cell[k] += step[k];
       if (cell[k] < 0 || cell[k] >= count_[k]) return;
-      next[k] = boundary(k);  // not by adding up, which would add up the rounding
+      next[k] = boundary(k);  // computed anew, as increments would accumulate rounding errors
     }
   }
 
@@ -61,7 +61,7 @@ class GridScene final : public CellScene<GridScene> {
     if (primitives_.size() == 0) return;
     enclose_all();
     choose_counts();
-    // Twice through all cells of all primitives: to count what each cell holds, and to put it there.
+    // Two passes over all cells of all primitives: the first counts the primitives of each cell, the second stores them.
     offsets_.assign(size_t(count_[0]) * size_t(count_[1]) * size_t(count_[2]) + 2, 0);
     for_cells([&](size_t cell, std::uint32_t) { ++offsets_[cell + 2]; });
     std::uint64_t sum = 0;
@@ -78,11 +78,12 @@ class GridScene final : public CellScene<GridScene> {
  private:
   int resolution = 0;
 
-  // As many cells as this times the number of primitives: the number that Wald et al. 2006 ("Ray tracing animated scenes using
-  // coherent grid traversal") and Ize et al. 2007 ("Grid creation strategies for efficient ray tracing") found to do well.
+  // The number of cells is this times the number of primitives: the factor that Wald et al. 2006 ("Ray tracing animated scenes
+  // using coherent grid traversal") and Ize et al. 2007 ("Grid creation strategies for efficient ray tracing") found to be
+  // good.
   static constexpr double cells_per_primitive = 5;
   static constexpr int most_cells = 512;  // along an axis
-  // When, by their bounds, primitives would stand in more cells than this on average, the cells are made larger.
+  // If the bounds of a primitive would overlap more cells than this on average, the cells are made larger.
   static constexpr double most_per_primitive = 24;
 
   int cell_at(double x, int k) const { return int(std::clamp((x - box_.low[k]) / edge_[k], 0.0, double(count_[k] - 1))); }
@@ -90,7 +91,7 @@ class GridScene final : public CellScene<GridScene> {
     return size_t(x) + size_t(count_[0]) * (size_t(y) + size_t(count_[1]) * size_t(z));
   }
 
-  /// A box around all, a little larger, so that nothing lies in its sides; without flat edges.
+  /// Sets the box around all primitives, slightly enlarged so that nothing lies in its faces and no edge has length 0.
   void enclose_all() {
     Bounds3 all;
     for (size_t i = 0; i < primitives_.size(); ++i) all.add(primitives_.bounds(i));
@@ -106,7 +107,7 @@ class GridScene final : public CellScene<GridScene> {
   void choose_counts() {
     double edges[3], volume = 1, longest = 0;
     for (int k = 0; k < 3; ++k) longest = std::max(longest, edges[k] = box_.high[k] - box_.low[k]);
-    // Flat scenes: as if they were as thick as one cell of a hundred.
+    // Flat scenes count as at least a hundredth of their longest edge thick.
     for (int k = 0; k < 3; ++k) volume *= std::max(edges[k], longest / 100);
     double cells_per_length =
         resolution > 0 ? resolution / longest : std::cbrt(cells_per_primitive * double(primitives_.size()) / volume);
@@ -141,8 +142,8 @@ class GridScene final : public CellScene<GridScene> {
     return range;
   }
 
-  /// Calls for every cell that a primitive may lie in, cells taken a little larger than they are: a ray that rounding puts
-  /// into the neighbour's of what it touches finds it there.
+  /// Calls call(cell, primitive) for every cell that a primitive may overlap. The cells are slightly enlarged, so that a ray
+  /// that by rounding visits the neighbour of the right cell finds the primitive there.
   template <class Call>
   void for_cells(const Call& call) const {
     for (size_t i = 0; i < primitives_.size(); ++i) {
@@ -163,7 +164,7 @@ class GridScene final : public CellScene<GridScene> {
   }
 
   DoubleBox box_;
-  double edge_[3], slack_[3];           // of a cell; by how much cells overlap [m]
+  double edge_[3], slack_[3];           // size of a cell; by how much cells are enlarged [m]
   int count_[3] = {0, 0, 0};            // cells along each axis
   std::vector<std::uint32_t> offsets_;  // where the items of each cell begin, and where the last end
   std::vector<std::uint32_t> items_;    // primitives, cell after cell

@@ -1,4 +1,4 @@
-// Import: what a file of another program holds, as an object of a scene.
+// Import: the content of another program's file, as an object of a scene.
 
 #include "import.h"
 
@@ -7,19 +7,19 @@
 
 #include <unordered_set>
 
-#include "components/importers/permissions.h"
 #include "describe/expansion.h"
 #include "etendue/importer.h"
 #include "etendue/render/job.h"
 #include "etendue/scene.h"
 #include "etendue/shader.h"
+#include "formats/permissions.h"
 #include "render/imported.h"
 
 namespace etendue {
 namespace {
 
-// The file is read when the object is prepared. What it holds become the objects of this scene, so that all who look through a
-// scene find them; another scene over the same objects finds what rays meet.
+// The file is read when the object is prepared. Its objects become the objects of this scene, so that code which visits the
+// objects of scenes finds them. Rays are intersected by another scene over the same objects (`over_`).
 class Import final : public Scene {
  public:
   static void describe(Description<Import>& d) {
@@ -41,7 +41,7 @@ class Import final : public Scene {
     Scene::prepare();
   }
 
-  /// The file's objects become those of this, not prepared.
+  /// Reads the file. Its objects become this scene's objects, not prepared.
   void read_objects() {
     const std::string path = file.resolved();
     if (file.empty()) fail("file", "a file is needed");
@@ -75,7 +75,7 @@ class Import final : public Scene {
   }
 
  private:
-  /// What concerns the file as a whole, such as that there is none, is told where it is named.
+  /// Reads the file. Errors of the file as a whole, such as a missing file, are reported at the location of the member `file`.
   Ref<Component> read_by(const Importer& importer, Importing& importing) const {
     try {
       return imported(importer, importing);
@@ -99,7 +99,7 @@ class Import final : public Scene {
   double read_at_ = 0;
 };
 
-// The objects are those of the file: they are no member, so that what is saved is the Import itself.
+// `objects` come from the file. They are removed from the members, so that the Import itself is saved and not its content.
 [[maybe_unused]] const bool registered = [] {
   static RegistrationNode node{typeid(Import), parent_type<Import>(),
                                [](ClassInfo& info) {

@@ -1,12 +1,12 @@
 #pragma once
-// What other programs' files hold, for those who look at a scene that is not prepared.
+// Reads imported files without preparing the scene.
 
 namespace etendue {
 
 class Component;
 
-/// Reads the file of each Import in a tree, those in it included: what it holds become its objects, which are not prepared.
-/// Throws as its preparation would.
+/// Reads the files of all Imports in a tree of components, also of Imports within these files. The objects of a file become the
+/// objects of its Import, not prepared. Throws the same errors as preparation.
 void read_imports(const Component& root);
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// Instance: a scene placed once more, perhaps with another shader.
+// Instance: a further placement of a scene, optionally with another shader.
 
 #include <map>
 #include <mutex>
@@ -11,8 +11,9 @@ namespace etendue {
 
 namespace {
 
-/// An object in all but its shader another, in the same place. Paths in media tell objects apart by address, and shaders are
-/// asked of the object a point lies on: where an instance replaces shaders, hits name one of these instead.
+/// A stand-in for an object in the same place that differs from it only by its shader. Paths in media distinguish objects by
+/// address, and the shader at a point is that of the point's object: so where an instance replaces shaders, hits refer to a
+/// Reshaded instead of the object.
 class Reshaded final : public SceneObject {
  public:
   static void describe(Description<Reshaded>& d) {
@@ -78,7 +79,7 @@ class Reshaded final : public SceneObject {
 
 }  // namespace
 
-/// What stands for the objects in a scene where all have one shader. Instances that agree in both share one.
+/// The stand-ins of all objects of a scene, with one shader. Instances with the same scene and shader share them.
 class ShaderReplacement {
  public:
   ShaderReplacement(const Scene& scene, const Ref<Shader>& shader) : version_(scene.version()) {
@@ -98,7 +99,7 @@ class ShaderReplacement {
   }
   std::uint64_t version() const { return version_; }
 
-  /// The one of a scene and a shader, as the scene was last prepared.
+  /// The ShaderReplacement of a scene, as it was last prepared, and a shader.
   static std::shared_ptr<const ShaderReplacement> shared(const Scene& scene, const Ref<Shader>& shader) {
     static std::mutex mutex;
     static auto* all = new std::map<std::pair<const Scene*, const Shader*>, std::weak_ptr<const ShaderReplacement>>;
@@ -116,7 +117,7 @@ class ShaderReplacement {
     Ref<const SceneObject> other;
   };
 
-  /// All that hits in a scene may name.
+  /// Collects all objects that hits in a scene may refer to.
   static void collect(const Scene& scene, std::vector<const SceneObject*>& to) {
     for (const Ref<SceneObject>& object : scene.objects) {
       const auto* instance = dynamic_cast<const Instance*>(object.get());
@@ -129,7 +130,7 @@ class ShaderReplacement {
     }
   }
 
-  std::vector<Pair> pairs_;  // by address
+  std::vector<Pair> pairs_;  // sorted by the object's address
   std::uint64_t version_;
 };
 
@@ -176,7 +177,7 @@ bool Instance::occludes(const Ray& ray) const {
 void Instance::all_hits(const Ray& ray, HitList& list) const {
   Transform scratch;
   const Transform& t = placed(transform, ray.time, scratch);
-  HitList inside;  // of that scene alone: what is in the list already is elsewhere, be it on the same object
+  HitList inside;  // only of this placement: hits that are in `list` already are elsewhere, even if on the same object
   scene->all(t.identity() ? ray : ray_into(t, ray), inside);
   for (int i = 0; i < inside.size; ++i) {
     note_way_out(inside.hits[i]);
@@ -200,7 +201,7 @@ SurfaceSample Instance::sample_area(Point2, float) const {
 
 static const Register<Instance> registered;
 
-// Known, so that it has a name, but not to be made by that name.
+// Registered, so that the class has a name, but without a function to create it by this name.
 [[maybe_unused]] static const bool reshaded_known = [] {
   static RegistrationNode node{typeid(Reshaded), parent_type<Reshaded>(),
                                [](ClassInfo& info) {

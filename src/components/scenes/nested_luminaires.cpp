@@ -2,20 +2,20 @@
 
 namespace etendue {
 
-/// What of a scene leads to luminaires.
+/// The objects of a scene that are luminaires, or nested scenes that contain luminaires.
 struct NestedLuminaires::Contents {
   std::vector<const SceneObject*> lights, placings;
-  double count = 0;  ///< of luminaires, in all places
+  double count = 0;  ///< of luminaires, in all placements
 };
 
-/// Looks into each scene once, wherever it stands, and then goes only where there are luminaires.
+/// Inspects each scene once, however often it is placed, and then visits only placements that contain luminaires.
 class NestedLuminaires::Finder {
  public:
   explicit Finder(NestedLuminaires& to) : to_(to) {}
 
   const Contents& contents(const Scene& scene) {
     const auto [place, fresh] = known_.try_emplace(&scene);
-    Contents& c = place->second;  // stays where it is when others are added
+    Contents& c = place->second;  // remains valid when entries are added
     if (!fresh) return c;
     for (const Ref<SceneObject>& object : scene.objects) {
       if (const Scene* inner = scene_within(*object)) {
@@ -61,7 +61,7 @@ std::shared_ptr<NestedLuminaires> NestedLuminaires::of(const Scene& scene) {
 }
 
 void NestedLuminaires::add(const SceneObject& light, const Placement& place) {
-  // What a hit names is another object when an instance has a shader of its own.
+  // If an instance replaces shaders, hits refer to another object than `light`.
   Hit hit;
   hit.object = &light;
   bool similar = true;

@@ -1,5 +1,5 @@
 #pragma once
-// NestedLuminaires: the luminaires of nested scenes, as the outermost scene sees them.
+// NestedLuminaires: the luminaires of nested scenes, as luminaires of the outermost scene.
 
 #include <deque>
 #include <unordered_map>
@@ -8,23 +8,23 @@
 
 namespace etendue {
 
-/// Whether light comes from an object: it emits, and there is something of it.
+/// Whether an object emits light: it has an emission and is not empty.
 bool shines(const SceneObject&);
 
-/// One PlacedLuminaire for each place in which a luminaire of a nested scene stands, and a table that finds it for a hit.
+/// One PlacedLuminaire for each placement of a luminaire of a nested scene, and a hash table to find the one of a hit.
 class NestedLuminaires {
  public:
-  /// More than this would fill the memory: each takes some 370 bytes here, and 250 more in a light sampler.
+  /// The largest number of luminaires, as memory is limited: each takes some 370 bytes here, and 250 more in a light sampler.
   static constexpr size_t most = size_t(1) << 22;
 
-  /// Those of a scene; null: there are none. Throws an Error when there are too many.
+  /// The nested luminaires of a scene; null: there are none. Throws Error if there are too many.
   static std::shared_ptr<NestedLuminaires> of(const Scene&);
 
   const std::vector<Ref<PlacedLuminaire>>& all() const { return all_; }
-  /// What stands for the object that a hit names in its place; null: nothing does.
+  /// The PlacedLuminaire of a hit's object in the hit's nested scenes; null: there is none.
   const PlacedLuminaire* find(const Hit&) const;
 
-  /// Tells those at infinity the sphere around all finite objects.
+  /// Sets the sphere around all finite objects, for luminaires at infinity.
   void enclose(const Point3& centre, float radius) {
     centre_ = centre;
     radius_ = radius;
@@ -32,7 +32,8 @@ class NestedLuminaires {
   Point3 centre() const { return centre_; }
   float radius() const { return radius_; }
 
-  /// Of an object in a nested scene that moves; null: it is not needed.
+  /// The distribution of normals of an object in a nested scene, for its area in moving placements that are not similarities;
+  /// null: it was not needed.
   const NormalSpread* spread(const SceneObject& inner) const;
 
  private:
@@ -45,7 +46,7 @@ class NestedLuminaires {
 
   std::deque<Placement> placements_;
   std::vector<Ref<PlacedLuminaire>> all_;
-  std::vector<std::uint32_t> slots_;  // places in `all_` plus 1, by hash; 0: empty. A power of two of them
+  std::vector<std::uint32_t> slots_;  // hash table of indices in `all_` plus 1; 0: empty. Its size is a power of two
   std::unordered_map<const SceneObject*, NormalSpread> spreads_;
   Point3 centre_{0, 0, 0};
   float radius_ = 1;

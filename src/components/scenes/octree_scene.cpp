@@ -1,4 +1,4 @@
-// OctreeScene: space divided into eight again and again where there is much.
+// OctreeScene: an octree.
 
 #include "cell_scene.h"
 
@@ -27,7 +27,8 @@ class OctreeScene final : public CellScene<OctreeScene> {
     const CellRay r(ray);
     if (!r.sound) return;
     double entry[3], exit[3];
-    unsigned mirrored = 0;  // axes along which the ray goes down: seen in a mirror, it goes up
+    unsigned mirrored =
+        0;  // axes of negative direction, in which the octree is mirrored so that the ray ascends along all axes
     for (int k = 0; k < 3; ++k) {
       entry[k] = (box_.low[k] - r.origin[k]) * r.inverse[k];
       exit[k] = (box_.high[k] - r.origin[k]) * r.inverse[k];
@@ -46,8 +47,8 @@ class OctreeScene final : public CellScene<OctreeScene> {
     if (primitives_.size() == 0) return;
     enclose_all();
 
-    // Cells wait in a queue: those of one depth are divided before those of the next, so that where memory ends all suffer
-    // alike.
+    // Breadth-first: all cells of one depth are divided before those of the next, so that the limit of references, for memory,
+    // affects all parts of the scene equally.
     struct Waiting {
       std::vector<std::uint32_t> items;
       DoubleBox box;
@@ -73,8 +74,9 @@ class OctreeScene final : public CellScene<OctreeScene> {
           sum += parts[c].size();
         }
       }
-      // A ray through a cell meets each of its eight parts with a chance of 1/4, the ratio of their surfaces: what lies in all
-      // of the parts a surface goes through is found no sooner for dividing.
+      // A ray through a cell hits each of its eight parts with probability 1/4, the ratio of their surface areas, so the
+      // expected number of tests after division is a quarter of the sum over the parts. The cell is divided only if this is
+      // fewer tests.
       if (sum > 0 && sum < 4 * cell.items.size()) {
         nodes_[n].first = std::uint32_t(nodes_.size());
         for (unsigned c = 0; c < 8; ++c) {
@@ -93,7 +95,7 @@ class OctreeScene final : public CellScene<OctreeScene> {
 
  private:
   static constexpr int deepest = 20;
-  /// No cell is divided any more when they hold this many references per primitive.
+  /// Cells are no longer divided when they hold this many references per primitive altogether.
   static constexpr size_t most_per_primitive = 16;
 
   int max_depth = 12;
@@ -104,8 +106,8 @@ class OctreeScene final : public CellScene<OctreeScene> {
     bool leaf = false;
   };
 
-  // Of a cell the ray enters across its lower sides at t `entry` and leaves across the upper at `exit`, all in the mirror. The
-  // planes through the middle are met half way between, and their order tells which of the eight parts are next to each other.
+  // In the mirrored octree the ray crosses the lower faces of a cell at t = `entry` and the upper faces at t = `exit`, for each
+  // axis. It crosses the middle planes half way between, and the order of these crossings gives the sequence of the parts.
   template <class Visit>
   bool descend(const Node& node, const double (&entry)[3], const double (&exit)[3], unsigned mirrored, const float& limit,
                const Visit& visit) const {
@@ -114,14 +116,14 @@ class OctreeScene final : public CellScene<OctreeScene> {
     if (in > double(limit)) return true;
     if (node.leaf) return node.count > 0 && visit(std::span(items_).subspan(node.first, node.count));
     double middle[3];
-    unsigned part = 0;  // the one the ray enters first
+    unsigned part = 0;  // the part that the ray enters first
     for (int k = 0; k < 3; ++k) {
       middle[k] = (entry[k] + exit[k]) / 2;
       if (middle[k] < in) part |= 1u << k;
     }
     for (;;) {
       double from[3], to[3];
-      int across = 0;  // the axis it leaves the part across
+      int across = 0;  // the axis along which the ray leaves the part
       for (int k = 0; k < 3; ++k) {
         const bool upper = part >> k & 1;
         from[k] = upper ? middle[k] : entry[k];
@@ -139,7 +141,7 @@ class OctreeScene final : public CellScene<OctreeScene> {
     for (int k = 0; k < 3; ++k) (child >> k & 1 ? part.low[k] : part.high[k]) = (box.low[k] + box.high[k]) / 2;
     return part;
   }
-  /// Cells are taken a little larger: a ray that rounding puts into the neighbour of what it touches finds it there.
+  /// A slightly enlarged cell, so that a ray that by rounding visits the neighbour of the right cell finds a primitive there.
   DoubleBox widened(DoubleBox box) const {
     for (int k = 0; k < 3; ++k) {
       box.low[k] -= slack_;
@@ -148,7 +150,7 @@ class OctreeScene final : public CellScene<OctreeScene> {
     return box;
   }
 
-  /// A cube around all, a little larger, so that nothing lies in its sides.
+  /// Sets the cube around all primitives, slightly enlarged so that nothing lies in its faces.
   void enclose_all() {
     Bounds3 all;
     for (size_t i = 0; i < primitives_.size(); ++i) all.add(primitives_.bounds(i));
@@ -164,7 +166,7 @@ class OctreeScene final : public CellScene<OctreeScene> {
   }
 
   DoubleBox box_;
-  double slack_ = 0;                  // by how much cells overlap [m]
+  double slack_ = 0;                  // by how much cells are enlarged [m]
   std::vector<Node> nodes_;           // the first is the root
   std::vector<std::uint32_t> items_;  // primitives, leaf after leaf
 };

@@ -6,7 +6,7 @@
 namespace etendue {
 namespace {
 
-/// In double: of a scene a millimetre wide the float's might be nothing.
+/// In double: for a scene a millimetre wide the determinant in float might underflow to 0.
 double determinant(const Transform& transform) {
   const auto& m = transform.matrix();
   const auto minor = [&](size_t a, size_t b) {
@@ -51,13 +51,14 @@ Normal3 WayOut::carry(Normal3 n) const {
 void WayOut::carry_out(SurfacePoint& p) const {
   for (int i = 0; i < size_; ++i) {
     if (p.normal == Normal3{})
-      p.position = (*steps_[i])(p.position);  // of an object without extent, which is where it was found to be
+      p.position = (*steps_[i])(p.position);  // of a delta light, whose position has no error
     else
       carry_out_of_scene(*steps_[i], p);
   }
 }
 
-// A distance along the normal grows by 1 / |M^-T n| on the way out, n inside, which is |M^T n| with n outside.
+// From the nested scene to the outermost one a distance along the normal is scaled by 1 / |M^-T n|, with n the unit normal in
+// the nested scene; this equals |M^T n| with n the unit normal in the outermost scene.
 void WayOut::take_in(SurfacePoint& p) const {
   p.dpdu = p.dpdv = {};
   for (int i = size_; i-- > 0;) {
@@ -93,9 +94,9 @@ float WayOut::similarity() const {
 
 // ---- NormalSpread ----------------------------------------------------------------------------------------------------------
 
-// Triangles are asked one by one. Of other objects points are taken by the Fibonacci lattice (x, y) = (i / F_n, i F_(n-1) /
-// F_n) (Niederreiter 1992, "Random number generation and quasi-Monte Carlo methods", chapter 5), which minds neither the
-// borders between an object's parts nor their sizes.
+// Of triangles every normal is used. Other objects are sampled with the Fibonacci lattice (x, y) = (i / F_n, i F_(n-1) / F_n)
+// (Niederreiter 1992, "Random number generation and quasi-Monte Carlo methods", chapter 5), whose accuracy depends neither on
+// the borders between an object's parts nor on their sizes.
 NormalSpread::NormalSpread(const SceneObject& object, float time) {
   if (const std::optional<TriangleView> view = object.triangles()) {
     for (const auto& t : view->triangles) {
@@ -117,7 +118,7 @@ NormalSpread::NormalSpread(const SceneObject& object, float time) {
   fill(coarse_, 2584, 1597);
 }
 
-NormalSpread::MediumInterval NormalSpread::stretch(const WayOut& way) const {
+NormalSpread::Stretch NormalSpread::stretch(const WayOut& way) const {
   const auto mean = [&](const std::vector<Part>& parts) {
     double sum = 0, weights = 0;
     for (const Part& p : parts) {
@@ -163,7 +164,7 @@ void PlacedLuminaire::surface_point(const Ray& ray, const Hit& hit, SurfacePoint
 }
 
 void PlacedLuminaire::tangents(SurfacePoint& p) const {
-  if (p.dpdu != Vector3{} || p.dpdv != Vector3{}) return;  // found already, on the way out of the scene
+  if (p.dpdu != Vector3{} || p.dpdv != Vector3{}) return;  // set already, when the hit was located
   const WayOut way(&place_, p.time);
   SurfacePoint there = inside(way, p);
   inner_->tangents(there);
@@ -188,7 +189,7 @@ void PlacedLuminaire::own(const WayOut& way, SurfaceSample& s) const {
 double PlacedLuminaire::area_under(const WayOut& way, float time) const {
   const double own = double(inner_->area(time));
   if (const float scale = way.similarity(); scale > 0) return own * double(scale) * double(scale);
-  // Of one that moves in its scene the normals have to be found anew.
+  // If the object moves in its scene, its normals are computed anew for this time.
   const NormalSpread* still = inner_->transform.animated() ? nullptr : all_.spread(*inner_);
   return own * (still ? *still : NormalSpread(*inner_, time)).stretch(way).value;
 }
@@ -197,13 +198,13 @@ void PlacedLuminaire::find_stretch(const NormalSpread* still) {
   if (delta() || infinite() || transform.animated()) return;
   const WayOut way(&place_, 0);
   const double scale = double(way.similarity());
-  const NormalSpread::MediumInterval stretch = still ? still->stretch(way) : NormalSpread::MediumInterval{scale * scale, 0};
+  const NormalSpread::Stretch stretch = still ? still->stretch(way) : NormalSpread::Stretch{scale * scale, 0};
   stretch_ = float(stretch.value);
   stretch_error_ = float(stretch.error);
 }
 
 float PlacedLuminaire::area(float time) const {
-  if (infinite()) return square(all_.radius());  // as Distant has it
+  if (infinite()) return square(all_.radius());  // as the area of Distant
   if (delta()) return inner_->area(time);
   return transform.animated() ? float(area_under(WayOut(&place_, time), time)) : stretch_ * inner_->area(time);
 }
@@ -247,7 +248,7 @@ SurfaceSample PlacedLuminaire::sample_visible(const Point3& from, Point2 u, floa
 }
 
 float PlacedLuminaire::visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const {
-  if (delta()) return 0;  // no direction is its own but by intention
+  if (delta()) return 0;  // no ray hits a delta light, it can only be sampled
   const WayOut way(&place_, p.time);
   const Vector3 w = way.back(direction);
   const double stretch = double(length(w));  // |M^-1 w| with w outside is 1 / |M w| with w inside
@@ -262,10 +263,11 @@ Bounds3 PlacedLuminaire::swept_out(Bounds3 box) const {
   return box;
 }
 
-// With N = M^-T, the axis a, and a normal n = cos(t) a + sin(t) b, b across a: N n has at least cos(t) |N a| - sin(t) s along
-// N a and at most sin(t) s across it, s being a bound of |N b|. So the angle between them is at most
+// With N = M^-T, the axis a, and a normal n = cos(t) a + sin(t) b, b perpendicular to a: the component of N n along N a is at
+// least cos(t) |N a| - sin(t) s, and the perpendicular component at most sin(t) s, with s an upper bound of |N b|. So the angle
+// between N n and N a is at most
 //     atan(sin(t) s / (cos(t) |N a| - sin(t) s)),
-// unless the latter is not positive. A similarity leaves angles as they are.
+// unless the denominator is not positive. A similarity preserves angles.
 NormalCone PlacedLuminaire::normals() const {
   for (const Placement* p = &place_; p != nullptr; p = p->outer)
     if (p->scene->transform.animated()) return {};
@@ -285,7 +287,7 @@ NormalCone PlacedLuminaire::normals() const {
   return {axis / along, x / std::hypot(x, y) - rounding};
 }
 
-// Known, so that it has a name, but not to be made by that name.
+// Registered, so that the class has a name, but without a function to create it by this name.
 [[maybe_unused]] static const bool placed_luminaire_known = [] {
   static RegistrationNode node{typeid(PlacedLuminaire), parent_type<PlacedLuminaire>(),
                                [](ClassInfo& info) {

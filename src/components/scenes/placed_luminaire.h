@@ -1,5 +1,5 @@
 #pragma once
-// PlacedLuminaire: what stands for a luminaire of a nested scene in one of the places where that scene stands.
+// PlacedLuminaire: represents a luminaire of a nested scene in one of the scene's placements.
 
 #include <optional>
 
@@ -8,22 +8,24 @@
 
 namespace etendue {
 
-/// One of the scenes, or instances, that lie in one another around an object.
+/// One of the nested scenes, or instances, that contain an object: a list from the innermost outwards.
 struct Placement {
   const SceneObject* scene = nullptr;
-  const Placement* outer = nullptr;  ///< null: it stands in the outermost scene
+  const Placement* outer = nullptr;  ///< null: `scene` is an object of the outermost scene
 };
 
-/// Carries a point out of a nested scene. A structure may take rays into it by an inverse of its own, in single precision:
-/// where Transform's rounds one row by its own terms, that one may by the largest of all (see EmbreeScene, which checks it).
+/// Transforms a point from a nested scene to the scene around it. A structure may transform rays into the nested scene by its
+/// own inverse in single precision. Where the rounding error of each row of Transform's inverse depends on the terms of this
+/// row, that of the structure's inverse may depend on the largest term of all rows (see EmbreeScene, which checks its inverse),
+/// so the point's error is enlarged.
 inline void carry_out_of_scene(const Transform& transform, SurfacePoint& point) {
   carry_out(transform, point);
   const Point3& p = point.position;
   point.error += rounding_bound(8) * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
 }
 
-/// The transforms of nested scenes at a time: M is all of them, from the coordinates of the innermost to those of the outermost
-/// scene. They are applied one by one, as rays are taken in and hits carried out.
+/// The transforms of nested scenes at a time: M is their product, from the coordinates of the innermost to those of the
+/// outermost scene. They are applied one by one, as rays are transformed inwards and hits outwards.
 class WayOut {
  public:
   WayOut(const Placement* innermost, float time);
@@ -32,62 +34,63 @@ class WayOut {
   Vector3 back(Vector3) const;
   Vector3 operator()(Vector3) const;
   void carry_out(SurfacePoint&) const;
-  /// The other way: positions, normals and the error. Tangents become zero.
+  /// The inverse of carry_out for position, normals and error. Tangents become zero.
   void take_in(SurfacePoint&) const;
   Ray into(const Ray&) const;
-  /// |det M|: by how much volumes grow.
+  /// |det M|, the scale factor of volumes.
   double volume() const;
-  /// By how much an area with a unit normal inside grows: |det M| |M^-T n|.
+  /// The scale factor of an area with a unit normal n in the nested scene: |det M| |M^-T n|.
   double area_stretch(const Normal3&) const;
-  /// By how much M enlarges when it is a similarity; 0: it is none.
+  /// The scale factor of lengths if M is a similarity, else 0.
   float similarity() const;
   Normal3 carry(Normal3) const;  ///< M^-T n, not normalized
 
  private:
   int size_ = 0;
-  const Transform* steps_[Hit::deepest_nesting];  // innermost first; those that do nothing are left out
+  const Transform* steps_[Hit::deepest_nesting];  // innermost first, without identities
   std::optional<Transform> moved_[Hit::deepest_nesting];
 };
 
-/// How the normals of an object are spread over its area: to find areas under transforms that are no similarities.
+/// The distribution of an object's normals over its area, for computing its area under transforms that are not similarities.
 class NormalSpread {
  public:
   NormalSpread(const SceneObject&, float time);
-  struct MediumInterval {
-    double value = 0, error = 0;  ///< the latter relative
+  struct Stretch {
+    double value = 0, error = 0;  ///< the scale factor, and its relative error
   };
-  /// By how much the way out enlarges the object's area.
-  MediumInterval stretch(const WayOut&) const;
+  /// The factor by which M scales the object's area.
+  Stretch stretch(const WayOut&) const;
 
  private:
   struct Part {
     Normal3 normal;
     float weight;
   };
-  std::vector<Part> fine_, coarse_;  // how far these differ tells the error; none: exact
+  std::vector<Part> fine_, coarse_;  // the difference of their results estimates the error; coarse_ empty: exact
 };
 
 class NestedLuminaires;
 
-/// In all it does it asks the object in the nested scene, which may stand for another one itself where an Instance has replaced
-/// shaders. With M the map from there to the outermost scene:
-///   per area,         p = p_inner / (|det M| |M^-T n|), n the unit normal inside;
-///   per solid angle,  p = p_inner |M w|^3 / |det M|, w the unit direction inside: a cone of directions dw around w cuts the
-///                     volume dw r^3 / 3 out of a ball, which M enlarges by det M, and r by |M w|.
-/// A point's density does not change, as no transform changes how strong it is; nor does a single direction's.
+/// All functions call those of the object in the nested scene, which may itself be a stand-in if an Instance replaces shaders.
+/// With M the transform from the nested scene to the outermost scene, the pdfs are
+///   per area,         p = p_inner / (|det M| |M^-T n|), n the unit normal in the nested scene;
+///   per solid angle,  p = p_inner |M w|^3 / |det M|, w the unit direction in the nested scene: a cone of directions dw around
+///   w
+///                     cuts the volume dw r^3 / 3 out of a ball; M scales this volume by |det M| and r by |M w|.
+/// The pdf of a point light does not change, as transforms do not change its intensity; nor does that of a single direction.
 ///
-/// Its area is that of the outermost scene, so an amount of light an emission is asked for is what it gives off there.
+/// The area is measured in the outermost scene, so a requested amount of light (ShapedEmission) is the amount emitted there.
 class PlacedLuminaire final : public SceneObject {
  public:
   static void describe(Description<PlacedLuminaire>&);
 
-  /// `inner` is what hits name.
+  /// `inner` is the object that hits refer to.
   PlacedLuminaire(const SceneObject& inner, const Placement&, const NestedLuminaires&);
 
   const SceneObject& inner() const { return *inner_; }
   const Placement& place() const { return place_; }
-  /// How far its area is stretched, to be called before it is used. `still` is the inner object's at time 0, null: a formula
-  /// does.
+  /// Computes the scale factor of the area; must be called before the object is used. `still` is the NormalSpread of the inner
+  /// object at time 0; null: it is not needed.
   void find_stretch(const NormalSpread* still);
 
   const SceneObject& original() const override { return inner_->original(); }
@@ -120,7 +123,7 @@ class PlacedLuminaire final : public SceneObject {
   Ref<const SceneObject> inner_;
   const Placement& place_;
   const NestedLuminaires& all_;
-  float stretch_ = 0, stretch_error_ = 0;  // of the area, where nothing moves
+  float stretch_ = 0, stretch_error_ = 0;  // scale factor of the area and its error, if nothing moves
 };
 
 }  // namespace etendue

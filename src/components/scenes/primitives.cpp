@@ -3,7 +3,7 @@
 namespace etendue {
 namespace {
 
-/// A little wider: an object may find hits that rounding puts just outside its bounds.
+/// A slightly enlarged box, as by rounding an object may return hits just outside its bounds.
 Bounds3 widened(Bounds3 box) {
   const auto margin = [](float low, float high) { return 1e-6f * std::max(std::abs(low), std::abs(high)) + 1e-30f; };
   const Vector3 m{margin(box.low.x, box.high.x), margin(box.low.y, box.high.y), margin(box.low.z, box.high.z)};

@@ -1,5 +1,5 @@
 #pragma once
-// What structures are built over: triangles, one by one, and whole objects.
+// Primitives: what acceleration structures are built over: single triangles, and whole objects.
 
 #include <span>
 #include <vector>
@@ -10,15 +10,15 @@
 
 namespace etendue {
 
-/// Boxes are computed with in double where cells are concerned: the cells of a scene that a ray from far away crosses must be
-/// those that its surfaces were sorted into.
+/// The box of a cell, in double precision, so that the cells that a ray from far away crosses are the cells to which the
+/// surfaces were assigned.
 struct DoubleBox {
   double low[3], high[3];
 };
 
 class Primitives {
  public:
-  /// Takes in the objects of a scene. Throws Error when there are more than can be counted.
+  /// Collects the primitives of a scene's objects. Throws Error if there are 2^31 or more.
   void gather(std::span<const SceneObject* const> objects);
 
   size_t size() const { return items_.size(); }
@@ -26,10 +26,11 @@ class Primitives {
   /// The triangle's number within its object.
   std::uint32_t number(size_t i) const { return items_[i].triangle; }
   const SceneObject* object(size_t i) const { return owner(owner_of(i)); }
-  /// Objects are counted too.
+  /// Number of the object that a primitive belongs to, for `owner`.
   std::uint32_t owner_of(size_t i) const { return items_[i].owner; }
   const SceneObject* owner(std::uint32_t number) const { return owners_[number].object; }
-  /// For who has noted owners and numbers: all that is asked for by `i` is gone, and its memory.
+  /// Frees the list of primitives, for structures that have stored the owners and numbers. Functions with an argument `i` must
+  /// not be called any more.
   void forget_items() { items_ = {}; }
   const Point3& corner(size_t i, int k) const {
     const Item& item = items_[i];
@@ -40,7 +41,7 @@ class Primitives {
   /// False only if no point of the primitive lies in the box: by its bounds, and by the plane of a triangle.
   bool meets(size_t i, const DoubleBox& box) const;
 
-  /// Objects without end: no box holds them, every ray is tested against them.
+  /// Unbounded objects: every ray is tested against them, as no box contains them.
   bool nearest_endless(Ray& rest, Hit& hit) const {
     bool found = false;
     for (const SceneObject* object : endless_)
@@ -93,7 +94,7 @@ class Primitives {
     Bounds3 bounds;
   };
   struct Item {
-    std::uint32_t owner, triangle;  ///< triangle: its number, or `whole`
+    std::uint32_t owner, triangle;  ///< triangle: its number, or `whole` for a whole object
   };
   static constexpr std::uint32_t whole = ~0u;
 

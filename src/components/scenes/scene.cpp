@@ -1,4 +1,4 @@
-// What all scenes share: their lists of luminaires, and how they nest.
+// Base class of scenes: lists of luminaires and interiors, nesting, and objects that are invisible to the camera.
 
 #include "etendue/scene.h"
 
@@ -14,7 +14,7 @@
 namespace etendue {
 namespace {
 
-/// Calls for every scene within a scene, at any depth, once each.
+/// Calls call(inner) once for every nested scene, at any depth.
 template <class F>
 void for_nested(const Scene& scene, std::unordered_set<const Scene*>& seen, const F& call) {
   for (const Ref<SceneObject>& object : scene.objects) {
@@ -26,12 +26,12 @@ void for_nested(const Scene& scene, std::unordered_set<const Scene*>& seen, cons
   }
 }
 
-/// Finds objects that floats cannot hold where they are.
+/// Finds objects that are too small for the precision of floats at their position, for a single warning.
 class Coarse {
  public:
   void look(const SceneObject& object, const Bounds3& box) {
     const float size = max_component(box.diagonal()), away = max_component(abs(box.centre() - Point3{}));
-    // Of one that is a point there is nothing to spoil. Areas of what is smaller than `least` have squares that are no floats.
+    // An object of size 0 cannot be distorted. For objects smaller than `least` the squares of areas underflow.
     constexpr float least = 1e-9f;
     if (!(size > 0) || object.unbounded() || (size > 8 * rounding_bound(2) * away && size > least)) return;
     if (count_++ > 0) return;
@@ -61,7 +61,8 @@ class Coarse {
   float size_ = 0, away_ = 0;
 };
 
-/// Lets an object count from another point outside, and all that stands within it if it is no scene; prepares it again.
+/// Changes the origin of the coordinates around an object to `centre`, and correspondingly those of the objects within it if it
+/// is not a scene; prepares it again.
 void count_within(SceneObject& object, const DoublePoint3& centre, float time) {
   DoublePoint3 inner = object.transform.inner();
   if (object.follows_scene && !scene_within(object)) {
@@ -72,8 +73,9 @@ void count_within(SceneObject& object, const DoublePoint3& centre, float time) {
   object.prepare();
 }
 
-/// Where all surfaces are endless, a sphere of 1 m stands for the scene, for light paths to begin around. It lies around the
-/// world's origin, unless floats were too coarse there for what is counted from `centre`, near the camera: then around that.
+/// If all surfaces are unbounded, a sphere of radius 1 m replaces the scene's bounding sphere, around which light paths begin.
+/// It lies around the world's origin; but if this is so far from `centre`, the origin of rendering space near the camera, that
+/// floats would be too coarse there, it lies around `centre`.
 Bounds3 for_endless_ones(const DoublePoint3& centre) {
   constexpr double near = 1e5;
   const DoubleVector3 away = DoublePoint3{} - centre;
@@ -85,10 +87,10 @@ Bounds3 for_endless_ones(const DoublePoint3& centre) {
   return cube;
 }
 
-/// What finds objects that the camera does not see, in whichever scene.
+/// The structure for objects that are invisible to the camera, in scenes of any class.
 constexpr const char* structure_of_unseen = "BvhScene";
 
-/// More boxes than this are searched by a tree.
+/// If there are more boxes of interiors than this, a tree is built over them.
 constexpr size_t few_interiors = 16;
 
 }  // namespace
@@ -118,14 +120,14 @@ std::vector<SceneObject*> Scene::placed_within() const {
   return all;
 }
 
-// Of the objects' places no more is known before than what they give as their bounds, by floats far from where these count
-// from. That is good enough to choose a better point; from there they are prepared once more.
+// The objects' positions are known only from their bounds, in floats far from the current origin. That is precise enough to
+// choose a better origin; with it the objects are prepared once more.
 void Scene::choose_centre() {
   Bounds3 all;
   for (const Ref<SceneObject>& object : objects)
     if (object && !object->infinite() && !object->unbounded()) all.add(object->bounds());
   if (all.empty() || !is_finite(all.low) || !is_finite(all.high)) return;
-  // Where floats count from there, places are rounded by no more than 4e-6 of the objects' extent.
+  // Up to this distance, relative to the objects' extent, positions are rounded by no more than 4e-6 of the extent.
   constexpr float far = 64;
   const Vector3 away = all.centre() - Point3{};
   if (!(max_component(abs(away)) > far * max_component(all.diagonal()))) return;
@@ -144,7 +146,7 @@ void Scene::prepare() {
   find_coincident();
 }
 
-// The structure knows where objects are, which stays.
+// The acceleration structure is kept, as the objects' positions have not changed.
 void Scene::prepare_again() {
   require_good_objects();
   survey();
@@ -170,14 +172,14 @@ void Scene::require_good_objects() {
     fail("objects", "scenes nest more than " + std::to_string(Hit::deepest_nesting) + " deep");
 }
 
-/// Notes whether paths can enter an object, and whether light passes straight through its surface.
+/// Records whether paths can enter an object, and whether its surface has null scattering.
 void Scene::note_interior(const SceneObject& object) {
   const bool null_surfaces = object.shader && object.shader->possible_lobes() & null_scattering;
-  // A sheet may bound a medium (see enterable); an instance does not know whether what it gives a sheet's shader to has one.
+  // A sheet may bound a medium (see enterable). If an instance's shader is a sheet, its objects are assumed to have interiors.
   const bool may_enter =
       object.shader && (object.shader->transmits() || (is_sheet(*object.shader) && (object.interior || scene_within(object))));
   const Scene* inner = scene_within(object);
-  // An instance's shader replaces all those inside.
+  // An instance's shader replaces all shaders of its scene.
   const bool asks_inside = inner && (inner == &object || !object.shader);
   has_null_surfaces_ |= asks_inside ? inner->has_null_surfaces_ : null_surfaces;
   if (!(asks_inside ? inner->has_interiors_ : may_enter)) return;
@@ -185,7 +187,7 @@ void Scene::note_interior(const SceneObject& object) {
   interiors_.push_back(object.bounds());
 }
 
-/// Whether an object is one that rays of the camera pass by.
+/// Whether an object is invisible to camera rays and belongs into the separate structure; checks that this is possible.
 bool Scene::note_unseen(const SceneObject& object) {
   const Scene* inner = scene_within(object);
   if (inner && !object.visible_to_camera)
@@ -201,7 +203,7 @@ bool Scene::note_unseen(const SceneObject& object) {
   if (object.surrounds() || enterable(object))
     object.fail("visible_to_camera",
                 "light goes into this object, so the camera would see what fills it: it cannot be left out");
-  if (object.delta()) return false;  // nobody sees it
+  if (object.delta()) return false;  // no ray hits it anyway
   has_unseen_ = true;
   return !object.infinite();
 }
@@ -236,7 +238,7 @@ bool Scene::nearest_with_unseen(const Ray& ray, Hit& hit) const {
 void Scene::all_unseen(const Ray& ray, HitList& list) const {
   HitList more;
   unseen_->find_all(ray, more);
-  const auto known = [&](const Hit& hit) {  // a scene over the objects of another one (Import) has them twice
+  const auto known = [&](const Hit& hit) {  // in a scene over the objects of another scene (Import) hits may be found twice
     return std::any_of(list.hits, list.hits + list.size,
                        [&](const Hit& h) { return h.object == hit.object && h.distance == hit.distance; });
   };
@@ -244,7 +246,7 @@ void Scene::all_unseen(const Ray& ray, HitList& list) const {
     if (!known(more.hits[i])) list.add(more.hits[i]);
 }
 
-/// Finds out what is in the scene, and returns the objects that rays meet.
+/// Collects the scene's luminaires, interiors, bounds and surroundings, and returns the objects that rays can hit.
 Scene::Finite Scene::survey() {
   luminaires_.clear();
   infinite_.clear();
@@ -255,7 +257,8 @@ Scene::Finite Scene::survey() {
   static std::atomic<std::uint64_t> versions{0};
   version_ = ++versions;
   has_interiors_ = has_null_surfaces_ = has_unseen_ = unbounded_ = false;
-  // Others stand for luminaires of nested scenes; those scenes gave them places in their own lists before.
+  // Luminaires of nested scenes are represented by PlacedLuminaires. The indices that they got when the nested scenes were
+  // prepared are reset.
   std::unordered_set<const Scene*> visited;
   for_nested(*this, visited, [](Scene& inner) {
     for (const Ref<SceneObject>& object : inner.objects) {
@@ -290,7 +293,8 @@ Scene::Finite Scene::survey() {
       if (surroundings_) object->fail("", "there are surroundings already: a scene stands in one thing alone");
       surroundings_ = object.get();
       has_interiors_ = true;
-      // Light from infinity is scattered to the scene's objects from beside them as well: every place across it counts.
+      // In the surrounding medium light from infinity is scattered to the objects also from positions beside them, so all
+      // positions across the light's direction contribute, as with an unbounded object.
       Ray any;
       any.direction = {0, 0, 1};
       unbounded_ |= std::isfinite(object->surrounding_reach(any));
@@ -302,7 +306,7 @@ Scene::Finite Scene::survey() {
     if (box.empty()) continue;  // without extent: a point light, an empty scene
     if (!is_finite(box.low) || !is_finite(box.high) || !is_finite(box.diagonal()))
       object->fail("", "the object's bounds are not finite");
-    // Edges longer than this have products whose squares are no floats.
+    // For longer edges the squares of products of edges overflow.
     constexpr float largest = 2 * SceneObject::endless;
     if (!object->unbounded() && max_component(box.diagonal()) > largest)
       object->fail("", "the object is larger than 2e9 m, which is beyond what can be counted with");
@@ -384,7 +388,7 @@ bool Scene::intersect(const Ray& ray, Hit& hit) const {
 void Scene::all_hits(const Ray& ray, HitList& list) const {
   Transform scratch;
   const Transform& t = placed(transform, ray.time, scratch);
-  HitList inside;  // of this scene alone: what is in the list already is elsewhere, be it on the same object
+  HitList inside;  // only of this placement: hits that are in `list` already are elsewhere, even if on the same object
   all(t.identity() ? ray : ray_into(t, ray), inside);
   for (int i = 0; i < inside.size; ++i) {
     Hit& hit = inside.hits[i];
@@ -409,7 +413,7 @@ void Scene::locate_nested(const Ray& ray, const Hit& hit, SurfacePoint& point) c
     if (!t.identity()) local = ray_into(t, local);
   }
   hit.object->surface_point(local, hit, point);
-  hit.object->tangents(point);  // now: later the way out is forgotten
+  hit.object->tangents(point);  // now, as the point does not store the nested scenes
   for (int i = 0; i < hit.depth; ++i) {
     Transform scratch;
     const Transform& t = placed(hit.scenes[i]->transform, ray.time, scratch);

@@ -7,7 +7,7 @@
 namespace etendue {
 namespace {
 
-// What a comparison gives for all lanes.
+// Mask: the result of a comparison in all lanes.
 #if defined(__AVX512VL__)
 using Mask = __mmask8;
 inline Mask below(const Floats& a, const Floats& b) { return _mm256_cmp_ps_mask(raw(a), raw(b), _CMP_LT_OQ); }
@@ -52,7 +52,7 @@ inline int lowest_lane(const Floats& x) {
 #endif
 }
 
-/// The ray in all lanes.
+/// A ray, copied to all lanes.
 struct WideRay {
   Floats ox, oy, oz, dx, dy, dz;
   explicit WideRay(const Ray& r)
@@ -64,21 +64,22 @@ struct WideRay {
         dz(spread(r.direction.z)) {}
 };
 
-/// Where rays meet the planes: at t, at A + u a + v b, and at A + x b + y c with y = -u / k.
+/// The intersections of a ray with planes: at distance t, at the point A + u a + v b = A + x b + y c with y = -u / k.
 struct Met {
   Floats t, u, v, x;
 };
 
-// The ray meets the plane at t = N.C / N.D with C = A - O, at Q = t D - C from A. With g_a and g_b the vectors of the plane for
-// which g_a.a = g_b.b = 1 and g_a.b = g_b.a = 0, that is A + u a + v b for u = g_a.Q and v = g_b.Q. It is also A + x b + y c
-// with x = h.Q (h.b = 1, h.c = 0) and y = -u / k, since a is -k c and something along b. The quadrilateral is convex: inside it
-// u and y may have any sign, v and x not, and neither u + v nor x + y exceeds 1. (Moeller & Trumbore 1997 solve for the same
-// with less stored and more to do; here what counts is how long one ray takes, which the next segment of its path waits for.)
+// The ray O + t D hits the plane at t = N.C / N.D with C = A - O, at Q = t D - C from A. With g_a and g_b the vectors of the
+// plane for which g_a.a = g_b.b = 1 and g_a.b = g_b.a = 0, this point is A + u a + v b for u = g_a.Q and v = g_b.Q. It is also
+// A + x b + y c with x = h.Q (h.b = 1, h.c = 0) and y = -u / k, since a is -k c plus a vector along b. The quadrilateral is
+// convex: inside it u and y may have any sign, v and x are not negative, and neither u + v nor x + y exceeds 1. (Moeller &
+// Trumbore 1997 compute the same with less storage and more operations; here the latency of one ray counts, as the next segment
+// of its path waits for it.)
 //
-// The shape is taken a little wider than it is: by what the weights may be off, so that no ray slips between two that share an
-// edge. The coordinates of C and Q and those of the vectors g round by half a unit in the last place each, which makes an error
-// of about 2 eps |C| |g| / cos of a weight: bounded where |C| is no more than the scene's diameter and the cosine no less than
-// an eighth. The two triangles of a pair have nothing between them.
+// The shape is enlarged by the error of the weights, so that no ray passes between two shapes that share an edge. The
+// coordinates of C and Q and those of the vectors g are rounded by half a unit in the last place each, which causes an error of
+// about 2 eps |C| |g| / cos of a weight: it is bounded where |C| is no more than the scene's diameter and the cosine no less
+// than an eighth. Between the two triangles of a pair there is no gap.
 /// Returns which are hit with t > 0.
 inline Mask test(const TrianglePairs::Block& s, const WideRay& r, Met& m) {
   const Floats cx = s.vx - r.ox, cy = s.vy - r.oy, cz = s.vz - r.oz;
@@ -111,8 +112,8 @@ double dot(const Double3& a, const Double3& b) { return a.x * b.x + a.y * b.y + 
 Double3 scaled(const Double3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 double length(const Double3& a) { return std::sqrt(dot(a, a)); }
 
-/// Whether (A, B, C) and (A, C, D) may be tested as a pair: they make a convex quadrilateral. What they are off a common plane
-/// must count for nothing beside the rounding of a point's coordinates, which a ray that leaves the surface allows for.
+/// Whether (A, B, C) and (A, C, D) may be tested as a pair: they form a convex quadrilateral. Their deviation from a common
+/// plane must be negligible beside the rounding of a point's coordinates, for which rays that leave the surface are offset.
 bool make_a_pair(const std::array<Point3, 4>& p) {
   const Double3 a = difference(p[1], p[0]), b = difference(p[2], p[0]), c = difference(p[3], p[0]);
   const Double3 n = cross(a, b), m = cross(b, c);
@@ -139,7 +140,7 @@ void TrianglePairs::add(const SceneObject& object, const TriangleView& view, flo
     const auto& t = view.triangles[i];
     return std::array{view.positions[t[0]], view.positions[t[1]], view.positions[t[2]]};
   };
-  constexpr size_t nearby = 8;  // partners follow each other in what modellers write
+  constexpr size_t nearby = 8;  // modelling programs write the two triangles of a quadrilateral close to each other
   std::vector<bool> taken(count);
   for (size_t i = 0; i < count; ++i) {
     if (taken[i]) continue;
@@ -148,7 +149,7 @@ void TrianglePairs::add(const SceneObject& object, const TriangleView& view, flo
     for (size_t j = i + 1; j < std::min(i + 1 + nearby, count) && !paired; ++j) {
       if (taken[j]) continue;
       const std::array<Point3, 3> its = corners_of(j);
-      // B is the corner of mine that the other lacks, D the one of its.
+      // B is the corner of triangle i that j does not have, D the corner of j that i does not have.
       for (int b = 0; b < 3 && !paired; ++b) {
         const int c = (b + 1) % 3, a = (b + 2) % 3;
         const int its_a = corner_at(its, mine[size_t(a)]), its_c = corner_at(its, mine[size_t(c)]);
@@ -156,7 +157,7 @@ void TrianglePairs::add(const SceneObject& object, const TriangleView& view, flo
         const int its_d = 3 - its_a - its_c;
         const std::array corners{mine[size_t(a)], mine[size_t(b)], mine[size_t(c)], its[size_t(its_d)]};
         if (!make_a_pair(corners)) continue;
-        // Which weight a corner of theirs has: 0 for A, then 1 and 2.
+        // The index of the weight of a triangle's corner: 0 for A, then 1 and 2.
         const auto mine_is = [&](int corner) { return std::uint8_t(corner == a ? 0 : corner == b ? 1 : 2); };
         const auto its_is = [&](int corner) { return std::uint8_t(corner == its_a ? 0 : corner == its_c ? 1 : 2); };
         add_lane(object, corners, true,
@@ -184,24 +185,24 @@ void TrianglePairs::add_lane(const SceneObject& object, const std::array<Point3,
   };
   put(s.vx, s.vy, s.vz, {p[0].x, p[0].y, p[0].z});
   const Double3 g_a = scaled(cross(b, n), 1 / dot(n, n)), g_b = scaled(cross(n, a), 1 / dot(n, n));
-  // h = c x m / m.m with m = b x c = k n, and nothing for one alone.
+  // h = c x m / m.m with m = b x c = k n, and zero for a single triangle.
   const Double3 h = pair ? scaled(cross(c, n), 1 / (k * dot(n, n))) : Double3{};
   put(s.ax, s.ay, s.az, g_a);
   put(s.bx, s.by, s.bz, g_b);
   put(s.cx, s.cy, s.cz, h);
   put(s.nx, s.ny, s.nz, n);
-  constexpr double greatest = 1e-4;  // of slivers
+  constexpr double greatest = 1e-4;  // limit of the slack, for slivers
   const double steepest = std::max({length(g_a), length(g_b), length(h), length(g_a) / k});
   const float slack = float(std::min(double(rounding_bound(16)) * diameter * steepest, greatest));
   s.lowest[lane] = -slack;
   s.most[lane] = 1 + slack;
-  // One alone ends at AC, where u = 0: there x + y exceeds what it may, once u is below its slack.
+  // A single triangle ends at AC, where u = 0: with this value x + y exceeds its limit once u is less than -slack.
   s.turn[lane] = pair ? float(-1 / k) : -(1 + slack) / std::max(slack, 1e-12f);
 }
 
 inline void TrianglePairs::set(Hit& hit, size_t block, size_t lane, float t, float u, float v, float x) const {
   const Slot& slot = slots_[block * lanes + lane];
-  // Which of two triangles is met cannot be guessed: no branch hangs on it.
+  // Which of the two triangles is hit is unpredictable, so there is no branch.
   const float beyond = u * blocks_[block].turn[lane];
   const bool first = (u >= 0) | slot.alone;
   const float w = first ? u : x, y = first ? v : beyond;
@@ -222,10 +223,10 @@ inline void TrianglePairs::set(Hit& hit, size_t block, size_t lane, float t, flo
 bool TrianglePairs::nearest(const Ray& ray, Hit& hit) const {
   const WideRay wide(ray);
   Floats best = spread(ray.maximum), best_u{}, best_v{}, best_x{}, where = spread(std::bit_cast<float>(-1));
-  std::int32_t number = 0;  // of the block, kept as the bits of a float
+  std::int32_t number = 0;  // of the block, stored as the bits of a float
   for (const Block& block : blocks_) {
     Met m;
-    // What one block waits for of the one before it is one minimum.
+    // For low latency a block depends on the previous block only by one minimum.
     const Floats reach = choose(test(block, wide, m), m.t, spread(infinity));
     const Mask closer = below(reach, best);
     best = smaller(reach, best);
@@ -244,7 +245,7 @@ bool TrianglePairs::nearest(const Ray& ray, Hit& hit) const {
 bool TrianglePairs::any(const Ray& ray) const {
   const WideRay wide(ray);
   const Floats limit = spread(ray.maximum);
-  // A few blocks at a time, and all where they are few, without a branch, which would be guessed wrongly too often.
+  // Groups of blocks are tested without a branch between them, as it would be mispredicted too often.
   constexpr size_t group = 8;
   for (size_t i = 0;; i += group) {
     Mask hit{};

@@ -15,7 +15,7 @@ using Corner = float __attribute__((vector_size(16)));
 inline Corner smaller(Corner a, Corner b) { return a < b ? a : b; }
 inline Corner larger(Corner a, Corner b) { return a > b ? a : b; }
 
-/// A box whose three coordinates are handled at once.
+/// A box whose three coordinates are computed at once by SIMD.
 struct Box {
   Corner low = Corner{} + infinity, high = Corner{} - infinity;
   void add(const Box& b) {
@@ -26,7 +26,7 @@ struct Box {
     low = smaller(low, p);
     high = larger(high, p);
   }
-  /// Half the surface.
+  /// Half of the surface area.
   float area() const {
     const Corner d = high - low;
     return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
@@ -37,13 +37,13 @@ struct Item {
   Box box;
   std::uint32_t index;
   bool triangle;
-  Corner centre() const { return box.low + box.high; }  // twice it: only compared
+  Corner centre() const { return box.low + box.high; }  // twice the centre: only used in comparisons
 };
 
 struct Counts {
   std::uint32_t triangles = 0, objects = 0;
   std::uint32_t sum() const { return triangles + objects; }
-  /// The time of testing them, in tests of a block of triangles.
+  /// The cost of intersecting them, in units of the test of a block of triangles.
   float cost() const { return float((triangles + lanes - 1) / lanes) + 3 * float(objects); }
   void add(const Counts& b) {
     triangles += b.triangles;
@@ -51,7 +51,7 @@ struct Counts {
   }
 };
 
-/// What is known of some items together.
+/// The common bounding box and the counts of some items.
 struct Group {
   Box box;
   Counts counts;
@@ -67,7 +67,7 @@ struct Group {
   }
 };
 
-/// Items that stand side by side.
+/// A contiguous range of items.
 struct Part : Group {
   size_t begin = 0, end = 0;
   Box centres;
@@ -85,13 +85,13 @@ struct Part : Group {
 };
 
 constexpr int bins = 16;
-// The time of a node's test, by which splitting must shorten the rest. Eight children are told apart by one test, which takes
-// three splits in a row.
+// The cost of a split: splitting pays if the cost of the rest decreases by more. It is a fraction of a node's test, as one test
+// separates eight children, which are made by three successive splits.
 constexpr float split_cost = 0.3f;
-// Below these numbers of items other threads are not asked for help.
+// Smaller numbers of items are processed by one thread.
 constexpr size_t few_to_sort = 1 << 16, few_to_build = 1 << 12;
 
-/// Items by the place of their centres, in slices of the box of all centres, across each axis.
+/// Items binned by their centres, along each axis, in slices of the box of all centres.
 struct Bins {
   Box centres;
   Corner scale;
@@ -101,7 +101,7 @@ struct Bins {
     const Corner extent = centres.high - centres.low;
     for (int k = 0; k < 3; ++k) {
       const float s = float(bins) * (1 - 1e-5f) / extent[k];
-      scale[k] = extent[k] > 0 && s < infinity ? s : 0;  // 0: all are in the first
+      scale[k] = extent[k] > 0 && s < infinity ? s : 0;  // 0: all items are in the first slice
     }
   }
   int slice_of(Corner centre, int axis) const {
@@ -136,14 +136,14 @@ class Builder {
   }
 
  private:
-  /// Makes a node over the items, with all below it; returns its number.
+  /// Builds the node over a range of items and all nodes below it; returns the node's number.
   std::uint32_t node_for(const Part& part, int depth) {
     const std::uint32_t number = used_++;
     Part children[lanes];
     int count = 1;
     children[0] = part;
     while (count < lanes) {
-      // Splitting the largest first keeps the boxes small that most rays meet.
+      // The child with the largest surface area is split first, as most rays hit it.
       int largest = -1;
       for (int i = 0; i < count; ++i)
         if (!children[i].leaf && (largest < 0 || children[i].box.area() > children[largest].box.area())) largest = i;
@@ -164,7 +164,7 @@ class Builder {
         node.sides[2 * k + 1][i] = i < count ? child.box.high[k] : -infinity;
       }
       node.child[i] = i < count ? std::uint32_t(child.begin) : 0;
-      // A child that is none is a leaf of no objects: no node that rays could go on to.
+      // An unused child is a leaf of 0 objects, so that it is not a node that rays could visit.
       node.count[i] = i >= count                 ? WideNode::objects
                       : !child.leaf              ? 0
                       : child.counts.objects > 0 ? child.counts.sum() | WideNode::objects
@@ -183,11 +183,12 @@ class Builder {
     return number;
   }
 
-  /// Splits a part in two, or says that it is better left whole.
+  /// Splits a part in two; false: it should remain a leaf.
   bool split(Part& part, Part& rest, int depth) {
     if (part.one_block()) return false;
     const bool must = part.must_split();
-    // Deep hierarchies come from sizes that differ by orders of magnitude again and again.
+    // Where sizes differ by orders of magnitude repeatedly, the surface area heuristic makes deep hierarchies: below this depth
+    // parts are split by count.
     if (depth < deepest_bvh / 2) {
       const Bins sorted = sort(part);
       const Plane plane = best_plane(sorted);
@@ -195,7 +196,7 @@ class Builder {
         if (!must && plane.cost + split_cost * part.box.area() >= part.box.area() * part.counts.cost()) return false;
         return divide(part, rest, [&](const Item& item) { return sorted.slice_of(item.centre(), plane.axis) < plane.slice; });
       }
-      if (!must) return false;  // all in one place
+      if (!must) return false;  // all centres coincide
     }
     if (part.mixed()) return divide(part, rest, [](const Item& item) { return item.triangle; });
     const Item* const middle = &items_[(part.begin + part.end) / 2];
@@ -224,7 +225,7 @@ class Builder {
     Plane best;
     for (int k = 0; k < 3; ++k) {
       if (!(sorted.scale[k] > 0)) continue;
-      float above[bins];  // cost of what lies in slice i and beyond
+      float above[bins];  // cost of the items in slice i and beyond
       Group sum;
       for (int i = bins; i-- > 1;) {
         sum.add(sorted.slice[k][i]);
@@ -241,11 +242,11 @@ class Builder {
     return best;
   }
 
-  /// Items of which `first` is true stay in the part, the others go to `rest`. False: one of them would be empty.
+  /// Items for which first(item) is true stay in the part, the others go to `rest`. False: one of the two would be empty.
   template <class First>
   bool divide(Part& part, Part& rest, const First& first) {
     Part left, right;
-    // As std::partition, but each item is asked once, where it stood at first.
+    // Like std::partition, but the predicate is called once for each item, at the item's original position.
     size_t i = part.begin, j = part.end;
     while (i < j) {
       if (first(items_[i])) {
@@ -268,7 +269,8 @@ class Builder {
     return true;
   }
 
-  /// Nodes from above to below, each beside the first of its children, whichever thread made them.
+  /// Copies the nodes in depth-first order, each followed by its first child, independent of the order in which threads made
+  /// them.
   std::uint32_t copy(std::uint32_t number, std::vector<WideNode>& to) const {
     const std::uint32_t place = std::uint32_t(to.size());
     to.push_back(nodes_[number]);
@@ -281,7 +283,7 @@ class Builder {
   }
 
   std::vector<Item> items_;
-  std::unique_ptr<WideNode[]> nodes_;  // as many as there could be; memory that is not touched costs nothing
+  std::unique_ptr<WideNode[]> nodes_;  // the largest possible number; pages that are not touched take no memory
   std::atomic<std::uint32_t> used_ = 0;
 };
 

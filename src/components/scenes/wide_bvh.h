@@ -1,5 +1,5 @@
 #pragma once
-// A bounding volume hierarchy with eight children a node: its form, how it is built, and how rays go through it.
+// A bounding volume hierarchy with eight children per node: its layout, construction and traversal.
 
 #include <span>
 #include <vector>
@@ -10,23 +10,23 @@
 
 namespace etendue {
 
-/// What one child of a node is, and its box beside those of the others.
+/// A node: its children and their boxes, in SIMD layout.
 struct alignas(64) WideNode {
   static constexpr std::uint32_t objects = 1u << 31;  ///< in `count`: a leaf of whole objects, not of triangles
 
-  Floats sides[6];  ///< low x, high x, low y, …; a child that is none has its low sides at infinity, its high ones at -infinity
-  std::uint32_t child[lanes];  ///< a node, or where a leaf begins
-  std::uint32_t count[lanes];  ///< how much a leaf holds; 0: the child is a node
+  Floats sides[6];  ///< low x, high x, low y, …; unused children have their low sides at infinity, their high ones at -infinity
+  std::uint32_t child[lanes];  ///< index of a node, or of the first primitive of a leaf
+  std::uint32_t count[lanes];  ///< number of primitives of a leaf; 0: the child is a node
 };
 
-/// Of a hierarchy over primitives: the nodes, root first (none: there are no primitives), and the primitives in the order in
-/// which leaves hold them. A leaf's child and count tell which of them.
+/// A hierarchy over primitives: the nodes, root first (none: there are no primitives), and the primitives' indices in the order
+/// of the leaves. A leaf's child and count give its range in `order`.
 struct WideBvh {
   std::vector<WideNode> nodes;
   std::vector<std::uint32_t> order;
 };
 
-/// What a hierarchy is built over.
+/// A primitive over which a hierarchy is built.
 struct BvhPrimitive {
   Bounds3 bounds;
   std::uint32_t index;
@@ -38,13 +38,13 @@ struct BvhPrimitive {
 /// hierarchy. A leaf holds triangles or objects, not both.
 WideBvh build_wide_bvh(std::vector<BvhPrimitive> primitives);
 
-/// How deep a hierarchy may be: what lies deeper is split in halves, which ends soon.
+/// The largest depth of a hierarchy. Below half of this depth parts are split in equal halves, which ends soon.
 inline constexpr int deepest_bvh = 64;
 
-// A ray meets a box when the last slab it enters comes before the first it leaves (Kay & Kajiya 1986). Rounding of plane -
-// origin, of 1 / direction and of their product is relative, so it is enough to widen every t by a relative amount (Ize 2013,
-// "Robust BVH ray traversal"); with it, boxes also hold what the shear of watertight.h, relative to the same distances, moves
-// out of them. A ray within a plane divides 0 by 0: not-a-number limits nothing.
+// A ray hits a box if it enters the last slab before it leaves the first (Kay & Kajiya 1986). The rounding errors of
+// plane - origin, of 1 / direction and of their product are relative, so it is enough to widen every t by a relative amount
+// (Ize 2013, "Robust BVH ray traversal"). This margin also covers the rounding of the shear of watertight.h, which is relative
+// to the same distances. For a ray within a plane t is 0 times infinity = NaN, which limits nothing.
 class BoxTest {
  public:
   explicit BoxTest(const Ray& ray) {
@@ -57,7 +57,7 @@ class BoxTest {
     }
   }
 
-  /// Which children are met before `limit`, and at which t their boxes are entered.
+  /// The children that are hit before `limit`, and in `entry` the t at which the ray enters their boxes.
   LaneBits operator()(const WideNode& node, float limit, Floats& entry) const {
     Floats in{}, out = spread(limit);
 #pragma GCC unroll 3
@@ -76,8 +76,8 @@ class BoxTest {
   Floats origin_[3], near_[3], far_[3];
 };
 
-/// Calls leaf(first, count) for leaves along the ray, near ones first as far as their boxes tell, until it returns true; leaves
-/// out what begins beyond `limit`, which the calls may lower.
+/// Calls leaf(first, count) for the leaves along the ray, in the order in which the ray enters the children's boxes, until it
+/// returns true. Skips boxes that begin beyond `limit`, which the calls may lower.
 template <class Leaf>
 inline void traverse(const WideBvh& bvh, const Ray& ray, const float& limit, const Leaf& leaf) {
   if (bvh.nodes.empty() || !has_finite_squares(ray)) return;
@@ -95,7 +95,7 @@ inline void traverse(const WideBvh& bvh, const Ray& ray, const float& limit, con
     Waiting next;
     bool found = std::has_single_bit(met);
     if (found) {
-      // Most nodes let the ray on into one child. Its numbers need not wait until they are stored and loaded again.
+      // In most nodes the ray hits one child. It is visited directly, without the latency of a store to the stack and a load.
       const int i = std::countr_zero(met);
       next = {entries[i], node->child[i], node->count[i]};
     } else {
@@ -103,7 +103,7 @@ inline void traverse(const WideBvh& bvh, const Ray& ray, const float& limit, con
       for (; met; met &= met - 1) {
         const int i = std::countr_zero(met);
         const Waiting child{entries[i], node->child[i], node->count[i]};
-        // Sorted as they come: few are met.
+        // Insertion sort, as few children are hit.
         Waiting* place = top++;
         for (; place != before && place[-1].entry < child.entry; --place) *place = place[-1];
         *place = child;

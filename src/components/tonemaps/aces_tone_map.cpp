@@ -9,8 +9,8 @@ namespace {
 // ACEScg (AP1), with 4 % of the saturation taken away before the curve and 7 % after it (RRT_SAT_FACTOR = 0.96 and
 // ODT_SAT_FACTOR = 0.93 of the Academy's transforms), each component goes through
 //   (v (v + 0.0245786) - 0.000090537) / (v (0.983729 v + 0.4329510) + 0.238081).
-// The white of the display's space becomes that of AP1 (Bradford's chromatic adaptation), and back. His matrices for sRGB
-// are the products of these steps.
+// The white of the display's space is adapted to that of AP1 before, and back afterwards (Bradford's chromatic adaptation).
+// Hill's matrices for sRGB are the products of these steps.
 ColorMatrix with_saturation(const RgbSpace& space, double s) {
   ColorMatrix m;
   for (size_t i = 0; i < 3; ++i)
@@ -18,7 +18,8 @@ ColorMatrix with_saturation(const RgbSpace& space, double s) {
   return m;
 }
 
-/// Of X Y Z seen under one white to the X Y Z that looks so under another: components of cones are scaled.
+/// Chromatic adaptation: the matrix from X Y Z under one white to the X Y Z of the same appearance under another white. The
+/// responses of the cones are scaled.
 ColorMatrix bradford(const std::array<double, 2>& from, const std::array<double, 2>& to) {
   constexpr ColorMatrix cones = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
   constexpr ColorMatrix back = {0.9869929, -0.1470543, 0.1599627, 0.4323053, 0.5183603,

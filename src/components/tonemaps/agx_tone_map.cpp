@@ -7,21 +7,21 @@
 namespace etendue {
 namespace {
 
-// AgX, after T. Sobotka (github.com/sobotka/AgX-S2O3): three steps, in which the components of a colour are bent one by one.
-//  1. The colour is expressed in a space whose primaries lie 1 / (1 - 0.2) times as far from white as the display's. So no
-//     component of a colour that the display can show is zero; of most others none is negative. For sRGB the matrix from one
-//     space to the other is the published "inset" (0.8424, 0.0784, 0.0792; ...).
+// AgX, after T. Sobotka (github.com/sobotka/AgX-S2O3): three steps, with a curve that is applied to each component of a colour.
+//  1. The colour is expressed in a space whose primaries lie 1 / (1 - 0.2) times as far from white as the display's. So colours
+//     that the display can show have no component that is zero, and most other colours none that is negative. For sRGB the
+//     matrix from one space to the other is the published "inset" (0.8424, 0.0784, 0.0792; ...).
 //  2. The logarithm to base 2 over middle grey, from -10 to 6.5 stops, becomes x in [0, 1]; a sigmoid of it is the code value
 //     y of a display whose light is y^2.2. It goes from 0 to 1, through 1/2 with the slope a at middle grey, x_0 = 10 / 16.5:
 //       y = 1/2 + s t / (1 + |t|^p)^(1/p),   t = a (x - x_0) / s,
-//     p = 3 below and 3.25 above middle grey. At the distance d of the end from x_0 the second term is 1/2 if
+//     p = 3 below and 3.25 above middle grey. With d the distance of an end from x_0, the second term is 1/2 at this end if
 //       s = a d ((2 a d)^p - 1)^(-1/p).
 //     Sobotka has a = 2. With a = 16.5 ln 2 / (2 * 2.2) = 2.6 the light of the display changes near middle grey by the same
-//     factor as that of the scene (d ln y^2.2 = 2.2 a / (16.5 y) d log2 L): pictures that are not toned down look so.
-//  3. Back from the wide space to the display's, of code values (B. Wrensch, "Minimal AgX implementation", 2023, whose
-//     polynomial is a fit to the sigmoid with a = 2). Without this "outset" middle tones are paler than they were.
-// Because every component is bent by itself, saturated colours go to white as they get brighter, as film's do, instead of
-// stopping at the most saturated colour that there is.
+//     factor as that of the scene (d ln y^2.2 = 2.2 a / (16.5 y) d log2 L), as it does without tone mapping.
+//  3. The code values are converted from the wide space back to the display's (B. Wrensch, "Minimal AgX implementation", 2023,
+//     whose polynomial is a fit to the sigmoid with a = 2). Without this "outset" middle tones are paler than in the scene.
+// Because the curve is applied to each component, saturated colours approach white as they get brighter, as on film, instead of
+// remaining at the most saturated colour of the space.
 constexpr double middle_grey = 0.18, lowest_stops = -10, highest_stops = 6.5, widening = 1 / (1 - 0.2), display_power = 2.2;
 
 class Sigmoid {

@@ -10,19 +10,19 @@
 namespace etendue {
 namespace {
 
-// The automatic exposure makes the mean logarithm of luminance a middle grey, as a light meter does, but for three things.
+// The automatic exposure maps the log-average luminance to middle grey, as a light meter does, with three modifications.
 //
-// What is dark. Lit things before a background that is almost black should be as bright as before one that is not. Each
-// pixel counts by
+// Dark pixels. Lit objects in front of an almost black background should be as bright as in front of another background. Each
+// pixel has the weight
 //   w = 1 / (1 + (F / L)^2),   F = 2^-7 L_p,
-// where L_p is the luminance that `percentile` percent of the lit pixels do not exceed: what is far below F does not count,
-// and none of this jumps when a pixel changes a little.
+// where L_p is the luminance that `percentile` percent of the lit pixels do not exceed: pixels far below F have almost no
+// weight, and the weights change continuously with the pixels' values.
 //
-// What is bright. What exceeds the luminance that `percentile` percent by weight do not exceed counts as that: lamps, their
-// mirror images and fireflies light a scene and are not what is lit.
+// Bright pixels. Luminances are limited to the one that `percentile` percent by weight do not exceed: lamps, their mirror
+// images and fireflies illuminate a scene, but are not what is illuminated.
 //
-// What is bright or dark by nature. Snow should not become grey. Reinhard (2003, Parameter estimation for photographic tone
-// reproduction, equation 4) shifts the key by where the mean lies between the darkest and the brightest:
+// Scenes that are bright or dark by nature. Snow should not become grey. Reinhard (2003, Parameter estimation for photographic
+// tone reproduction, equation 4) shifts the key by the position of the mean between the darkest and the brightest luminance:
 //   key = key_0 4^f,   f = (2 log L_mean - log L_low - log L_high) / (log L_high - log L_low).
 // Instead of the minimum and the maximum, L_low and L_high are here the mean logarithms of the darkest and of the brightest
 // tenth by weight, so that single pixels do not decide.
@@ -36,9 +36,9 @@ struct Metered {
   double logarithm, share;
 };
 
-/// Sorts positive numbers, as far as a millionth part tells them apart: by 11 of their bits after 11, from the lowest of the
-/// first 33 on (positive doubles are in the order of their bits). A tenth of the time of std::sort for the pixels of a picture,
-/// which panels show while somebody turns a knob.
+/// Sorts positive numbers up to relative differences of a millionth, by a radix sort of their first 33 bits: three digits of
+/// 11 bits, the lowest first (positive doubles are ordered as their bits are). It takes a tenth of the time of std::sort for
+/// the pixels of a picture; panels update the picture while a setting is being changed.
 void sort_nearly(std::vector<double>& numbers) {
   constexpr int digit = 11, digits = 3;
   constexpr std::uint64_t mask = (1 << digit) - 1;
@@ -53,7 +53,8 @@ void sort_nearly(std::vector<double>& numbers) {
   }
 }
 
-/// The mean over the ranks [from, to] of logarithms in increasing order, where shares sum to 1.
+/// The mean of the logarithms, given in increasing order, over the interval [from, to] of their cumulative shares, which sum
+/// to 1.
 double mean_between(const std::vector<Metered>& all, double from, double to) {
   double below = 0, sum = 0, share = 0;
   for (const Metered& m : all) {

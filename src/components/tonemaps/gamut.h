@@ -1,5 +1,5 @@
 #pragma once
-// What is shown of colours that an RGB space does not hold, by tone maps that change luminance alone.
+// Gamut mapping of colours outside an RGB space, for tone maps that change only the luminance.
 
 #include "color_matrix.h"
 #include "etendue/core/image.h"
@@ -7,8 +7,8 @@
 
 namespace etendue {
 
-/// Mixes each colour with the grey of its luminance until its components lie in [0, 1]: luminance stays, and the direction
-/// from white, the hue, too. Luminances above 1 become white.
+/// Mixes each colour with the grey of its luminance until its components lie in [0, 1]. The luminance and the direction from
+/// white, the hue, are kept. Colours of luminance above 1 become white.
 inline void draw_into_gamut(Image& xyz, const RgbSpace& space) {
   for (size_t i = 0; i + 2 < xyz.values.size(); i += 3) {
     double* v = &xyz.values[i];

@@ -1,5 +1,5 @@
 #pragma once
-// What tone maps share: the luminance that becomes white, and changing luminance without changing chromaticity.
+// Helpers of tone maps: the luminance that becomes white, and changes of luminance that keep the chromaticity.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,8 @@ inline std::vector<double> positive_luminances(const Image& xyz) {
   return all;
 }
 
-/// The place, in increasing order, of the smallest of `count` values that at least this percentage of them do not exceed.
+/// The index of a percentile among `count` values in increasing order: of the smallest value that at least this percentage of
+/// the values do not exceed.
 inline size_t rank_of(size_t count, double percent) {
   return size_t(std::clamp(std::ceil(percent / 100 * double(count)) - 1, 0.0, double(count - 1)));
 }
@@ -37,8 +38,8 @@ inline double white_luminance(const Image& xyz, double percent) {
   return percentile_of(all, percent);
 }
 
-/// Replaces each luminance Y by f(Y / white) and scales X and Z alike, so that chromaticities stay. Pixels without
-/// positive luminance become black.
+/// Replaces each luminance Y by f(Y / white) and scales X and Z by the same factor, so that chromaticities are kept. Pixels
+/// without positive luminance become black.
 template <class F>
 void map_luminance(Image& xyz, double white, F&& f) {
   for (size_t i = 0; i + 2 < xyz.values.size(); i += 3) {

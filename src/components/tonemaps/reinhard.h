@@ -1,7 +1,7 @@
 #pragma once
-// What both tone maps of Reinhard, Stark, Shirley & Ferwerda (2002) share. An exposed luminance L becomes
+// Common parts of the two tone maps of Reinhard, Stark, Shirley & Ferwerda (2002). An exposed luminance L becomes
 //   L_d = L (1 + L / L_white^2) / (1 + A),
-// where A = L (equation 4), or what is around it (equation 9, there without L_white).
+// where A = L (equation 4), or the mean luminance around the pixel (equation 9, in the paper without L_white).
 
 #include "etendue/describe/color.h"
 #include "etendue/exposed_tone_map.h"
@@ -18,8 +18,8 @@ inline double reinhard_white(const Image& xyz, float said) {
   return said > 0 ? double(said) : std::max(1.0, white_luminance(xyz, 99.5));
 }
 
-/// Changes the luminance of each pixel and keeps its chromaticity, then draws into the space what it does not hold.
-/// `around(i)` is A of pixel i.
+/// Changes the luminance of each pixel and keeps its chromaticity, then maps colours outside the RGB space into it. `around(i)`
+/// returns A of pixel i.
 template <class F>
 void develop_reinhard(Image& xyz, const RgbSpace& space, double white, F&& around) {
   for (size_t i = 0; i + 2 < xyz.values.size(); i += 3) {

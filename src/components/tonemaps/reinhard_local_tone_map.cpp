@@ -5,13 +5,13 @@
 namespace etendue {
 namespace {
 
-/// A picture of one channel.
+/// An image of one channel.
 struct Plane {
   int width, height;
   std::vector<double> values;
 };
 
-/// The mean under a Gaussian, of what lies in the picture.
+/// Convolution with a Gaussian that is normalized over the part inside the image.
 Plane blurred(const Plane& in, double sigma) {
   const int reach = int(std::ceil(3.5 * sigma));
   std::vector<double> weight;
@@ -37,13 +37,12 @@ Plane blurred(const Plane& in, double sigma) {
   return along(along(in, in.width, in.height, 1, size_t(in.width)), in.height, in.width, size_t(in.width), 1);
 }
 
-// Dodging and burning: A is the mean luminance V of a surrounding of each pixel that is as large as may be without a strong
-// contrast in it. V_s is the picture under the Gaussian exp(-r^2 / (alpha s)^2) / (pi (alpha s)^2), alpha = 1 / (2 sqrt 2), of
-// scales s = 1, 1.6, ..., 1.6^8 pixels; the surround of each scale is the centre of the next. The largest scale is taken up to
-// which
+// Dodging and burning: A is the mean luminance V of the largest surrounding of a pixel that contains no strong contrast. V_s is
+// the luminance convolved with the Gaussian exp(-r^2 / (alpha s)^2) / (pi (alpha s)^2), alpha = 1 / (2 sqrt 2), for the scales
+// s = 1, 1.6, ..., 1.6^8 pixels; the surround of each scale is the centre of the next. The largest scale is taken up to which
 //   |V_s - V_(1.6 s)| / (2^phi key / s^2 + V_s) < threshold    (equation 7).
-// Between it and the next, V is interpolated to where the contrast would reach the threshold: otherwise neighbours that are
-// all but equal could be shown differently.
+// Between this scale and the next, V is interpolated to where the contrast would reach the threshold: otherwise neighbouring
+// pixels that are almost equal could be shown differently.
 class ReinhardLocalToneMap final : public ExposedToneMap {
   float white = 0;
   float sharpness = 8;
@@ -77,7 +76,7 @@ class ReinhardLocalToneMap final : public ExposedToneMap {
     Plane centre = blurred(luminance, s / 4);
     Plane around = centre;
     std::vector<bool> ended(luminance.values.size());
-    std::vector<double> last(luminance.values.size());  // the contrast at the scale before
+    std::vector<double> last(luminance.values.size());  // the contrast at the previous scale
     for (int scale = 0; scale < scales; ++scale, s *= ratio) {
       Plane surround = blurred(luminance, s * ratio / 4);
       const double least = std::exp2(double(sharpness)) * key / (s * s);

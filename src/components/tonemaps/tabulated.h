@@ -1,5 +1,5 @@
 #pragma once
-// Tabulated: a curve looked up, for pictures of many pixels: AgX and an encoding take nine powers and logarithms for each.
+// Tabulated: a lookup table of a curve, for speed: AgX and an encoding take nine powers and logarithms for each pixel.
 
 #include <bit>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace etendue {
 
-/// A function of positive numbers on [2^low, 2^high], known at 512 places of each octave and straight between them; below it is
-/// straight to f(0) = 0, above it stays. With |x^2 f''| <= 1 it is off by at most (1/512)^2 / 8 = 5e-7.
+/// A function of positive numbers on [2^low, 2^high], tabulated at 512 points of each octave and linear between them. Below
+/// 2^low it is linear to f(0) = 0, above 2^high constant. If |x^2 f''| <= 1 the error is at most (1/512)^2 / 8 = 5e-7.
 class Tabulated {
  public:
   template <class F>
@@ -29,7 +29,7 @@ class Tabulated {
   }
 
  private:
-  // A double's exponent and the first 9 bits behind the point count places in order.
+  // A double's exponent and the first 9 bits of its fraction number the points in order.
   static constexpr int shift = 52 - 9;
   static std::uint64_t key(double x) { return std::bit_cast<std::uint64_t>(x) >> shift; }
 

@@ -34,7 +34,7 @@ Image ToneMap::apply(const Image& xyz) const {
   const std::array<double, 9> m = rgb_space(color_space).from_xyz;
   const bool clip = clips(), encoded = transfer != "linear";
   const auto encode = [&](double value) { return encode_transfer(transfer, value); };
-  // A code value of 2^-30 is none even in 16 bits.
+  // A value of 2^-30 is encoded as 0 even in 16 bits.
   const std::optional<Tabulated> table = clip && encoded ? std::optional<Tabulated>({-30, 0, encode}) : std::nullopt;
   over_range(pixels, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -42,7 +42,7 @@ Image ToneMap::apply(const Image& xyz) const {
       const double x = v[0], y = v[1], z = v[2];
       for (size_t c = 0; c < 3; ++c) {
         double value = m[3 * c] * x + m[3 * c + 1] * y + m[3 * c + 2] * z;
-        if (clip) value = value > 0 ? std::min(value, 1.0) : 0;  // not a number: 0
+        if (clip) value = value > 0 ? std::min(value, 1.0) : 0;  // NaN becomes 0
         v[c] = table ? (*table)(value) : encoded ? encode(value) : value;
       }
     }

@@ -5,7 +5,7 @@
 namespace etendue {
 namespace {
 
-/// The smallest difference of luminance that is seen at an adaptation [cd/m^2], from measurements of rods and cones (Ward
+/// The smallest visible difference of luminance at an adaptation luminance [cd/m^2], from measurements of rods and cones (Ward
 /// Larson et al. 1997, table 1).
 double just_noticeable(double luminance) {
   const double a = std::log10(luminance);
@@ -17,18 +17,18 @@ double just_noticeable(double luminance) {
   return std::pow(10.0, threshold);
 }
 
-// Luminances l = ln L of what the eye adapts to, means over squares of one degree, are counted in bins of width D. The share
-// P(l) of those below l decides what is displayed:
+// The histogram counts the logarithms l = ln L of adaptation luminances, which are means over squares of one degree, in bins of
+// width D. The cumulative share P(l) of those below l determines the displayed luminance:
 //   ln L_d(l) = ln L_min + (ln L_max - ln L_min) P(l),
-// so that luminances which are not there use up none of the display's range. Its slope, f(l) (ln L_max - ln L_min) / (T D)
-// where f is a bin's count and T that of all, may not be larger than a ceiling: 1 (linear: contrasts are not exaggerated), or,
-// so that what cannot be told apart in the scene cannot in the picture either (human),
+// so that luminances that do not occur take no part of the display's range. The slope of this curve,
+// f(l) (ln L_max - ln L_min) / (T D) with f the count of a bin and T the total count, is limited by a ceiling: 1 (linear:
+// contrasts are not exaggerated), or (human: differences that are invisible in the scene are invisible in the picture)
 //   d ln L_d / d ln L <= (j(L_d) / L_d) / (j(L) / L),   j = just_noticeable.
-// Counts above it are cut off, again and again as T and L_d change with that, until next to nothing of T is cut. (The paper
-// stops at 2.5 % of all there was, which leaves scenes of a small range with more contrast than they have, and how much more
-// to a pixel.) If almost nothing is left the scene has less range than the display and is shown as it is, multiplied: with its
-// brightest percent as white, or, human, so that differences are seen which an eye sees there (Ward 1994, A contrast-based
-// scalefactor for luminance display):
+// Counts above the ceiling are cut off repeatedly, as T and L_d change thereby, until almost nothing of T is cut. (The paper
+// stops when less than 2.5 % of the original count is cut, which leaves scenes of a small range with more contrast than they
+// have, by an amount that may depend on a single pixel.) If almost nothing is left, the scene has less range than the display,
+// and its luminance is only multiplied by a factor: so that the brightest percent becomes white (linear), or so that
+// differences are visible that are visible in the scene (human; Ward 1994, A contrast-based scalefactor for luminance display):
 //   m = ((1.219 + (L_max / 2)^0.4) / (1.219 + L_a^0.4))^2.5   with the logarithmic mean L_a.
 class Histogram {
  public:
@@ -75,7 +75,7 @@ class Histogram {
       for (double& b : below_) b /= total_;
   }
 
-  /// False: almost nothing is left.
+  /// Cuts off the counts above the ceiling. False: almost nothing is left.
   bool trim(Ceiling ceiling) {
     const double all = total_;
     for (int i = 0; i < 1000; ++i) {
@@ -100,13 +100,13 @@ class Histogram {
   }
 
   double low_, range_, first_ = 0, total_ = 0;
-  double factor_ = 0;                   ///< 0: by the histogram
-  std::vector<double> counts_, below_;  ///< of bins; the share below the beginning of each
+  double factor_ = 0;                   ///< multiplies the luminance; 0: the histogram's curve is used
+  std::vector<double> counts_, below_;  ///< counts of the bins; cumulative share below the beginning of each bin
 };
 
-/// Means of luminance [cd/m^2] over squares of `side` pixels, those that are not black.
+/// Adaptation luminances: the means of luminance [cd/m^2] over squares of `side` pixels, without black squares.
 std::vector<double> adaptations(const Image& xyz, int side, double scale) {
-  constexpr double dimmest = 1e-4;  // less is not seen
+  constexpr double dimmest = 1e-4;  // [cd/m^2]; less is invisible
   std::vector<double> all;
   for (int y = 0; y < xyz.height; y += side)
     for (int x = 0; x < xyz.width; x += side) {
@@ -159,7 +159,7 @@ class WardHistogramToneMap final : public ExposedToneMap {
     const Histogram histogram(adaptations(xyz, side, candelas), low, high, ceiling);
     for (size_t i = 0; i + 2 < xyz.values.size(); i += 3) {
       double* v = &xyz.values[i];
-      // The display's black is there anyhow: what is displayed comes on top.
+      // The display's black is always present, so the displayed light is what is added to it.
       const double shown = v[1] > 0 ? (histogram.displayed(candelas * v[1]) - low) / (high - low) : 0;
       const double scale = shown > 0 ? std::min(shown, 1.0) / v[1] : 0;
       for (int c = 0; c < 3; ++c) v[c] *= scale;

@@ -5,15 +5,15 @@
 
 namespace etendue {
 
-/// The thesis's fixed grid: `count` cells of equal width over the range, their centres the only wavelengths there are;
-/// the image's spectrum is the Riemann sum over them. A path takes `spectrum_size` of them in rotation.
+/// The thesis's fixed grid: `count` cells of equal width over the range, whose centres are the only wavelengths; the
+/// image's spectrum is the Riemann sum over them. Each path takes `spectrum_size` of them in rotation.
 ///
 /// Sample s of a pixel has as hero the grid point p(s) = (offset + s * stride) mod count; the offset is a hash of the
-/// pixel, the stride has no factor in common with count. Lane i takes the point floor(i * count / size) further on, mod
-/// count. So over any `count` consecutive samples each lane takes every point exactly once (and when size divides count,
-/// over any count/size consecutive samples each point is taken once by just one lane), and each lane alone is uniform on
-/// the grid: probability 1/count for a cell of width (high - low)/count, the density 1/(high - low). This holds for
-/// every count; one below spectrum_size gives some lanes of a path the same wavelength, which is no error but a waste.
+/// pixel, the stride is coprime to count. Lane i takes the point floor(i * count / size) further on, mod count. So over
+/// any `count` consecutive samples each lane takes every point exactly once (and when size divides count, over any
+/// count/size consecutive samples each point is taken once by just one lane), and each lane alone is uniform on the grid:
+/// probability 1/count for a cell of width (high - low)/count, which is the pdf 1/(high - low). This holds for every
+/// count; with a count below spectrum_size some lanes of a path have the same wavelength, which is no error but a waste.
 class GridWavelengths final : public WavelengthSampler {
   int count = 40;
   float low = wavelength_low;
@@ -36,14 +36,15 @@ class GridWavelengths final : public WavelengthSampler {
     centres_.resize(size_t(count));
     for (int i = 0; i < count; ++i) centres_[size_t(i)] = float(double(low) + (i + 0.5) * (double(high) - double(low)) / count);
     for (int i = 0; i < spectrum_size; ++i) shift_[i] = std::uint32_t(i * count / spectrum_size);
-    // Consecutive samples should lie far apart among the points that are free for the hero: near the golden section.
+    // Consecutive heroes should lie far apart within the count / size points between two lanes: the stride is near the golden
+    // section of this distance.
     stride_ = std::max(1u, std::uint32_t(0.618 * count / spectrum_size + 0.5));
     while (std::gcd(stride_, std::uint32_t(count)) != 1) ++stride_;
   }
 
   Wavelengths sample(SampleKey key, float) const override {
     const std::uint32_t n = std::uint32_t(count);
-    // Not the pixel's hash itself: samplers use that, and the choice must not follow theirs.
+    // Not the pixel's hash itself, which samplers use: the offset must not be correlated with their numbers.
     const std::uint64_t offset = mix_bits(key.walk ^ 0x6a09e667f3bcc908ull) >> 32;
     const std::uint32_t hero = std::uint32_t((offset + std::uint64_t(key.sample) * stride_) % n);
     Wavelengths result;

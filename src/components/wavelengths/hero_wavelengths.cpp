@@ -6,8 +6,8 @@
 
 namespace etendue {
 
-/// A hero wavelength drawn afresh for each path and the others at equal distances in the cumulative distribution, so
-/// that each alone has the distribution's density (Wilkie et al. 2014, section 3).
+/// A hero wavelength is sampled for each path; the others are at equal distances from it in the CDF, so that each
+/// wavelength alone has the distribution's pdf (Wilkie et al. 2014, section 3).
 class HeroWavelengths final : public WavelengthSampler {
   enum class Distribution { visible, uniform };
 
@@ -32,8 +32,8 @@ class HeroWavelengths final : public WavelengthSampler {
     if (!(low < high)) fail("high", "must exceed low");
     // visible: p(lambda) ~ 1 / cosh^2(a (lambda - b)), a = 0.0072 / nm, b = 538 nm (Radziszewski et al.), cut to the
     // range. Its integral is tanh(a (lambda - b)) / a, so lambda(u) = b + atanh(t0 + u (t1 - t0)) / a with t = tanh at
-    // the ends. Between `cells` + 1 values of lambda(u) we draw linearly, and that is the distribution we state the
-    // density of: within a cell it is exactly 1 / (cells * width of the cell).
+    // the ends. lambda(u) is interpolated linearly between `cells` + 1 values, and the pdf is that of the interpolated
+    // distribution: within a cell it is exactly 1 / (cells * width of the cell).
     constexpr double a = 0.0072, b = 538;
     const double t0 = std::tanh(a * (double(low) - b)), t1 = std::tanh(a * (double(high) - b));
     const auto inverse = [&](double u) {
@@ -54,7 +54,7 @@ class HeroWavelengths final : public WavelengthSampler {
   }
 
   Wavelengths sample(SampleKey, float u) const override {
-    // A distance of 1/size in u is a whole number of cells: all wavelengths share the fraction within theirs.
+    // A distance of 1/size in u is a whole number of cells, so all wavelengths are at the same fraction of their cells.
     static_assert(cells % spectrum_size == 0);
     const float position = clamp(u, 0, one_minus_epsilon) * float(cells);
     const int cell = int(position);
@@ -68,7 +68,8 @@ class HeroWavelengths final : public WavelengthSampler {
 
  private:
   static constexpr int cells = 1024, distance = cells / spectrum_size;
-  /// The cells whose wavelengths go together, in order and once more: from any of them on, the others follow in turn.
+  /// The cells of wavelengths that are sampled together, in order and repeated once, so that the cells that follow any of them
+  /// cyclically are contiguous.
   struct Column {
     float low[2 * spectrum_size], width[2 * spectrum_size];  // nm
     float pdf[2 * spectrum_size];                            // 1/nm

@@ -6,12 +6,12 @@
 #include <map>
 #include <mutex>
 
-#include "components/importers/permissions.h"
 #include "compression.h"
 #include "data_uri.h"
 #include "files/contained_file.h"
 #include "files/gzip.h"
 #include "files/regular_file.h"
+#include "formats/permissions.h"
 #include "primitive.h"
 
 namespace etendue::gltf {

@@ -13,7 +13,7 @@ struct Projected {
 };
 
 /// Sets a point's surface coordinates and the corresponding tangents: dpdu and dpdv are the steps in the surface that change
-/// one coordinate by 1 and keep the other. Gradients are in the coordinates in which the renderer traces rays.
+/// one coordinate by 1 and keep the other. Gradients are in rendering space.
 void set_uv(SurfacePoint&, const Projected&);
 
 /// u = atan2(y, x) / (2 pi) in [0, 1), and its gradient.

@@ -7,8 +7,8 @@
 namespace etendue {
 namespace {
 
-// All members of the surface point are transformed, in object space and in world space: positions, tangents and the axes of the
-// footprint by the transform, normals by its inverse transpose. So the map returns what it would return on an object of the
+// All members of the surface point are transformed, in object space and in rendering space: positions, tangents and the axes of
+// the footprint by the transform, normals by its inverse transpose. So the map returns what it would return on an object of the
 // transformed shape and position. The surface coordinates (u, v) are not changed.
 class TransformedMap final : public ObjectMap, public BoundedMap {
  public:
@@ -35,7 +35,7 @@ class TransformedMap final : public ObjectMap, public BoundedMap {
   bool world = false;
 
  private:
-  /// The transform in world coordinates with the origin at `centre`, as the renderer uses them.
+  /// A transform of world space, expressed in rendering space with the origin `centre`.
   Transform counted_in(const DoublePoint3& centre, float time) const {
     AnimatedTransform counted = transform.written(time);
     counted.count_from(centre, centre);
@@ -51,7 +51,7 @@ class TransformedMap final : public ObjectMap, public BoundedMap {
     if (far) scratch = counted_in(p.object->world_centre, p.time);
     const Transform& t = far ? scratch : placed(transform, p.time, scratch);
     const Transform& place = placement(point, place_scratch);
-    // Transform a vector, a normal or a position: `outside` one in the renderer's coordinates, `inside` one in object space.
+    // Transform a vector, a normal or a position: `outside` one in rendering space, `inside` one in object space.
     const auto outside = [&](const auto& x) { return world ? t(x) : place(t(place.back(x))); };
     const auto inside = [&](const auto& x) { return world ? place.back(t(place(x))) : t(x); };
     const auto normal_outside = [&](const Normal3& n) { return normalize(world ? t(n) : place(t(normal_into(place, n)))); };

@@ -68,9 +68,9 @@ class Metaballs final : public ImplicitObject {
 
  protected:
   double field(const Place& x) const override {
-    double pdf = 0;
-    for_balls_at(x, [&](const Ball& ball, double u) { pdf += ball.strength * u * u * u; });
-    return double(threshold) - pdf;
+    double density = 0;
+    for_balls_at(x, [&](const Ball& ball, double u) { density += ball.strength * u * u * u; });
+    return double(threshold) - density;
   }
   Place gradient(const Place& x) const override {
     Place g{};

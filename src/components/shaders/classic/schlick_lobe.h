@@ -12,18 +12,19 @@ namespace etendue {
 // p = 1 is isotropic, A = 1; scratches along x spread the light across x.
 //
 // Sampling. The integral of Z t over the hemisphere of h is pi; t^2 = a / (r - a r + a) for uniform a. The mean of A over the
-// azimuth is the complete elliptic integral 2 sqrt(p) K / pi = sqrt(p) / M(1, p), with M the arithmetic-geometric mean; it is
-// at most 1, as M(1, p) >= sqrt(p). The paper's own formula for the azimuth does not sample A; the exact one is Jacobi's
-// amplitude, phi = am(K x) in each quarter turn x, by descending Landen steps (Abramowitz & Stegun 16.4). So the pdf of h is Z
-// A t / (pi mean) [1/sr], and the albedo of D is the mean over sampled h of mean G(v') u / (t (v (1 - r) + r)).
+// azimuth, called `mean` here, is the complete elliptic integral 2 sqrt(p) K / pi = sqrt(p) / M(1, p), with M the
+// arithmetic-geometric mean; it is at most 1, as M(1, p) >= sqrt(p). The paper's own formula for the azimuth does not sample A;
+// the exact one is Jacobi's amplitude, phi = am(K x) in each quarter turn x, by descending Landen steps (Abramowitz & Stegun
+// 16.4). So the pdf of h is Z A t / (pi mean) [1/sr], and the albedo of D is the average over sampled h of mean G(v') u / (t (v
+// (1 - r) + r)).
 //
 // Energy. This albedo exceeds 1 at grazing angles where r < 1/4, because G masks less than a surface of such slopes does
 // (Smith's masking function for the same Z sets in at v of about sqrt(r), G at about r). As G(v') <= 1, the albedo is at most
 //   B(v) = (integral of Z A max(u, 0) / pi over h) / (v (1 - r) + r).
 // For p = 1 the integral is (v + sqrt(r + (1 - r) v^2)) / 2. Otherwise there are two bounds. h and h rotated by half a turn are
-// equally probable; the mean of their u is largest when all h are in the azimuth of `out`, so the integral is at most mean (v +
-// sqrt(r) s / 2 atan(sqrt(r) s / v)) with s the sine of `out`. And A <= 1 / sqrt(p), so it is at most the isotropic one over
-// sqrt(p). So D / max(1, B(v), B(v')) is reciprocal, equal to D where no bound exceeds 1, and never creates energy.
+// equally probable; the average of their u is largest when all h are in the azimuth of `out`, so the integral is at most mean
+// (v + sqrt(r) s / 2 atan(sqrt(r) s / v)) with s the sine of `out`. And A <= 1 / sqrt(p), so it is at most the isotropic one
+// over sqrt(p). So D / max(1, B(v), B(v')) is reciprocal, equal to D where no bound exceeds 1, and never creates energy.
 class SchlickLobe {
  public:
   SchlickLobe() = default;

@@ -1,4 +1,4 @@
-// BumpShader: bumps that are seen only by how they are lit.
+// BumpShader: bump mapping, which perturbs the shading normal by a height map.
 
 #include "components/maps/footprint.h"
 #include "etendue/object_map.h"
@@ -9,16 +9,16 @@ namespace {
 
 // A surface p(u, v) with unit normal n, raised by h(u, v) along n, has the tangents
 //     p'_u = p_u + h_u n + h n_u   and likewise for v                                     (Blinn 1978, eqs. 1 to 3).
-// The last term is left out as there: h is small against the radius of curvature. The normal p'_u x p'_v is then along
+// The last term is neglected, as by Blinn: h is small against the radius of curvature. The normal p'_u x p'_v is then along
 //     n - grad h,   grad h = (h_u (p_v x n) + h_v (n x p_u)) / (p_u x p_v . n),
-// the gradient in the surface [m/m], which does not depend on how u and v are laid out or which way round they go. n is the
-// shading normal, so bumps add to interpolated normals; tangents are taken as they lie in the plane across it.
+// the gradient in the surface [m/m], which does not depend on the parametrization by u and v or on its orientation. n is the
+// shading normal, so bumps add to interpolated normals; tangents are projected to the plane perpendicular to it.
 //
-// h_u and h_v are central differences of the map. The point is moved in all that maps look at: u and v, the position, and
-// the position in the object's own coordinates. The step is as short as floats allow: 1e-5 of the largest coordinate, 80 to 170
-// units in its last place, so that rounding of coordinates changes a slope by less than 1 %; and a 100000th of the parameter's
-// range where the coordinates are small. Steps of a height are thus walls without width, which nothing sees. Where maps are
-// averaged over a footprint, the step is half of that.
+// h_u and h_v are central differences of the map. The point is moved in all coordinates that maps use: u and v, and the
+// position in world space and in object space. The step is as short as floats allow: 1e-5 of the largest coordinate, 80 to 170
+// units in its last place, so that rounding of coordinates changes a slope by less than 1 %; and 1e-5 of the parameter's range
+// where the coordinates are small. Discontinuities of the height thus have no visible width. Where maps are averaged over a
+// footprint, the step is half of that.
 class BumpShader final : public PerturbedNormalShader {
  public:
   static void describe(Description<BumpShader>& d) {
@@ -48,7 +48,7 @@ class BumpShader final : public PerturbedNormalShader {
     if (flat_) return n;
     const Vector3 s = p.dpdu - dot(n, p.dpdu) * n, t = p.dpdv - dot(n, p.dpdv) * n;
     const float determinant = dot(cross(s, t), n), s2 = length_squared(s), t2 = length_squared(t);
-    if (!(determinant * determinant > 1e-12f * s2 * t2)) return n;  // no coordinates, or they run all one way
+    if (!(determinant * determinant > 1e-12f * s2 * t2)) return n;  // no tangents, or they are parallel
     Transform scratch;
     const Transform& placed_by = placement(p, scratch);
     const float along_u = slope(p, p.dpdu, {1, 0}, placed_by), along_v = slope(p, p.dpdv, {0, 1}, placed_by);

@@ -1,4 +1,4 @@
-// MaskShader: a surface with holes, finer than the eye can see or drawn by a map.
+// MaskShader: a surface with holes, drawn by a map or too fine to resolve (opacity).
 
 #include "components/shaders/part_choice.h"
 #include "components/shaders/scalar_map.h"
@@ -6,12 +6,12 @@
 namespace etendue {
 namespace {
 
-// With opacity a, f = a f_below, and the fraction 1 - a of light goes straight on, around which there is no cosine and no
-// normal: the lobe is the same for radiance and importance, and the same from both sides.
+// With opacity a, f = a f_below, and the fraction 1 - a of light gets null scattering, which involves no cosine and no normal:
+// it is the same for radiance and importance, and the same from both sides.
 //
-// Sampling chooses between the two in proportion to 1 - a and a times the albedo below. Light that the shader below itself
-// lets straight on comes from the second. When only what goes straight on is asked for there is nothing to choose: the
-// weight is the whole fraction, 1 - a + a t, which shadow rays rely on.
+// Sampling chooses between null scattering and the shader below, in proportion to 1 - a and a times the albedo below. Null
+// scattering by the shader below belongs to the second. If only null scattering is requested nothing is chosen: the weight is
+// the whole fraction, 1 - a + a t with t that of the shader below, on which shadow rays rely.
 class MaskScatter final : public ScatterCombination {
  public:
   MaskScatter(const SurfacePoint& p, const Scatter* below, float opacity)
@@ -85,7 +85,7 @@ class MaskShader final : public Shader {
   Spectrum interior_index(const Wavelengths& w) const override { return shader->interior_index(w); }
   bool transmits() const override { return !opaque_ || shader->transmits(); }
   bool lossless() const override { return shader->lossless(); }
-  // As in a mixture: a walk beneath the surface comes out without asking how much surface is there.
+  // As in MixShader: a subsurface exit does not depend on the opacity at the exit point.
   bool reciprocal() const override { return shader->reciprocal() && !(has_subsurface_exit() && !opacity->constant()); }
   bool stochastic() const override { return shader->stochastic(); }
   float albedo_error() const override { return shader->albedo_error(); }

@@ -1,4 +1,4 @@
-// MixShader: some of one surface and some of another, finer than the eye can see.
+// MixShader: a weighted mean of two shaders.
 
 #include "components/shaders/part_choice.h"
 #include "components/shaders/scalar_map.h"
@@ -6,18 +6,18 @@
 namespace etendue {
 namespace {
 
-// f = (1 - a) f1 + a f2. The mixture is computed, not drawn: a point has both.
+// f = (1 - a) f1 + a f2. The mixture is evaluated: `bind` does not choose one of the two at random.
 //
-// Shading normals. The parts may have different ones (a bumped part). Each part's public calls give f |cos| by its own; these
-// are what is summed. The adjoint stays right, as it is linear in them (scatter_answers.h).
+// Shading normals. The parts may have different ones (a bumped part). Each part's public calls return f |cos| by its own
+// normal, and these values are summed. The adjoint stays right, as it is linear in them (scatter_answers.h).
 //
-// Sampling. A part is chosen with probability P_k, in proportion to its share times its albedo, and gives a direction. That
-// could have come from either part, so the density is P_1 p_1 + P_2 p_2 and the weight
+// Sampling. A part is chosen with probability P_k, in proportion to its share times its albedo, and samples a direction. Either
+// part could have sampled it, so the pdf is P_1 p_1 + P_2 p_2 and the weight
 //     ((1 - a) f1 |cos| + a f2 |cos|) / (P_1 p_1 + P_2 p_2),
-// the balance heuristic. For a specular sample it is that part's share of its weight over P_k. Where a part is stochastic its
-// p_k is not the true density of its samples: dividing by it would be wrong, so a sample then stands for its own part alone,
-// with weight share * weight / P_k. The density returned is the same sum, all the same: comparing densities needs only one
-// and the same function in all places.
+// the balance heuristic. For a specular sample the weight is the part's own, times its share over P_k. If a part is stochastic,
+// its p_k is not the true pdf of its samples, and dividing by it would be wrong: a sample then counts for its own part alone,
+// with weight share * weight / P_k. The pdf returned is the same sum nevertheless: MIS weights only need the same function in
+// all places.
 class MixScatter final : public ScatterCombination {
  public:
   MixScatter(const SurfacePoint& p, const Scatter* first, const Scatter* second, float amount, bool stochastic)
@@ -25,7 +25,7 @@ class MixScatter final : public ScatterCombination {
         parts_{first, second},
         shares_{1 - amount, amount},
         stochastic_(stochastic) {
-    // Where one has been tilted, it is its normal that pictures of normals show.
+    // If one part has a perturbed shading normal, images of normals show that one.
     frame_ = first && (!second || !(first->frame().n == p.shading_normal)) ? first->frame() : second->frame();
   }
 
@@ -43,7 +43,7 @@ class MixScatter final : public ScatterCombination {
 
   std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
                                             Lobes which) const override {
-    // Both parts' light goes the same way: all of it, without choosing.
+    // Null scattering of both parts has the same direction: the sum is returned, without choosing.
     if (which == null_scattering)
       return straight_on(
           out,
@@ -103,7 +103,7 @@ class MixShader final : public Shader {
     if (!first) fail("first", "a shader is needed");
     if (!second) fail("second", "a shader is needed");
     require_scalar(*this, "amount", amount);
-    // The walk beneath the surface is asked for without saying which part the light went in by.
+    // sample_exit does not receive the part by which the light entered, so only one part may let light in.
     const bool one = first->has_subsurface_exit(), two = second->has_subsurface_exit();
     constexpr Lobes inwards = transmission_lobes & ~null_scattering;
     if ((one && two) || (one && (second->possible_lobes() & inwards)) || (two && (first->possible_lobes() & inwards)))
@@ -125,8 +125,8 @@ class MixShader final : public Shader {
   Spectrum interior_index(const Wavelengths& w) const override { return interior_index_of(*first, *second, w); }
   bool transmits() const override { return first->transmits() || second->transmits(); }
   bool lossless() const override { return first->lossless() && second->lossless(); }
-  // A walk beneath the surface weighs the amount where light goes in and not where it comes out: from place to place
-  // these differ.
+  // Subsurface scattering is weighted by the amount at the entry point and not at the exit point: if the amount is not
+  // constant, these differ.
   bool reciprocal() const override {
     return first->reciprocal() && second->reciprocal() && !(has_subsurface_exit() && !amount->constant());
   }

@@ -11,13 +11,14 @@
 namespace etendue {
 namespace {
 
-// An image of normals in the surface's own frame: red, green and blue in [0, 1] are x, y and z in [-1, 1], x along the
-// direction in which u grows, y across it on the side to which v grows (or, by `green`, always on its left), z along the
-// shading normal (Cohen et al. 1998, "Appearance-preserving simplification"). It is read by its numbers: a map of colours would
-// make spectra of them, and three directions do not survive that.
+// An image of normals in the surface's tangent frame: red, green and blue in [0, 1] are x, y and z in [-1, 1], x along the
+// direction in which u grows, y perpendicular to it on the side to which v grows (or, by `green`, always to the left of it), z
+// along the shading normal (Cohen et al. 1998, "Appearance-preserving simplification"). Its raw numbers are read: a map of
+// colours would convert them to spectra, from which the three components cannot be recovered.
 //
-// Between texels the vectors are interpolated linearly. They are not averaged over what a pixel sees: the mean of tilted
-// normals is a flat surface, which is not how a rough one looks. The samples of a pixel average what the normals do instead.
+// Between texels the vectors are interpolated linearly. They are not filtered over the pixel's footprint: the mean of tilted
+// normals is a flat surface, which does not look like a rough one. Instead, the radiance for each normal is averaged by the
+// samples of a pixel.
 class NormalMapShader final : public PerturbedNormalShader {
  public:
   static void describe(Description<NormalMapShader>& d) {
@@ -92,13 +93,13 @@ class NormalMapShader final : public PerturbedNormalShader {
     v.y *= flip_y ? -strength : strength;
     v.z = std::max(v.z, 1e-3f);
     Frame frame = tangent_frame(p);
-    if (green == Green::v && dot(frame.t, p.dpdv) < 0) frame.t = -frame.t;  // v runs the other way round
+    if (green == Green::v && dot(frame.t, p.dpdv) < 0) frame.t = -frame.t;  // mirrored coordinates: v grows to the other side
     return frame.to_world(v);
   }
 
  private:
   Vector3 ask(SurfacePoint p) const {
-    p.footprint = 0;  // not averaged, see above
+    p.footprint = 0;  // not filtered, see above
     float c[3];
     source_->rgb(p, c);
     const Vector3 v{2 * c[0] - 1, 2 * c[1] - 1, 2 * c[2] - 1};
@@ -122,7 +123,7 @@ class NormalMapShader final : public PerturbedNormalShader {
     return {decoded(t[0]), decoded(t[1]), decoded(t[2])};
   }
 
-  // Sixteen bits hold what images of normals have; as floats a large one would take twice the memory.
+  // Sixteen bits are enough for the precision of normal maps; floats would take twice the memory.
   std::vector<std::uint16_t> texels_;
   int width_ = 0, height_ = 0;
   const RgbSource* source_ = nullptr;  // of `map`, when there is no file

@@ -7,20 +7,20 @@
 namespace etendue {
 namespace {
 
-// Shadowing. A tilted normal is taken for a slope of a rough surface that has hardly any steeper ones. Facets in GGX's
-// distribution with such an alpha let through, of light at the angle theta to the normal that is not tilted,
+// Shadowing. A perturbed normal is treated as one of the steepest facets of a rough surface. A GGX distribution of the
+// corresponding alpha transmits, of light at the angle theta with the unperturbed normal, the fraction
 //     2 / (1 + sqrt(1 + alpha^2 tan^2 theta)),   alpha^2 = min(tan^2(tilt) / 8, 1)
-// (Conty Estevez, Lecocq & Stein 2019, equations 1 to 3), a function of where light comes from alone.
+// (Conty Estevez, Lecocq & Stein 2019, equations 1 to 3), a function of the direction of the light alone.
 //
-// Opposite slopes. Who looks from where the tilted normal faces away sees the slope tilted as far the other way (Schuessler et
-// al. 2017, section 3). Viewers are at `out` on paths from the camera, and at `in` on those from lights: there the slope is
-// known only when the direction is. So one of the two, drawn with probability 1/2, gives the direction, the density is
-// the mean of both, and the value is that of the slope which the direction sees. Both are so for importance the adjoint of
-// what they are for radiance. What a slope that is not seen gives counts nothing, and twice what the seen one gives, where
-// values cannot be asked for: of mirrors, of what goes straight on, and of shaders that draw them (`stochastic`).
+// Opposite slopes. A viewer from whom the perturbed normal faces away sees the facet that is tilted as far the other way
+// (Schuessler et al. 2017, section 3). The viewer is at `out` for radiance and at `in` for importance, where the visible facet
+// is known only after `in` has been sampled. So for importance one of the two facets, each with probability 1/2, samples the
+// direction, the pdf is the mean of both, and the value is that of the facet visible from `in`. Values for importance are thus
+// the adjoint of those for radiance. Where values cannot be evaluated (delta lobes, null scattering, and shaders that are
+// `stochastic`), samples of the facet that is not visible have weight 0, and those of the visible one twice their weight.
 class TiltedScatter final : public ScatterCombination {
  public:
-  /// `opposite`: null, the tilt is seen from everywhere.
+  /// `opposite` null: the perturbed normal is used from all directions.
   TiltedScatter(const SurfacePoint& p, const Normal3& tilted, const Scatter* own, const Scatter* opposite, float alpha2,
                 bool stochastic)
       : ScatterCombination(p, Lobes(own->lobes() | (opposite ? opposite->lobes() : no_lobes))),

@@ -1,13 +1,12 @@
 #pragma once
-// Shaders that tilt the shading normal and leave the rest to another shader.
+// PerturbedNormalShader: base class of shaders that perturb the shading normal of another shader.
 
 #include "etendue/shader.h"
 
 namespace etendue {
 
-/// The shader below is bound at the same point with another shading normal. Nothing else is to be done: the corrections for
-/// shading normals that are not the surface's, for radiance and importance, are made by Scatter's public calls, and a Scatter
-/// knows its own normal.
+/// Binds the shader below at the same point with another shading normal. Nothing else is needed: Scatter's public calls make
+/// the corrections for shading normals, for radiance and importance, and a Scatter holds its own normal.
 class PerturbedNormalShader : public Shader {
  public:
   const Scatter* bind(const SurfacePoint&, const Wavelengths&, Arena&) const override;
@@ -15,11 +14,11 @@ class PerturbedNormalShader : public Shader {
   Spectrum interior_index(const Wavelengths& w) const override { return shader->interior_index(w); }
   bool transmits() const override { return shader->transmits(); }
   bool lossless() const override { return shader->lossless() && !shadowing; }
-  // Light that leaves elsewhere leaves by the normal of the surface there.
-  /// By its own, turned, cosines it is, not by those of what it is part of.
+  // A subsurface exit has the normal of the surface at the exit point.
+  /// f is reciprocal with the cosines of its own perturbed normal, but not with those of a combination that it is part of.
   bool reciprocal() const override { return false; }
   bool stochastic() const override { return shader->stochastic(); }
-  /// What is lost to shadowing is not counted.
+  /// The albedo does not include the loss by shadowing.
   float albedo_error() const override { return shadowing ? 0.5f : shader->albedo_error(); }
   bool has_subsurface_exit() const override { return shader->has_subsurface_exit(); }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
@@ -45,7 +44,7 @@ class PerturbedNormalShader : public Shader {
             "whether who looks at a slope from behind sees instead the one tilted the other way (Schuessler et al. 2017, "
             "Microfacet-based normal mapping for robust Monte Carlo path tracing); without, the slope is seen from there too");
   }
-  /// A vector along the new normal, of any length; `p` has its tangents. What is no direction leaves the normal as it is.
+  /// A vector along the new normal, of any length; `p` has its tangents. If it is zero or not finite, the normal is unchanged.
   virtual Vector3 tilted(const SurfacePoint& p) const = 0;
 
  private:
@@ -58,7 +57,7 @@ class PerturbedNormalShader : public Shader {
     p.shading_normal = above_surface(n / std::sqrt(n2), p);
     return p;
   }
-  /// A shading normal is on the front of the surface: one beyond is turned back to just above it. `n` is unit.
+  /// Keeps a shading normal on the front of the surface: one behind it is rotated to just above it. `n` is unit.
   static Normal3 above_surface(Vector3 n, const SurfacePoint& p) {
     constexpr float least = 0.02f;
     const float cosine = dot(n, p.normal);

@@ -1,4 +1,4 @@
-// TwoSidedShader: a surface that looks otherwise from behind.
+// TwoSidedShader: one shader for the front of a surface and another for the back.
 
 #include "components/shaders/part_choice.h"
 #include "etendue/shader.h"
@@ -6,8 +6,9 @@
 namespace etendue {
 namespace {
 
-// Neither part lets light through, so a pair of directions lies on one side, and f is that side's part: nothing is chosen, and
-// densities and adjoints are those of the part. Sides are those of the geometric normal, whatever normals the parts have.
+// Neither part transmits light, so a pair of directions lies on one side, and f is that of this side's part: nothing is chosen
+// at random, and pdfs and adjoints are those of the part. Sides are those of the geometric normal, whatever shading normals the
+// parts have.
 class TwoSidedScatter final : public ScatterCombination {
  public:
   TwoSidedScatter(const SurfacePoint& p, const Scatter* front, const Scatter* back)
@@ -15,7 +16,7 @@ class TwoSidedScatter final : public ScatterCombination {
         towards_front_(p.normal),
         front_(front),
         back_(back) {
-    // Where one has been tilted, it is its normal that pictures of normals show.
+    // If one part has a perturbed shading normal, images of normals show that one.
     frame_ = front && (!back || !(front->frame().n == p.shading_normal)) ? front->frame() : back->frame();
   }
 

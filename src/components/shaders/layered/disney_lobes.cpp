@@ -14,8 +14,8 @@ Spectrum schlick(Spectrum f0, float cosine, float eta) {
 
 namespace {
 
-/// Of lobes without facets, by the cosine. The diffuse lobe is a polynomial of second degree in the roughness, so three values
-/// of that tell all.
+/// Albedos of the lobes without facets, by the cosine. The diffuse lobe is a polynomial of second degree in the roughness, so
+/// its values at three roughnesses are enough.
 struct SmoothTable {
   static constexpr int count = 49;
   float diffuse_at[count][2][3] = {}, sheen_at[count] = {};  // diffuse: by cosine, flatness 0 and 1, roughness 0, 1/2 and 1
@@ -25,7 +25,7 @@ struct SmoothTable {
     for (int i = 0; i < count; ++i) {
       const float c = std::max(square(float(i) / (count - 1)), 1e-5f), s = safe_sqrt(1 - c * c);
       for (int k = 0; k < steps * turns; ++k) {
-        // in.z^2 uniform: the cosine is in the density.
+        // in.z^2 is uniform: the pdf contains the cosine.
         const float z = std::sqrt((float(k / turns) + 0.5f) / steps), r = safe_sqrt(1 - z * z);
         const float turn = pi * (float(k % turns) + 0.5f) / turns;
         const float u = 0.5f * std::sqrt(std::max(2 + 2 * (c * z + s * r * std::cos(turn)), 0.0f));
@@ -48,8 +48,8 @@ const SmoothTable& smooth_table() {
   return made;
 }
 
-/// Of facets with F = (1 - u)^5, by the roots of alpha and of the cosine. Towards a lower index, eta < 1, u is the cosine
-/// behind.
+/// Albedo of facets with F = (1 - u)^5, by the roots of alpha and of the cosine. Towards a lower index, eta < 1, u is the
+/// cosine of the refracted direction.
 struct GrazingTable {
   static constexpr int count = 25;
   float value[count][count] = {};
@@ -75,7 +75,8 @@ struct GrazingTable {
       }
   }
 
-  /// Between them, or, as beyond the critical angle all is reflected at once, the greater of two neighbours.
+  /// Interpolated along the cosine if `between`, else the greater of two neighbours, because reflection becomes total abruptly
+  /// at the critical angle.
   float at(float alpha, float cosine, bool between) const {
     constexpr int last = count - 1;
     const float a = std::sqrt(std::min(alpha, 1.0f)) * last, c = std::sqrt(std::abs(cosine)) * last;
@@ -101,7 +102,7 @@ float grazing_albedo(float alpha, const Vector3& v, float eta) {
   return lerp(x - float(i), inside[i].at(alpha, v.z, false), inside[i + 1].at(alpha, v.z, false));
 }
 
-/// The least and the greatest value for the alphas across and along the grooves and between them.
+/// The least and the greatest value for the alphas across and along the grooves and their geometric mean.
 template <class Albedo>
 Bounds bounds(const MicrofacetDistribution& d, const Albedo& of) {
   const float between = of(std::sqrt(d.alpha_x * d.alpha_y));
@@ -153,7 +154,8 @@ Bounds whole_albedo(const MicrofacetDistribution& d, const Vector3& v) {
   return bounds(d, [&](float alpha) { return 1 - MultipleReflection({d.kind, alpha}).missing(v); });
 }
 
-// Close to an index of 1, Fresnel's F rises within the last degree, between two places of the table.
+// Close to an index of 1, F rises within the last degree, between two entries of the table: the least value is then that of a
+// smooth boundary.
 Bounds dielectric_albedo(const MicrofacetDistribution& d, const Vector3& v, float eta) {
   const auto table = [&](float alpha) { return 1 - CoatTransmittance({d.kind, alpha}, clamp(eta, 0.25f, 4))(v); };
   const auto [least, greatest] = bounds(d, table);

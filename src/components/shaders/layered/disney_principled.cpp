@@ -13,7 +13,7 @@
 namespace etendue {
 namespace {
 
-/// At a point. `body` and `glass` are the weights of what reflects diffusely and of what refracts.
+/// The parameters at a point. `body` and `glass` are the weights of the diffuse and of the refracting part.
 struct DisneyParts {
   Spectrum color, tint = Spectrum(1.0f);
   float roughness, metallic, spec_tint, sheen, sheen_tint, flatness, clearcoat, coat_alpha, eta, body, glass;
@@ -21,12 +21,11 @@ struct DisneyParts {
   MicrofacetDistribution facets;
 };
 
-/// What becomes of the light that the added lobes would make or lose.
+/// What is done about energy that the added lobes would create or lose.
 enum class Energy : std::uint8_t { limited, kept };
 
-// The same material as layers that make no light and lose none (principled_scatter.cpp): what the shine reflects does not come
-// to the body, light that facets scatter more than once is added, and whatever meets the body from within the glass is
-// scattered there.
+// The same material as energy-conserving layers (principled_scatter.cpp): light that the specular lobe reflects does not reach
+// the body, multiple scattering between facets is added, and light that hits the body from inside the glass is scattered there.
 PrincipledLayers layers_of(const DisneyParts& d) {
   constexpr float rough = 1.01f * MicrofacetDistribution::smooth_below, highest_ratio = 4;
   PrincipledLayers l;
@@ -55,9 +54,9 @@ PrincipledLayers layers_of(const DisneyParts& d) {
 // With h the half-vector, u its cosine with either direction and D, G1 those of GGX:
 //   f = body color diffuse / pi + sheen (1 - metallic) (1 - u)^5 tint
 //     + F(u) D(h) G1(out) G1(in) / (4 |out.z in.z|) + clearcoat / 4 (0.04 + 0.96 (1 - u)^5) D1(h) G1'(out) G1'(in)
-// from the front, F being a mixture of the dielectric's, a tinted and a metal's; from behind only the dielectric's share glass
-// F. What is refracted is that of a rough dielectric times glass sqrt(color). D1 is GTR with exponent 1 (Burley 2012, eq. 4),
-// and G1' that of GGX with alpha 1/4. The clear coat has, as in the renderer this is taken from, no 1 / (4 |out.z in.z|).
+// from the front, F being a mixture of a dielectric's, a tinted and a metal's reflectance; from behind only the dielectric's,
+// with the factor glass F. Refraction is that of a rough dielectric times glass sqrt(color). D1 is GTR with exponent 1 (Burley
+// 2012, eq. 4), and G1' that of GGX with alpha 1/4. As in Mitsuba 3, the clear coat has no 1 / (4 |out.z in.z|).
 class DisneyScatter final : public JointScatter<DisneyScatter> {
  public:
   DisneyScatter(const SurfacePoint& p, const Frame& frame, const DisneyParts& parts)
@@ -132,7 +131,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
         s.eta = towards(out);
       }
     }
-    if ((s.in.z * out.z > 0) == (s.lobe == glossy_transmission)) return false;  // another facet is in the way
+    if ((s.in.z * out.z > 0) == (s.lobe == glossy_transmission)) return false;  // blocked by another facet
     const ScatterValue both = local_value_and_pdf(out, s.in, which);
     s.value = both.value * std::abs(s.in.z);
     s.pdf = both.pdf;
@@ -153,7 +152,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
   }
 
  private:
-  /// What shares are: bounds, which no albedo exceeds, or the middle between the greatest and the least.
+  /// What `shares` returns: upper bounds of the albedos, or the middle between the greatest and the least.
   enum class Near : std::uint8_t { bound, middle };
   struct Shares {
     Spectrum diffuse, facets, refracted;
@@ -163,12 +162,12 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
     float diffuse = 0, coat = 0, facets = 0;
   };
 
-  /// What lets no light through looks the same from both sides; of glass the back is the way out.
+  /// An opaque surface looks the same from both sides; the back of glass is the boundary seen from inside.
   bool turned(const Vector3& out) const { return d_.opaque && out.z < 0; }
   static Vector3 mirrored(const Vector3& v) { return {v.x, v.y, -v.z}; }
   float towards(const Vector3& out) const { return out.z > 0 ? d_.eta : 1 / d_.eta; }
   Spectrum sheen() const { return disney::mix(d_.sheen_tint, Spectrum(1.0f), d_.tint) * (d_.sheen * (1 - d_.metallic)); }
-  /// Of a facet that a dielectric's F is f for.
+  /// The Fresnel factor of a facet of which `f` is the dielectric's reflectance.
   Spectrum fresnel(float f, float u, bool front) const {
     if (!front) return Spectrum(d_.glass * f);
     Spectrum sum((1 - d_.metallic) * (1 - d_.spec_tint) * f);
@@ -186,7 +185,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
     Shares a;
     const bool bound = near == Near::bound;
     const auto of = [bound](const disney::Bounds& b) { return bound ? b.greatest : 0.5f * (b.least + b.greatest); };
-    // What is not lost to facets that are in each other's way.
+    // The fraction that is not lost to masking by other facets.
     const float kept = bound ? 1 : 1 - MultipleReflection(d_.facets).missing(out);
     const disney::Bounds reflected = disney::dielectric_albedo(d_.facets, out, towards(out));
     const float dielectric = of(reflected) * kept;
@@ -205,7 +204,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
     if (d_.body > 0)
       a.diffuse = d_.color * (d_.body * disney::diffuse_albedo(out.z, d_.roughness, d_.flatness)) +
                   sheen() * disney::sheen_albedo(out.z);
-    // Towards a lower index slopes that are a little steeper may be beyond the critical angle.
+    // Towards a lower index, slightly steeper facets may be beyond the critical angle.
     const float steeper = safe_sqrt(1 - square(d_.coat_alpha)) * out.z - d_.coat_alpha * safe_sqrt(1 - out.z * out.z);
     const float u = d_.eta < 1 ? std::max(steeper, 0.0f) : out.z;
     a.coat = d_.clearcoat * disney::schlick(Spectrum(0.04f), u, d_.eta)[0] * square(out.z);
@@ -214,7 +213,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
   static Spectrum scale_of(const Shares& a) {
     return map(a.diffuse + a.facets + a.refracted + Spectrum(a.coat), [](float x) { return x > 1 ? 1 / x : 1; });
   }
-  /// See disney_lobes.h. From behind nothing is added to what a dielectric does.
+  /// The factor min(s(out), s(in)) of disney_lobes.h. From behind there is only the dielectric, and s = 1.
   Spectrum kept(const Vector3& out, const Vector3& in) const {
     const Spectrum a = out.z > 0 ? scale_of(shares(out)) : Spectrum(1.0f), b = in.z > 0 ? scale_of(shares(in)) : Spectrum(1.0f);
     const detail::Lanes x = a.lanes(), y = b.lanes();
@@ -233,7 +232,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
     if (!(sum > 0)) return {};
     return {c.diffuse / sum, c.coat / sum, c.facets / sum};
   }
-  /// Of a facet: that it reflects and does not refract.
+  /// The probability that a facet reflects rather than refracts.
   float reflect_chance(float f, float u, bool front, Lobes which) const {
     if (!(which & glossy_reflection)) return 0;
     if (!(which & glossy_transmission) || f >= 1) return 1;
@@ -258,7 +257,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
   }
 
   DisneyParts d_;
-  Spectrum root_;  ///< of the colour: light passes two surfaces of a body
+  Spectrum root_;  ///< square root of the colour: light passes two surfaces of a body
 };
 
 class DisneyPrincipled final : public Shader {
@@ -331,7 +330,7 @@ class DisneyPrincipled final : public Shader {
     d.eta = ior;
     if (const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr)
       d.eta /= MediumStack::index(outside, w).average();
-    if (d.glass > 0 && std::abs(d.eta - 1) < 1e-3f) d.eta = 1.001f;  // facets that do not bend light have no density
+    if (d.glass > 0 && std::abs(d.eta - 1) < 1e-3f) d.eta = 1.001f;  // facets that do not refract light give it no pdf
     if (d.spec_tint > 0 || (d.sheen > 0 && d.sheen_tint > 0)) d.tint = disney::tint_of(*base_color, d.color, p);
     const float stretch = scalar_at(*anisotropic, p);
     d.facets = disney::facets(d.roughness, stretch);
@@ -339,7 +338,7 @@ class DisneyPrincipled final : public Shader {
       return arena.make<PrincipledScatter>(p, stretch > 0 ? tangent_frame(p) : Frame(p.shading_normal), layers_of(d));
     return arena.make<DisneyScatter>(p, stretch > 0 ? tangent_frame(p) : Frame(p.shading_normal), d);
   }
-  /// Shares are the middle between bounds, and what keeps the sum below 1 is taken for `out` alone.
+  /// The lobes' shares are the middle between bounds, and the factor that keeps the sum at most 1 is taken for `out` alone.
   float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override {
     return Lobes(diffuse_reflection | glossy_reflection | (everywhere(spec_trans, 0) ? 0 : glossy_transmission));

@@ -13,15 +13,16 @@ namespace {
 
 struct SheetParts {
   Spectrum color, tint = Spectrum(1.0f);
-  float roughness, spec_tint, sheen, sheen_tint, flatness, eta, clear, through;  ///< clear: not diffuse; through: of what is
-  MicrofacetDistribution front, behind;  ///< of what is reflected, and of what passes both faces
+  float roughness, spec_tint, sheen, sheen_tint, flatness, eta, clear,
+      through;  ///< clear: fraction that is not diffuse; through: transmitted fraction of the diffuse part
+  MicrofacetDistribution front, behind;  ///< for reflection, and for transmission through both faces
 };
 
-// The same from both sides. With `in` mirrored at the sheet where it leads through it, and h, u, D and G1 as in
-// disney_principled.cpp:
-//   f = (1 - clear) ((1 - through) (color diffuse / pi + sheen (1 - u)^5 tint) or, behind, through color / pi)
-//     + clear D(h) G1(out) G1(in) / (4 |out.z in.z|) (F(u) or, behind, color (1 - F(u)))
-// where facets are rougher or smoother behind, alpha going with (0.65 eta - 0.35)^2 (Burley 2015, figure 15).
+// The same from both sides. With `in` mirrored at the sheet for transmission, and h, u, D and G1 as in disney_principled.cpp:
+//   f = (1 - clear) ((1 - through) (color diffuse / pi + sheen (1 - u)^5 tint) or, transmitted, through color / pi)
+//     + clear D(h) G1(out) G1(in) / (4 |out.z in.z|) (F(u) or, transmitted, color (1 - F(u)))
+// where the facets of transmission are rougher or smoother, their alpha being multiplied by (0.65 eta - 0.35)^2 (Burley 2015,
+// figure 15).
 class SheetScatter final : public JointScatter<SheetScatter> {
  public:
   SheetScatter(const SurfacePoint& p, const Frame& frame, const SheetParts& parts)
@@ -74,7 +75,7 @@ class SheetScatter final : public JointScatter<SheetScatter> {
       s.in = warp::cosine_hemisphere(u);
     } else {
       s.in = reflect(v, (k == 2 ? d_.front : d_.behind).sample_visible(v, u));
-      if (!(s.in.z > 0)) return false;  // another facet is in the way
+      if (!(s.in.z > 0)) return false;  // blocked by another facet
     }
     if (k % 2) s.in.z = -s.in.z;
     if (out.z < 0) s.in.z = -s.in.z;
@@ -127,7 +128,7 @@ class SheetScatter final : public JointScatter<SheetScatter> {
   static Spectrum scale_of(const Shares& a) {
     return map(a.diffuse + a.diffuse_through + a.shine + a.shine_through, [](float x) { return x > 1 ? 1 / x : 1; });
   }
-  /// Probabilities of the lobes, in the first number of each.
+  /// Probabilities of choosing the lobes, in element 0 of each spectrum.
   Shares chances_of(const Vector3& v, Lobes which) const {
     const Shares a = shares(v);
     const auto chance = [&](Lobe lobe, const Spectrum& share) {
@@ -200,7 +201,7 @@ class DisneyThin final : public Shader {
     d.behind = disney::facets((0.65f * d.eta - 0.35f) * d.roughness, stretch);
     return arena.make<SheetScatter>(p, stretch > 0 ? tangent_frame(p) : Frame(p.shading_normal), d);
   }
-  /// Shares are bounds, and what keeps the sum below 1 is taken for `out` alone.
+  /// The lobes' shares are upper bounds, and the factor that keeps the sum at most 1 is taken for `out` alone.
   float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override {
     return Lobes(diffuse_reflection | (everywhere(diff_trans, 0) ? 0 : diffuse_transmission) |

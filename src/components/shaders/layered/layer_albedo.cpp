@@ -1,4 +1,4 @@
-// An estimate of how much light two layers reflect and let through.
+// LayerStack::albedo: an estimate of the light that two layers reflect and transmit.
 
 #include "layer_stack.h"
 
@@ -9,9 +9,9 @@ constexpr Lobes specular_out = specular_transmission | null_scattering;
 
 }  // namespace
 
-// Averages by the Gauss rule of four points for the weight c. The reflectance from inside has an edge where total
-// reflection begins, which four points miss. What is let out has none, seen from outside: by reciprocity its mean over
-// diffuse light inside is that outside over the squared index. The rest, less what the face absorbs, is sent back.
+// Averages by 4-point Gauss quadrature with weight c. The reflectance from inside has an edge at the critical angle, which four
+// points miss. The transmittance seen from outside has none: by reciprocity its mean over the squared index is the mean
+// transmittance of diffuse light from inside. The rest, minus the face's absorption, is reflected back.
 const LayerStack::Diffuse& LayerStack::diffuse(int which) const {
   Diffuse& d = diffuse_[which];
   if (d.known) return d;
@@ -43,12 +43,12 @@ const LayerStack::Diffuse& LayerStack::diffuse(int which) const {
   return d;
 }
 
-// Without scattering: light crosses to N, which reflects r and lets t through, r in part specularly or nearly so, for which
-// the angle stays what it was, else diffusely, for which all is averaged over the cosine; the rounds between N and E are a
-// geometric series. Light that E lets in diffusely is averaged from the beginning. With much scattering all light between is
-// diffuse, and the medium a layer of two-stream reflectance and transmittance (Kubelka & Munk 1931; K = 2 absorption,
-// S = 3/4 (1 - g) scattering), put between the faces by the same series. What was not scattered at all yet tells how much to
-// take of either. Nothing is lost where nothing absorbs.
+// Without scattering in the medium: light crosses to N, which reflects r and transmits t. The specular or glossy part of r
+// keeps its angle; the diffuse part is averaged over the cosine. The round trips between N and E are a geometric series. Light
+// that E transmits diffusely is averaged from the beginning. With much scattering all light between is diffuse, and the medium
+// is a layer of two-stream reflectance and transmittance (Kubelka & Munk 1931; K = 2 absorption, S = 3/4 (1 - g) scattering),
+// combined with the faces by the same series. The two results are blended by the fraction of unscattered light. No energy is
+// lost where nothing absorbs.
 LayerStack::Albedo LayerStack::albedo(const Vector3& out) const {
   Albedo result;
   const int near = side(out);

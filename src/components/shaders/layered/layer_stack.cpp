@@ -1,36 +1,36 @@
-// Light between two layers.
+// Light transport between two layers.
 //
-// The light that comes out is a sum over paths: in through the face E on the side of `out`, any number of reflections at
-// both faces and scatterings in the medium, and out through the face X on the side of `in` (N is the other one):
+// The light that leaves is a sum over paths: in through the face E on the side of `out`, any number of reflections at both
+// faces and scatterings in the medium, and out through the face X on the side of `in` (N is the face opposite E):
 //     f(out, in) |cos| = sum over k of the integral of K_E(out, w_1) T(w_1) K_2(-w_1, w_2) T(w_2) ... K_X(-w_k, in),
 // with K = f |cos| of a face or, per depth, scattering coefficient times phase function of the medium over |cos w|, and T the
-// transmittance exp(-extinction dz / |cos w|) (Guo et al. 2018, eqs. 6 to 10). Each face answers for itself, by its public
-// calls in world directions, for radiance or importance alike: factors for refraction and shading normals are theirs, and
-// multiply to those of the whole. In the medium, where distances go by the shading normal, importance gets the factor of
-// shading normals (Veach 1997, eq. 5.19) at each scattering, so that the adjoint is right throughout.
+// transmittance exp(-extinction dz / |cos w|) (Guo et al. 2018, eqs. 6 to 10). Each face is evaluated by its public calls in
+// world directions, for radiance or importance alike: these include its factors for refraction and shading normals, whose
+// product is that of the whole. In the medium, where path lengths are computed with the shading normal, importance gets the
+// factor of shading normals (Veach 1997, eq. 5.19) at each scattering, so that the adjoint is right throughout.
 //
-// walk() follows one such path from `out`. At each face any lobe is drawn, and the path ends when one lets it out: the product
-// of the weights is an unbiased estimate for the direction that came out, whatever its density is.
+// walk() follows one such path from `out`. At each face any lobe is sampled, and the path ends when it is transmitted outside:
+// the product of the weights is an unbiased estimate for the direction in which it left, whatever the pdf of that direction is.
 //
-// estimate() is for a given `in`. Paths are told apart by their last event that is not specular, number s of k + 1.
-//   s < k + 1: after it light goes to X by specular events alone, so `in` determines the way. It is traced back from `in`,
-//     out through X and on by specular reflections: a chain of edges. Each vertex of a walk from `out` is connected to all
-//     edges that end there (or cross its depth), by what it scatters into them.
-//   s = k + 1, X itself, with an event k that is specular: the walk from `out` draws w_k, and X is evaluated.
-//   s = k + 1 with an event k that is not specular: both ways are possible, drawing w_k at event k with density p, or
-//     drawing the edge back from X with density q. They are weighted by the balance heuristic, p / (p + q) and q / (p + q). All
-//     that p and q must be for that is the same function in both places, so faces may be stochastic.
-// Inside, the walk only draws reflections: what is let out is counted by the connections. Back from `in` the faces are
-// asked for the adjoint, f*: f*(in, d) |cos d| / |d.ng| = f(d, in) |cos in| / |in.ng|, so an edge carries the product of its
-// weights times |in.ng| / |d.ng|. That is only relied on of faces that are reciprocal: of one that is not, only specular lobes
-// are traced back, and the second and third kind of paths are found from the side of `out` alone.
+// estimate() is for a given `in`. Paths are classified by their last non-specular event, number s of k + 1.
+//   s < k + 1: after event s light reaches X by a specular chain, which `in` determines. The chain is traced back from `in`,
+//     through X and on by specular reflections, as a list of segments. Each vertex of a walk from `out` is connected to all
+//     segments that end at its face (or cross its depth), with the value of scattering into them.
+//   s = k + 1, X itself, with a specular event k: the walk from `out` samples w_k, and X is evaluated.
+//   s = k + 1 with a non-specular event k: two techniques are possible, sampling w_k at event k with pdf p, or sampling the
+//     segment back from X with pdf q. They are weighted by the balance heuristic, p / (p + q) and q / (p + q). This only
+//     requires that p and q are the same functions in both places, so faces may be stochastic.
+// Inside, the walk samples reflections only: light that leaves is counted by the connections. Back from `in` the faces are
+// sampled by the adjoint, f*: f*(in, d) |cos d| / |d.ng| = f(d, in) |cos in| / |in.ng|, so a segment carries the product of its
+// weights times |in.ng| / |d.ng|. This is relied on for reciprocal faces only: of a face that is not reciprocal only specular
+// lobes are traced back, and paths of the second and third kind are sampled from the side of `out` alone.
 
 #include "layer_stack.h"
 
 namespace etendue {
 namespace {
 
-/// Events before a walk is given up: in a thick medium that absorbs nothing, light is scattered often.
+/// The greatest number of events of a walk: in a thick medium without absorption, light is scattered often.
 constexpr int longest = 4096;
 constexpr Lobes smooth_transmission = smooth_lobes & transmission_lobes;
 
@@ -46,14 +46,14 @@ bool survives(Spectrum& carried, float squared_index, HashedRandom& random) {
 
 }  // namespace
 
-/// A straight piece of a path traced back from `in`, from one face to the other.
+/// A segment of the path traced back from `in`, from one face to the other.
 struct LayerStack::Edge {
-  Vector3 direction;  ///< away from the face it begins at
+  Vector3 direction;  ///< away from the face where the segment begins
   Spectrum carried;
   int begin = 0;  ///< the face
-  float pdf = 0;  ///< [1/sr] with which it was drawn among smooth lobes; 0: it is specular
+  float pdf = 0;  ///< [1/sr] of the direction, sampled among smooth lobes; 0: it is specular
   int end() const { return 1 - begin; }
-  /// The weight of connecting to it from where a walk would have drawn its direction with density p.
+  /// The balance heuristic's weight of a connection to this segment, where the walk would sample its direction with pdf p.
   float weight(float p) const { return pdf > 0 ? pdf / (pdf + p) : 1; }
 };
 
@@ -77,7 +77,7 @@ float LayerStack::adjoint_factor(Transport transport, const Vector3& a, const Ve
   return down > 0 ? up / down : 0;
 }
 
-/// What of a face's transmission may be drawn from outside instead of from between.
+/// The transmission lobes of a face that may be sampled from outside, in reverse.
 Lobes LayerStack::reversible(int side) const {
   return faces_[side].reciprocal ? transmission_lobes : Lobes(specular_transmission | null_scattering);
 }
@@ -105,8 +105,8 @@ void LayerStack::trace_back(const Vector3& in, Transport transport, HashedRandom
   }
 }
 
-// The depth of the next scattering along w is drawn for one wavelength, chosen in proportion to what is carried; all are
-// divided by the density of the mixture, as on long distances (transport/medium.h). True: scattered before the face is reached.
+// The depth of the next scattering along w is sampled for one wavelength, chosen in proportion to the throughputs; all are
+// divided by the pdf of the mixture, as on long distances (transport/medium.h). True: scattered before the face is reached.
 bool LayerStack::fly(const Vector3& w, float& z, Spectrum& carried, HashedRandom& random) const {
   const int towards = side(w);
   const float reach = towards == 0 ? z : 1 - z;
@@ -236,9 +236,9 @@ Spectrum LayerStack::estimate(const Vector3& out, const Vector3& in, Transport t
   return sum;
 }
 
-// Light that goes in, is reflected by N or goes through it, and comes out: what came back is left to an even part. A direction
-// inside is drawn from `out` by E, and one from `in` by X; between them N has a density that changes by
-// dw / d(in) = |in.n| / (eta^2 |w.n|) on the way out (Snell's law).
+// Two parts: light that enters, is reflected or transmitted once by N, and leaves; and light that returns to N, for which a
+// diffuse pdf stands. A direction inside is sampled from `out` through E, and one from `in` through X; N has a pdf between
+// them, which refraction on the way out changes by dw / d(in) = |in.n| / (eta^2 |w.n|) (Snell's law).
 float LayerStack::pdf(const Vector3& out, const Vector3& in, Transport transport, HashedRandom& random) const {
   const Scatter &entering = face(side(out)), &leaving = face(side(in));
   const bool through = side(out) != side(in);
@@ -265,7 +265,7 @@ float LayerStack::pdf(const Vector3& out, const Vector3& in, Transport transport
       direct *= spread;
     }
   }
-  // The fewer ways there are for a direct crossing, the more comes evenly.
+  // The less light crosses the medium directly, the greater is the weight of the diffuse pdf.
   const float clear = transmittance(from->direction, 1).average();
   const bool scatters = medium_.scatters();
   const float directly = direct > 0 ? (scatters ? 0.8f * clear : 0.8f) : 0;

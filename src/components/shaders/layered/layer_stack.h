@@ -1,13 +1,12 @@
 #pragma once
-// Two surfaces, one over the other, with a medium between: what light does between them.
+// LayerStack: light transport between two surfaces, one over the other, with a medium between.
 
 #include "etendue/shader.h"
 #include "etendue/volume_shader.h"
 
 namespace etendue {
 
-/// Random numbers that are a function of what they are made from: a hash takes the place of a sampler, so that the same
-/// question always gets the same answer.
+/// Random numbers hashed from given values, in place of a sampler: the same values always give the same numbers.
 class HashedRandom {
  public:
   explicit HashedRandom(std::uint64_t seed = 0) : state_(seed) {}
@@ -33,28 +32,28 @@ class HashedRandom {
   std::uint64_t state_;
 };
 
-/// What became of a walk that entered between the layers.
+/// The result of a walk that entered between the layers.
 struct LayerWalk {
   Vector3 direction;
   Spectrum weight;
-  float probability = 1;  ///< of the choices made, as long as all were between single directions
+  float probability = 1;  ///< of all discrete choices, if every event was specular
   float eta = 1;
-  bool smooth = false;    ///< scattered other than by mirrors and smooth boundaries
-  bool straight = false;  ///< went through both layers as if nothing were there
+  bool smooth = false;    ///< at least one event was not specular
+  bool straight = false;  ///< null scattering at both layers
   bool dispersive = false;
 };
 
-/// Both surfaces as bound at one point. Light between them has no position, only a depth: the layer is as wide as one likes
-/// and light leaves where it came in (Guo, Hasan & Zhao 2018, "Position-free Monte Carlo simulation for arbitrary layered
-/// BSDFs"). The estimators are derived in layer_stack.cpp.
+/// Both surfaces as bound at one point. Paths between them have a depth but no lateral position: the layer is infinitely wide,
+/// and light leaves at the point where it entered (Guo, Hasan & Zhao 2018, "Position-free Monte Carlo simulation for arbitrary
+/// layered BSDFs"). The estimators are derived in layer_stack.cpp.
 class LayerStack {
  public:
-  /// Depths are optical, for light that crosses the layer at a right angle.
+  /// Coefficients are optical thicknesses of the whole layer, along the normal.
   struct Medium {
-    const VolumeShader* shader = nullptr;  ///< null: nothing is between
+    const VolumeShader* shader = nullptr;  ///< null: no medium between
     Spectrum absorption, scattering;
-    float mean_cosine = 0;  ///< of the angle by which light is scattered
-    Point3 position;        ///< that of the surface point
+    float mean_cosine = 0;  ///< of the scattering angle
+    Point3 position;        ///< of the surface point
     Spectrum extinction() const { return absorption + scattering; }
     bool scatters() const { return !scattering.black(); }
   };
@@ -64,7 +63,7 @@ class LayerStack {
     bool reciprocal;
   };
 
-  /// The geometric normal points to the side of the top; distances between the layers go by the shading normal.
+  /// The geometric normal points to the side of the top; path lengths between the layers are computed with the shading normal.
   LayerStack(const Face& top, const Face& bottom, const Normal3& normal, const Normal3& shading_normal, const Medium& medium)
       : faces_{top, bottom}, normal_(normal), shading_normal_(shading_normal), medium_(medium) {}
 
@@ -72,22 +71,22 @@ class LayerStack {
   int side(const Vector3& v) const { return dot(normal_, v) > 0 ? 0 : 1; }
   const Scatter& face(int side) const { return *faces_[side].scatter; }
   const Medium& medium() const { return medium_; }
-  /// What is left of light that goes a part of the way from one layer to the other.
+  /// The transmittance of the medium along a direction, over the fraction `part` of the layer's thickness.
   Spectrum transmittance(const Vector3& direction, float part) const;
 
-  /// An unbiased estimate of f |cos| [1/sr] of the light that went in through the face on the side of `out`, was scattered at
-  /// least once by something that is not specular, and came out in direction `in`.
+  /// An unbiased estimate of f |cos| [1/sr] of light that entered through the face on the side of `out`, had at least one
+  /// non-specular event, and left in direction `in`.
   Spectrum estimate(const Vector3& out, const Vector3& in, Transport, HashedRandom&) const;
 
-  /// About the density [1/sr] with which walks of such light that begin with `entering` of the lobes in the face come out in
-  /// direction `in`. Never 0.
+  /// The approximate pdf [1/sr] with which walks that have entered on the side of `out` leave in direction `in`. Never 0.
   float pdf(const Vector3& out, const Vector3& in, Transport, HashedRandom&) const;
 
-  /// Goes on from a sample of the face on the side of `out` that went in, until it comes out; false: it does not.
+  /// Continues a sample of the face on the side of `out` that entered between the layers, until it leaves. False: it is
+  /// absorbed.
   bool walk(const Vector3& out, const ScatterSample& entering, Transport, HashedRandom&, LayerWalk&) const;
 
-  /// Estimates of the fraction of light that goes in from `out` and comes out on both sides: by way of specular events alone
-  /// and otherwise.
+  /// Estimated fractions of light from `out` that enters between the layers and leaves on either side: by specular events
+  /// alone, and otherwise.
   struct Albedo {
     Spectrum specular[2], smooth[2];  ///< [0] reflected, [1] transmitted
   };
@@ -96,11 +95,11 @@ class LayerStack {
  private:
   struct Edge;
   struct Edges;
-  /// What a face does with diffuse light between the layers, as fractions.
+  /// Fractions of the diffuse light between the layers that hits a face.
   struct Diffuse {
-    Spectrum back, leave;              ///< sent back, and let out
-    Spectrum back_clear, leave_clear;  ///< after the medium's absorption there and back, and there
-    Spectrum absorbed;                 ///< what the medium leaves of light that crosses it once
+    Spectrum back, leave;              ///< reflected back, and transmitted outside
+    Spectrum back_clear, leave_clear;  ///< the same with the medium's absorption over a round trip, and over one crossing
+    Spectrum absorbed;                 ///< transmittance by absorption in the medium, for one crossing
     bool known = false;
   };
 
@@ -114,7 +113,7 @@ class LayerStack {
   Face faces_[2];
   Normal3 normal_, shading_normal_;
   Medium medium_;
-  mutable Diffuse diffuse_[2];  ///< found when first asked for: a stack belongs to one sample, and so to one thread
+  mutable Diffuse diffuse_[2];  ///< computed at first use: a stack belongs to one sample, and so to one thread
 };
 
 }  // namespace etendue

@@ -1,14 +1,15 @@
-// The scattering of two layers.
+// LayeredScatter: the BSDF of two layers.
 //
-// f is what the face on the side of `out` reflects itself, f_E, and what was between, of which LayerStack has estimates.
+// f is the reflection f_E by the face E on the side of `out`, plus the light that was between the layers, which LayerStack
+// estimates.
 //
-// A sample draws one of E's lobes. When that reflects, it stands for f_E; when not, for what was between, by a walk. The
-// weights are unbiased estimates of each part's f |cos| over the true density, for any test function g: the mean of
-// weight * g(direction) is the integral of f |cos| g. The true density of walks is not known. The one that `density` gives
-// and samples carry is P_E p_E + P_T q, p_E exactly and q about the density of walks, a hashed function of both directions:
-// the same wherever it is asked for. Multiple importance sampling with w_1 = p / (p + l) for samples and w_2 = l / (p + l) for
-// light sampled with density l uses only that w_1 + w_2 = 1 at each direction: the sum is then the integral of
-// (w_1 + w_2) f |cos| g, whatever function p is.
+// Sampling draws one of E's lobes. A sample that E reflects counts for f_E; one that E transmits starts a walk between the
+// layers and counts for the rest. The weights are unbiased estimates of each part's f |cos| over the true pdf, for any test
+// function g: the mean of weight * g(direction) is the integral of f |cos| g. The true pdf of walks is unknown. The pdf that
+// `pdf` returns and samples carry is P_E p_E + P_T q, with p_E exact and q an approximation of the walks' pdf, which uses
+// random numbers hashed from both directions: the same directions always give the same value. Multiple importance sampling with
+// w_1 = p / (p + l) for samples and w_2 = l / (p + l) for next event estimation with pdf l only requires w_1 + w_2 = 1 at each
+// direction: the sum is then the integral of (w_1 + w_2) f |cos| g, whatever function p is.
 
 #include "layered_scatter.h"
 
@@ -44,7 +45,7 @@ LayeredScatter::LayeredScatter(const SurfacePoint& p, const LayerStack* const* f
     sides_[1][i] = back[i];
   }
   const Frame &top = front[0]->face(0).frame(), &bottom = front[0]->face(1).frame();
-  frame_ = top.n == p.shading_normal ? bottom : top;  // that of the one that was tilted, if one was
+  frame_ = top.n == p.shading_normal ? bottom : top;  // that of a layer with a perturbed shading normal, if there is one
 }
 
 LayeredScatter::Question::Question(const LayerStack& stack, const Vector3& out, Lobes which) {
@@ -108,7 +109,7 @@ std::optional<ScatterSample> LayeredScatter::world_sample(const Vector3& out, fl
   const LayerStack& stack = *seen_from(out)[0];
   const int side = stack.side(out);
   const Scatter& face = stack.face(side);
-  if (which == null_scattering) {  // nothing to choose, as shadow rays rely on
+  if (which == null_scattering) {  // without a random choice, on which shadow rays rely
     const Spectrum both = straight_fraction(&face, out, transport) * straight_fraction(&stack.face(1 - side), out, transport);
     return straight_on(out, both * stack.transmittance(out, 1), 1);
   }
@@ -147,7 +148,7 @@ Spectrum LayeredScatter::world_albedo(const Vector3& out, Lobes which) const {
   if (q.between & smooth_lobes & reflection_lobes) sum += a.smooth[0];
   if (q.between & smooth_lobes & transmission_lobes) sum += a.smooth[1];
   if (q.between & specular_reflection) sum += a.specular[0];
-  // What passes straight on is part of what goes through specularly, unless it is all of it.
+  // a.specular[1] contains null scattering, which is subtracted from it and added separately if requested.
   if (q.between & (specular_transmission | null_scattering)) {
     Spectrum straight;
     if (q.possible & null_scattering) straight = world_sample(out, 0, {}, Transport::importance, null_scattering)->weight;

@@ -1,19 +1,21 @@
 #pragma once
-// The scattering of two layers.
+// LayeredScatter: the BSDF of two layers.
 
 #include "layer_stack.h"
 
 namespace etendue {
 
-/// The lobes of light that was between the layers, having gone in through a face with the first lobes, with the others on
-/// the far side. What is not specular is one lobe a side: diffuse when anything on the way may be, else glossy.
+/// The lobes of light that enters between the layers through a face with the lobes `near`, opposite a face with the lobes
+/// `far`; `scatters`: the medium between scatters. All non-specular scattering is one lobe per side: diffuse if any event on
+/// the way may be diffuse, else glossy.
 Lobes lobes_between(Lobes near, Lobes far, bool scatters);
 
-/// One surface over another: what the outer face reflects, and what was between. See layered_scatter.cpp.
+/// One surface over another: reflection by the outer face, and light that was between the two. See layered_scatter.cpp.
 class LayeredScatter final : public ScatterCombination {
  public:
-  /// `front`, and `back` where the surface is seen from behind: stacks of the path's wavelengths and, when there is more than
-  /// one, of each but the hero alone. A layer that disperses light sends each wavelength another way.
+  /// `front` and `back`: the stacks as seen from the front and from behind. The first is bound for all of the path's
+  /// wavelengths; if there are more, stack i is bound for wavelength i alone, because a dispersive layer refracts each
+  /// wavelength into another direction.
   LayeredScatter(const SurfacePoint& p, const LayerStack* const* front, const LayerStack* const* back, int stacks, int walks,
                  std::uint64_t seed, Lobes lobes);
 
@@ -25,20 +27,20 @@ class LayeredScatter final : public ScatterCombination {
   Spectrum world_albedo(const Vector3& out, Lobes which) const override;
 
  private:
-  /// What is asked of light that comes from `out`.
+  /// The lobes involved for light from `out`.
   struct Question {
-    Lobes possible, between;  ///< lobes of light from between the layers: those there are, and those asked for
-    Lobes face;               ///< lobes to choose from in the face that light meets first
+    Lobes possible, between;  ///< lobes of light from between the layers: all, and the requested ones
+    Lobes face;               ///< lobes to sample of the outer face
 
     Question(const LayerStack&, const Vector3& out, Lobes which);
   };
 
   const LayerStack* const* seen_from(const Vector3& out) const { return sides_[dot(normal_, out) > 0 ? 0 : 1]; }
 
-  /// Each use has numbers of its own: weights must not depend on what they weigh.
+  /// Each use has random numbers of its own: MIS weights must be independent of the values they multiply.
   enum class Use : std::uint8_t { estimate, walk, pdf };
   HashedRandom numbers(Use use, const Vector3& out, const Vector3& other, Transport transport) const;
-  /// Of what goes in, with about the probability that it does, and comes out in direction `in`.
+  /// The approximate pdf [1/sr] of entering between the layers and leaving in direction `in`.
   float pdf_between(const LayerStack& stack, Lobes asked, const Vector3& out, const Vector3& in, Transport transport) const;
 
   const LayerStack* sides_[2][spectrum_size];

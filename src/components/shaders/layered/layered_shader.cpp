@@ -8,7 +8,7 @@
 namespace etendue {
 namespace {
 
-/// In the place of a layer that scatters nothing.
+/// Replaces a layer that scatters nothing.
 class BlackScatter final : public ScatterModel<BlackScatter> {
  public:
   explicit BlackScatter(const SurfacePoint& p) : ScatterModel(p, no_lobes) {}
@@ -19,7 +19,7 @@ class BlackScatter final : public ScatterModel<BlackScatter> {
   Spectrum local_albedo(const Vector3&, Lobes) const override { return {}; }
 };
 
-/// What stands for the space between the layers, or for no object at all, where one is asked for.
+/// An object without geometry: represents the space between the layers, or no object, where an object is required.
 class Placeholder final : public SceneObject {
  public:
   Bounds3 bounds() const override { return {}; }
@@ -62,7 +62,7 @@ class LayeredShader final : public Shader {
   }
 
   const Scatter* bind(const SurfacePoint& point, const Wavelengths& w, Arena& arena) const override {
-    // Light between may go through the layers also where what is under them absorbs it.
+    // Layers are bound without an object of which one side absorbs: light between them may pass through them there too.
     SurfacePoint p = point;
     if (p.object && p.dpdu == Vector3{} && p.dpdv == Vector3{}) p.object->tangents(p);
     if (!p.object || p.object->sides != Sides::both) p.object = nothing_.get();
@@ -88,11 +88,11 @@ class LayeredShader final : public Shader {
     return arena.make<LayeredScatter>(point, stacks[0], stacks[1], count, walks, seed.bits(), lobes);
   }
 
-  /// Of light that goes to and fro between the layers only the directions of the first ways are known.
+  /// Of light reflected back and forth between the layers only the directions of the first crossings are known.
   float albedo_error() const override { return 0.5f; }
   Lobes possible_lobes() const override {
     const Lobes above = top->possible_lobes(), below = bottom->possible_lobes();
-    // What may be diffuse somewhere may be glossy elsewhere.
+    // A layer that is diffuse at some points may be glossy at others.
     const auto between = [&](Lobes near, Lobes far) {
       return lobes_between(near, far, bool(medium)) | lobes_between(near & ~diffuse_lobes, far & ~diffuse_lobes, false);
     };
@@ -118,7 +118,7 @@ class LayeredShader final : public Shader {
     if (layer->has_subsurface_exit()) fail(member, "lets light out of the body elsewhere, which a layer cannot");
   }
 
-  /// The mean cosine of the angle by which a medium scatters.
+  /// The mean cosine of a medium's scattering angle.
   static float mean_cosine(const VolumeShader& volume) {
     constexpr int side = 16;
     const Vector3 out{0, 0, 1};
@@ -130,7 +130,7 @@ class LayeredShader final : public Shader {
     return clamp(sum / (side * side), -1, 1);
   }
 
-  /// Whether a layer sends wavelengths different ways: found by trying, as nothing else tells.
+  /// Whether a layer is dispersive: found by sampling it, as its interface does not state it.
   static bool disperses(const Shader& layer) {
     Wavelengths w;
     for (int i = 0; i < spectrum_size; ++i)
@@ -151,7 +151,8 @@ class LayeredShader final : public Shader {
   }
 
   const LayerStack* stack(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const {
-    // What lies over the bottom is the layer, which has the top's index: the media around say so.
+    // The medium over the bottom is the space between the layers, which has the top's interior index: it is entered into the
+    // media around.
     MediumStack* media = arena.make<MediumStack>(p.media ? *p.media : MediumStack());
     media->enter(*between_);
     SurfacePoint inner = p;

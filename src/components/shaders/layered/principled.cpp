@@ -10,7 +10,7 @@
 namespace etendue {
 namespace {
 
-/// The highest index ratio that tables of boundaries know.
+/// The highest index ratio in the tables of boundaries.
 constexpr float highest_ratio = 4;
 
 /// An index ratio changed so that its reflectance along the normal is `weight` times what it was (OpenPBR, eq. "modulated
@@ -21,20 +21,22 @@ float with_weight(float eta, float weight) {
   return eta < 1 ? (1 - e) / (1 + e) : (1 + e) / (1 - e);
 }
 
-/// GGX from roughness and anisotropy (OpenPBR, section "Microfacet model"): the sum of alpha^2 does not depend on the latter.
+/// GGX from roughness and anisotropy (OpenPBR, section "Microfacet model"): the sum of alpha^2 does not depend on the
+/// anisotropy.
 MicrofacetDistribution facets_of(float roughness, float anisotropy) {
   const float across = 1 - anisotropy, along = roughness * roughness * std::sqrt(2 / (1 + across * across));
   return {MicrofacetDistribution::ggx, along, across * along};
 }
 
-/// A rough coat blurs what is seen through it, twice: slopes of facets add up like those of Gaussians (OpenPBR, "Roughening").
+/// A rough coat blurs the base seen through it, twice: variances of facet slopes add up as for Gaussians (OpenPBR,
+/// "Roughening").
 float roughened(float base, float coat, float coat_weight) {
   const auto fourth = [](float x) { return square(square(x)); };
   return lerp(coat_weight, base, std::sqrt(std::sqrt(std::min(fourth(base) + 2 * fourth(coat), 1.0f))));
 }
 
-/// Of light that a base of an albedo sends up, the inside of the coat sends the fraction K down again; what leaves is less by
-/// (1 - K) / (1 - albedo K) (OpenPBR, "Darkening").
+/// The inside of the coat reflects the fraction K of the light from a base of the given albedo back down; the light that leaves
+/// is multiplied by (1 - K) / (1 - albedo K) (OpenPBR, "Darkening").
 Spectrum darkening(Spectrum albedo, float k, float amount) {
   return Spectrum(1 - amount) + Spectrum(amount * (1 - k)) / (Spectrum(1.0f) - albedo * k);
 }
@@ -56,7 +58,7 @@ class Principled final : public Shader {
         p, turned ? tangent_frame(p, geometry_tangent_rotation->scalar(p)) : Frame(p.shading_normal), layers);
   }
 
-  /// What the layers above let through is taken for `out` alone, and for facets in the mean.
+  /// The transmittance of the layers above is taken for `out` alone, and as a mean for facets.
   float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override { return possible_lobes_; }
   Spectrum interior_index(const Wavelengths& w) const override {
@@ -86,13 +88,13 @@ class Principled final : public Shader {
   static constexpr float thickest_film = 1e5f, highest_specular_weight = 1000;
 
   static bool always(const Ref<ObjectMap>& map, float value) { return map->constant() && map->scalar(SurfacePoint()) == value; }
-  /// Whether facets of such a roughness, stretched or not, are taken for a smooth surface anywhere.
+  /// Whether facets of such a roughness, isotropic or not, may be treated as a smooth surface anywhere.
   static bool may_be_smooth(const Ref<ObjectMap>& roughness) {
     if (!roughness->constant()) return true;
     constexpr float rounding = 1.001f;
     return square(roughness->scalar(SurfacePoint())) <= rounding * MicrofacetDistribution::smooth_below;
   }
-  /// Cauchy's formula for the index at 587.6 nm and Abbe's number, (n - 1) / (n(486.1 nm) - n(656.3 nm)).
+  /// Cauchy's formula, from the index at 587.6 nm and Abbe's number, (n - 1) / (n(486.1 nm) - n(656.3 nm)).
   Spectrum index_at(float index, const Wavelengths& w) const {
     if (!(transmission_dispersion_scale > 0)) return Spectrum(index);
     constexpr float f = 0.4861f, d = 0.5876f, c = 0.6563f;  // Fraunhofer's lines [um]
@@ -108,8 +110,8 @@ class Principled final : public Shader {
   void set_boundary(PrincipledLayers&, const SurfacePoint&, const Wavelengths&) const;
 
   Lobes possible_lobes_ = no_lobes;
-  bool refracts_ = false;         ///< light may go inside
-  bool weight_in_index_ = false;  ///< specular_weight is one number, and part of the index inside
+  bool refracts_ = false;         ///< light may enter the object
+  bool weight_in_index_ = false;  ///< specular_weight is constant, and included in the index inside
   float inside_index_ = 1;        ///< at 587.6 nm
 };
 
@@ -237,7 +239,7 @@ void Principled::prepare() {
   weight_in_index_ = specular_weight->constant() != nullptr;
   inside_index_ = weight_in_index_ ? with_weight(specular_ior, specular_weight->scalar(SurfacePoint())) : specular_ior;
 
-  // What lies on the base, and anisotropy, makes it rougher alone: its own roughness decides.
+  // Coat and anisotropy can only make the base rougher: its own roughness decides whether it may be smooth.
   const bool smooth = may_be_smooth(specular_roughness), smooth_coat = !always(coat_weight, 0) && may_be_smooth(coat_roughness);
   possible_lobes_ = glossy_reflection;
   if (smooth || smooth_coat) possible_lobes_ |= specular_reflection;
@@ -247,7 +249,7 @@ void Principled::prepare() {
   if (matt && thin_walled && !always(subsurface_weight, 0)) possible_lobes_ |= diffuse_transmission;
   if (!always(geometry_opacity, 1)) possible_lobes_ |= null_scattering;
 
-  // Tables are made when first asked for: now.
+  // Tables are computed at first use: here, before rendering.
   const MicrofacetDistribution some(MicrofacetDistribution::ggx, 0.5f);
   (void)CoatTransmittance(some, 1.5f);
   (void)MultipleReflection(some);
@@ -271,7 +273,7 @@ PrincipledLayers Principled::layers_at(const SurfacePoint& p, const Wavelengths&
   return l;
 }
 
-/// What the base is made of.
+/// Sets the materials of the base.
 void Principled::set_base(PrincipledLayers& l, const SurfacePoint& p, const Wavelengths& w) const {
   l.metal = scalar_at(*base_metalness, p);
   l.clear = (1 - l.metal) * scalar_at(*transmission_weight, p);
@@ -295,9 +297,9 @@ void Principled::set_base(PrincipledLayers& l, const SurfacePoint& p, const Wave
   }
 }
 
-/// The base's surface, and the film and coat on it. A coat's index counts against what is around it, the base's against the
-/// coat where there is one. Where the lower medium has the lower index, the inverse ratio is taken for reflection: there is no
-/// total reflection between parallel boundaries that light from outside could meet.
+/// Sets the base's surface, and the film and coat on it. A coat's index is relative to the medium around, the base's to the
+/// coat where there is one. Where the lower medium has the lower index, the inverse ratio is used for reflection: between
+/// parallel boundaries, light from outside is never totally reflected.
 void Principled::set_boundary(PrincipledLayers& l, const SurfacePoint& p, const Wavelengths& w) const {
   const Spectrum around = MediumStack::index(p.media && p.object ? p.media->outside_of(*p.object) : nullptr, w);
   const float weight = scalar_at(*specular_weight, p, 0, highest_specular_weight);
@@ -307,7 +309,7 @@ void Principled::set_boundary(PrincipledLayers& l, const SurfacePoint& p, const 
   l.facets = facets_of(roughened(roughness, coat_rough, l.coat), scalar_at(*specular_roughness_anisotropy, p));
 
   const Spectrum plain = index_at(specular_ior, w), inside = index_at(inside_index_, w);
-  // Rough facets must bend what they let through, however little, for it to have a density.
+  // Rough facets must refract light, however little, for the transmitted direction to have a pdf.
   l.eta = map(inside / around, [&](float eta) {
     constexpr float least = 2e-3f;
     return l.facets.smooth() || thin_walled || std::abs(eta - 1) >= least ? eta : eta < 1 ? 1 - least : 1 + least;
@@ -324,7 +326,8 @@ void Principled::set_boundary(PrincipledLayers& l, const SurfacePoint& p, const 
     l.film_eta.set(i, thin_film_ior / (ratio < 1 ? above * ratio : above));
     l.film_thickness.set(i, nanometres * (ratio < 1 ? above * ratio : above) / w[i]);
     if (l.metal > 0) {
-      // Indices of a metal of this reflectance and edge (Gulbrandsen 2014, "Artist friendly metallic Fresnel").
+      // Indices of a metal of this reflectance along the normal and edge colour (Gulbrandsen 2014, "Artist friendly metallic
+      // Fresnel").
       const float r = std::min(l.metal_normal[i], 0.999f), root = std::sqrt(r), edge = l.specular_color[i];
       const float n = lerp(edge, (1 + root) / (1 - root), (1 - r) / (1 + r));
       l.film_metal_n.set(i, n);
@@ -337,7 +340,8 @@ void Principled::set_boundary(PrincipledLayers& l, const SurfacePoint& p, const 
   const float eta = clamp(coat_ior / around[0], 1 / highest_ratio, highest_ratio);
   l.coat_eta = std::max(eta, 1 / eta);
   l.coat_log_color = map(reflectance_at(*coat_color, p, w), [](float x) { return std::log(std::max(x, 1e-6f)); });
-  // What comes from a matt body is reflected inside the coat as diffuse light is; from a smooth one, at one angle.
+  // Light from a diffuse body is reflected inside the coat with the mean for diffuse light; light from a smooth base, with the
+  // reflectance along the normal.
   const float amount = l.coat * coat_darkening, normal = square((l.coat_eta - 1) / (l.coat_eta + 1));
   const float diffuse = 1 - (1 - mean_fresnel_dielectric(l.coat_eta)) / square(l.coat_eta),
               some = lerp(roughness, normal, diffuse);

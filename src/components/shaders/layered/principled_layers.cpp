@@ -1,4 +1,4 @@
-// PrincipledScatter: what its layers reflect and let through, to each other and in all.
+// PrincipledScatter: reflectance and transmittance of its layers, and its albedo.
 
 #include "components/shaders/fresnel.h"
 #include "components/shaders/microfacet/film_interference.h"
@@ -7,17 +7,18 @@
 namespace etendue {
 namespace {
 
-/// The Gauss rule of four points for means over diffuse light: cosines, and weights that sum to 1.
+/// 4-point Gauss quadrature of means over diffuse light: cosines, and weights that sum to 1.
 constexpr std::pair<float, float> diffuse_rule[] = {{0.13975986434f, 0.06236194190f},
                                                     {0.41640956763f, 0.25969509522f},
                                                     {0.72315698637f, 0.40692913604f},
                                                     {0.94289580388f, 0.27101382684f}};
 
-/// Where light grazes a film of the index around it, its formulas are 0 / 0 within rounding.
+/// A lower bound of the cosine: at grazing angles on a film with the index of the medium around, the formulas are 0 / 0 within
+/// rounding.
 float film_cosine(float cosine) { return std::max(cosine, 2e-3f); }
 
-// Kutz, Hasan & Edmondson 2021, "Novel aspects of the Adobe Standard Material": Schlick's formula less a dip which is
-// greatest at 82 degrees.
+// Kutz, Hasan & Edmondson 2021, "Novel aspects of the Adobe Standard Material": Schlick's formula minus a dip that is greatest
+// at 82 degrees.
 Spectrum f82(Spectrum normal, Spectrum dip, float cosine) {
   const float c = 1 - cosine, c2 = c * c, c5 = c2 * c2 * c;
   return clamp(normal + (Spectrum(1.0f) - normal) * c5 - dip * (cosine * c5 * c), 0, 1);
@@ -39,8 +40,9 @@ float PrincipledScatter::Top::passed(const Vector3& v) const {
   return smooth_ ? 1 - fresnel_dielectric(std::abs(v.z), eta_) : (*rough_)(v);
 }
 
-// A film can make facets reflect more than its base does alone, at some wavelengths: at most, at normal incidence, as a
-// boundary of the index ratio n1^2 / (n0 n2) or its inverse (a quarter-wave film). The matt body is lit by what is then left.
+// At some wavelengths a film can make facets reflect more than the base alone: at most, at normal incidence, as a boundary of
+// the index ratio n1^2 / (n0 n2) or its inverse (a quarter-wave film). The diffuse body receives what such a boundary
+// transmits.
 PrincipledScatter::PrincipledScatter(const SurfacePoint& p, const Frame& frame, const PrincipledLayers& layers)
     : JointScatter(p, frame, lobes_of(layers)),
       layers_(layers),
@@ -65,9 +67,10 @@ PrincipledScatter::PrincipledScatter(const SurfacePoint& p, const Frame& frame, 
   matt_mean_ = matt_normalizer();
 }
 
-// Light that facets scatter more than once. What a clear boundary so loses is known of isotropic facets without film or coat;
-// these change it little, but so that three quarters of it are all that never makes light. A thin sheet's facets send on
-// R' + T', and lose as much as mirrors do; what they lose leaves on both sides as R' and T' do on the average.
+// Multiple scattering between facets. The energy that single scattering misses at a clear boundary is tabulated for isotropic
+// facets without film or coat. Film and coat change it little; but with these only three quarters of it can be added without
+// ever creating energy. A thin sheet's facets scatter R' + T', and lose as much as mirrors do; the lost light is added on both
+// sides in proportion to the means of R' and T'.
 void PrincipledScatter::prepare_multiple() {
   const PrincipledLayers& l = layers_;
   const bool sheet = l.clear > 0 && l.thin_walled;
@@ -89,8 +92,9 @@ void PrincipledScatter::prepare_multiple() {
   }
 }
 
-// The mean of t over the light that an EON body sends up: for a Lambertian one that under diffuse light. A rough one's depends
-// on where its light came from, and is greatest when that was the normal: then f = f_EON t(out) t(in) / mean makes no light.
+// The mean of t over the light that an EON body reflects: for a Lambertian body, the mean under diffuse light. That of a rough
+// body depends on the direction of the illumination, and is greatest for light along the normal: with this mean f = f_EON
+// t(out) t(in) / mean never creates energy.
 float PrincipledScatter::matt_normalizer() const {
   const bool lambertian = layers_.diffuse_roughness == 0;
   if (lambertian && !covered_) return gloss_.mean_passed();
@@ -142,8 +146,8 @@ PrincipledScatter::Facets PrincipledScatter::facets_at(float cosine, bool from_i
   return f;
 }
 
-// Refracted at each wavelength by its own index; of the two cosines that belong together the one on the side of the lower
-// index tells the reflectance, from whichever side the light comes. Beyond the critical angle all is reflected.
+// Each wavelength is refracted by its own index. From whichever side the light comes, the reflectance is computed from the
+// cosine on the side of the lower index. Beyond the critical angle everything is reflected.
 void PrincipledScatter::clear_facets_at(float cosine, bool from_inside, Facets& f) const {
   for (int i = 0; i < (colored_ ? spectrum_size : 1); ++i) {
     const float eta = from_inside ? 1 / layers_.eta[i] : layers_.eta[i];
@@ -166,9 +170,9 @@ void PrincipledScatter::clear_facets_at(float cosine, bool from_inside, Facets& 
   f.through *= layers_.transmission_color * layers_.clear;
 }
 
-// Both faces of a thin sheet, with R the reflectance of each and a what is left of light on a way through:
+// Both faces of a thin sheet, with R the reflectance of each and a the transmittance of one passage:
 //   R' = R + (1 - R)^2 R a^2 / (1 - R^2 a^2),   T' = (1 - R)^2 a / (1 - R^2 a^2),
-// whose sum is 1 for a = 1. a is transmission_color to the power 1 / cosine within.
+// whose sum is 1 for a = 1. a is transmission_color to the power 1 / cosine inside.
 void PrincipledScatter::thin_facets_at(float cosine, Facets& f) const {
   for (int i = 0; i < spectrum_size; ++i) {
     const float r = f.clear[i], within = safe_sqrt(1 - (1 - cosine * cosine) / square(layers_.eta[i]));
@@ -188,8 +192,8 @@ float PrincipledScatter::reflect_probability(const Facets& f, Lobes which) const
 
 float PrincipledScatter::upper_passed(const Vector3& v) const { return covered_ ? fuzz_passed(v) * coat_passed(v) : 1; }
 
-// min(T(out), T(in)) is symmetric and no more than T(out): whatever lies below, no light is made. In the middle of a
-// highlight, where both are alike, it is exact.
+// min(T(out), T(in)) is symmetric and at most T(out): whatever lies below, no energy is created. At the centre of a highlight,
+// where T(out) = T(in), it is exact.
 Spectrum PrincipledScatter::through_upper(const Vector3& out, const Vector3& in) const {
   if (!covered_) return Spectrum(1.0f);
   const float fuzz = std::min(fuzz_passed(out), fuzz_passed(in)), coat = std::min(coat_passed(out), coat_passed(in));
@@ -210,7 +214,7 @@ Spectrum PrincipledScatter::coat_absorption(float inverse_cosines) const {
 
 namespace {
 
-/// Of `count` points spread evenly over the square: steps of the golden ratio.
+/// Point i of `count` points spread evenly over the square, by steps of the golden ratio.
 Point2 golden_point(int i, int count) {
   const float y = 0.5f + 0.6180339887f * float(i);
   return {(float(i) + 0.5f) / float(count), y - std::floor(y)};
@@ -218,9 +222,9 @@ Point2 golden_point(int i, int count) {
 
 }  // namespace
 
-// Where facets are rough, some of those seen from `out` stand for all: more of them inside, where reflection is total for some
-// and not for others. What clear ones send on counts as far as no other facet is in its way; what gets through them also gets
-// past coat and fuzz.
+// For rough facets, the mean over a few visible normals: more of them from inside, where reflection is total for some normals
+// and not for others. The light of clear facets is multiplied by its masking by other facets; transmitted light also by the
+// transmittance of coat and fuzz.
 PrincipledScatter::Facets PrincipledScatter::mean_facets(const Vector3& out) const {
   const MicrofacetDistribution& d = layers_.facets;
   const int count = smooth_ ? 1 : inside(out) ? 16 : 5;

@@ -1,19 +1,20 @@
 // PrincipledScatter: its lobes, their sum and their sampling.
 //
 // Layers, from the top (OpenPBR Surface 1.1, "Reduction to a mixture of lobes"), with fractions of the surface F (fuzz), C
-// (coat), and of the base M (metal), T (clear), O (opaque), M + T + O = 1; T_x(v) = 1 - E_x(v) is what layer x lets through:
+// (coat), and of the base M (metal), T (clear), O (opaque), M + T + O = 1; T_x(v) = 1 - E_x(v) is the transmittance of layer x:
 //   f = F f_fuzz + t_F [C f_coat + t_C (M f_metal + T f_clear + O (f_gloss + f_matt))].
 // OpenPBR leaves open how f is kept reciprocal. Here
 //   t_x(out, in) = min(1 - x E_x(out), 1 - x E_x(in))   over facets (see through_upper),
 //   f_matt = f_EON t(out) t(in) / mean t,   t = T_gloss (1 - C E_coat) (1 - F E_fuzz),
-// with the mean under diffuse light. For a Lambertian body of albedo rho the second one's albedo is rho t(out) exactly: what
-// the layers above do not reflect comes to the body, and of it rho comes out (Kelemen & Szirmay-Kalos 2001).
+// with the mean under diffuse light. For a Lambertian body of albedo rho, f_matt has exactly the albedo rho t(out): light that
+// the layers above do not reflect reaches the body, and the fraction rho of it leaves (Kelemen & Szirmay-Kalos 2001).
 //
-// From inside a refracting body only the clear fraction is met as a boundary; the others look alike from both sides.
+// Seen from inside a refracting body, only the clear fraction is a refracting boundary; the others are the same from both
+// sides.
 //
-// Sampling is a mixture of strategies, each with a density of its own; a smooth sample's density is the sum over all of them.
+// Sampling is a mixture of strategies, each with a pdf of its own; a smooth sample's pdf is the sum over all of them.
 //   fuzz: uniform; coat: visible normals; base: visible normals, then reflection or refraction by the facet's fractions;
-//   matt: cosine, for the matt body and for light scattered more than once between facets; through: the same behind.
+//   matt: cosine, for the diffuse body and for multiple scattering between facets; through: the same in transmission.
 // Refraction with dispersion is sampled as in RoughDielectric: any of the path's wavelengths may choose the direction.
 
 #include "principled_scatter.h"
@@ -49,7 +50,7 @@ PrincipledScatter::Plan PrincipledScatter::plan(const Vector3& out, Lobes which)
   const float upper = upper_passed(out);
   if (which & (base_reflection() | base_transmission())) {
     const Facets f = facets_at(std::abs(out.z), inside(out));
-    // What is nothing at this angle may be something at a facet's.
+    // A fraction that is 0 at this angle may be positive at a facet's angle.
     constexpr float unforeseen = 0.01f;
     const float reflected = f.metal.average() + f.opaque.average() + (l.metal + l.opaque + l.clear) * unforeseen;
     const float through = f.through.average() + l.clear * unforeseen;
@@ -159,8 +160,8 @@ void PrincipledScatter::transmission(const Vector3& out, const Vector3& in, Lobe
                (relative_index(out, in) / towards(out, l.eta[0]));  // as in RoughDielectric
 }
 
-// A sheet's rough transmission is taken for its reflection turned over: facets then lose nothing. (Two surfaces whose
-// facets have nothing to do with each other would spread light by (eta - 1) / sqrt(2) of that.)
+// A sheet's rough transmission is modelled as its reflection mirrored at the sheet, for which facets lose no energy
+// (prepare_multiple). Two surfaces with independent facets would spread light by (eta - 1) / sqrt(2) of that.
 void PrincipledScatter::thin_transmission(const Vector3& out, const Vector3& in, Lobes which, const Plan& plan,
                                           ScatterValue& r) const {
   const PrincipledLayers& l = layers_;
@@ -184,7 +185,7 @@ bool PrincipledScatter::local_sample(const Vector3& out, float choice, Point2 u,
   const PrincipledLayers& l = layers_;
   if (out.z == 0) return false;
   const Plan plan = this->plan(out, which);
-  // Whether `choice` falls to a strategy; what is left of it is stretched over [0, 1) for further choices.
+  // Whether `choice` selects a strategy of this probability; the rest of it is rescaled to [0, 1) for further choices.
   const auto chosen = [&choice](float probability) {
     if (choice < probability) {
       choice = clamp(choice / probability, 0, one_minus_epsilon);
@@ -231,7 +232,7 @@ bool PrincipledScatter::local_sample(const Vector3& out, float choice, Point2 u,
   return s.pdf > 0;
 }
 
-/// For a smooth base the whole sample, for a rough one its direction.
+/// Samples the base: the whole sample for a smooth base, the direction and lobe for a rough one.
 bool PrincipledScatter::sample_base(const Vector3& out, float choice, Point2 u, Lobes which, const Plan& plan,
                                     LocalSample& s) const {
   const PrincipledLayers& l = layers_;
@@ -246,7 +247,7 @@ bool PrincipledScatter::sample_base(const Vector3& out, float choice, Point2 u, 
   const Facets f = facets_at(cosine, inside(out));
   const float reflect_p = reflect_probability(f, which);
   if (choice < reflect_p) {
-    if (!(which & base_reflection())) return false;  // only refraction was asked for, and there is none
+    if (!(which & base_reflection())) return false;  // only refraction was requested, and there is none
     s.in = reflect(out, m);
     s.lobe = base_reflection();
     if (!smooth_) return s.in.z * out.z > 0;
@@ -263,7 +264,7 @@ bool PrincipledScatter::sample_base(const Vector3& out, float choice, Point2 u, 
       const float eta = towards(out, l.eta[wavelength]);
       if (fresnel_dielectric(cosine, eta, cosine_behind) >= 1) return false;
       s.in = refract(out, m, eta, cosine_behind);
-      if (!(s.in.z * out.z < 0)) return false;  // another facet is in the way
+      if (!(s.in.z * out.z < 0)) return false;  // blocked by another facet
     }
     s.lobe = base_transmission();
     s.eta = hero_index(out, s.in);

@@ -10,8 +10,8 @@
 namespace etendue {
 namespace {
 
-/// The fibres alone. E is at most 0.93, and small but near the horizon; directions are drawn uniformly, with density 1 / (2
-/// pi).
+/// The fibres alone. E is at most 0.93, and small except near the horizon; directions are sampled uniformly, with the pdf 1 /
+/// (2 pi).
 class SheenScatter final : public ScatterModel<SheenScatter> {
  public:
   SheenScatter(const SurfacePoint& p, const Frame& frame, const SheenLobe& lobe, Spectrum color)
@@ -44,10 +44,10 @@ class SheenScatter final : public ScatterModel<SheenScatter> {
 
 // f = c w f_sheen + t(out, in) f_base, where w is the fraction of the surface that has fibres and
 //   t(out, in) = min(T(out), T(in)),   T(v) = 1 - w E(v).
-// The albedo is at most w E(out) + T(out) = 1 whatever the base is, as t <= T(out); f stays reciprocal, as t is symmetric.
-// No larger t has both properties for every base: one that reflects into a single direction allows for no more. Estevez &
-// Kulla 2017 scale by T(in) and T(out) as well. Fibres take no light away: what they do not reflect comes to the
-// base, grey. A base that scatters widely loses some (a white Lambertian one 13 % by default), as if fibres held it back.
+// The albedo is at most w E(out) + T(out) = 1 whatever the base is, as t <= T(out); f stays reciprocal, as t is symmetric. No
+// larger t has both properties for every base: a specular base allows for no more. Estevez & Kulla 2017 scale by T(in) and
+// T(out) as well. Fibres absorb nothing: the light that they do not reflect reaches the base, with its spectrum unchanged. A
+// base that scatters widely loses some light (a white Lambertian one 13 % by default), as if fibres blocked it.
 class CoveredScatter final : public ScatterCombination {
  public:
   CoveredScatter(const SurfacePoint& p, const SheenScatter& sheen, const SheenLobe& lobe, float weight, const Scatter& base,
@@ -85,7 +85,7 @@ class CoveredScatter final : public ScatterCombination {
     const Scatter& other = fibres ? base_ : static_cast<const Scatter&>(sheen_);
     const ScatterValue v = other.value_and_pdf(out, s->direction, transport, which);
     const float pdf = probability * s->pdf + (1 - probability) * v.pdf;
-    if (stochastic_)  // the base's density is not that of its samples: each sample stands for its own part
+    if (stochastic_)  // the base's pdf is not that of its samples: each sample counts for its own part only
       s->weight *= share / probability;
     else
       s->weight = (s->weight * (share * s->pdf) + v.value * (fibres ? t : 1)) / pdf;
@@ -132,7 +132,7 @@ class SheenShader final : public Shader {
     require_reflectance(*this, "color", color);
     require_scalar(*this, "weight", weight);
     require_scalar(*this, "roughness", roughness);
-    SheenLobe(0.5f).mean_albedo();  // makes the table
+    SheenLobe(0.5f).mean_albedo();  // computes the table
   }
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
@@ -146,7 +146,7 @@ class SheenShader final : public Shader {
     return arena.make<CoveredScatter>(p, *sheen, lobe, covered, *below, base->stochastic());
   }
 
-  /// Of the base, what fibres let through is taken for `out` alone.
+  /// The fibres' transmittance for light of the base is taken for `out` alone.
   float albedo_error() const override { return base ? std::max(0.3f, base->albedo_error()) : 0.02f; }
   Lobes possible_lobes() const override { return Lobes(glossy_reflection | (base ? base->possible_lobes() : no_lobes)); }
   Spectrum interior_index(const Wavelengths& w) const override { return base ? base->interior_index(w) : Spectrum(1.0f); }

@@ -1,5 +1,5 @@
 #pragma once
-// The lobe of velvet, peach fuzz and dust: fibres that stand upright on a surface catch light at its edges.
+// SheenLobe: the lobe of velvet, peach fuzz and dust: upright fibres on a surface, which are bright at grazing angles.
 
 #include "etendue/core/vector.h"
 
@@ -8,13 +8,13 @@ namespace etendue {
 // Microfacets whose normals lie near the horizon (Estevez & Kulla 2017, "Production friendly microfacet sheen BRDF"):
 //   f = D(m) / (4 |out.z in.z| (1 + lambda(out) + lambda(in)))   [1/sr],   m along out + in,
 //   D(m) = (2 + 1/a) sin(m)^(1/a) / (2 pi)                                 (an exponential in place of a Gaussian),
-// with the masking they fitted to it. Their softening of the terminator, which treats light and eye
-// differently, is left out: f is reciprocal. There is no Fresnel factor: fibres are white, and a color multiplies f.
+// with the masking they fitted to it. Their softening of the terminator, which treats light and viewer differently, is left
+// out: f is reciprocal. There is no Fresnel factor: fibres are white, and a color multiplies f.
 //
-// Of light from v the fraction E(v) leaves again, from a table, and 1 - E(v) comes to what is below.
+// The directional albedo E(v) comes from a table; the fraction 1 - E(v) of the light reaches the layer below.
 class SheenLobe {
  public:
-  /// Roughness in [0, 1]; below `sharpest` it counts as that.
+  /// Roughness in [0, 1]; values below `sharpest` are raised to it.
   explicit SheenLobe(float roughness);
   static constexpr float sharpest = 0.1f;
 
@@ -31,7 +31,7 @@ class SheenLobe {
 
   float inverse_roughness_;
   float fit_[5];
-  float row_;  ///< place in the table
+  float row_;  ///< coordinate in the table
 };
 
 }  // namespace etendue

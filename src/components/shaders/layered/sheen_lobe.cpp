@@ -6,8 +6,8 @@
 
 namespace etendue {
 
-// E by roughness and cosine, each at equal steps of their roots' scale: E falls steeply where v grazes the surface. Computed
-// by the midpoint rule over cosines, crowded towards 0, and azimuths; within 2e-3 of E.
+// E by roughness, at equal steps, and by the cosine, at equal steps of its root, because E falls steeply towards grazing
+// angles. Computed by the midpoint rule over cosines, denser towards 0, and azimuths; within 2e-3 of E.
 class SheenTable {
  public:
   static constexpr int rows = 16, columns = 24;
@@ -23,7 +23,7 @@ class SheenTable {
         for (int a = 0; a < cosines; ++a) {
           const float x = (float(a) + 0.5f) / cosines, mu = x * x, sine = safe_sqrt(1 - mu * mu);
           for (int b = 0; b < azimuths; ++b) {
-            const float t = (float(b) + 0.5f) / azimuths, azimuth = pi * t * t * (2 - t);  // crowded around 0
+            const float t = (float(b) + 0.5f) / azimuths, azimuth = pi * t * t * (2 - t);  // denser around 0
             const float weight = 2 * x * pi * t * (4 - 3 * t);
             sum += double(lobe.value(out, {sine * std::cos(azimuth), sine * std::sin(azimuth), mu}) * mu * weight);
           }
@@ -87,7 +87,7 @@ float SheenLobe::value(const Vector3& out, const Vector3& in) const {
   return d / (4 * std::max(mu_out * mu_in, 1e-12f) * (1 + masked(mu_out) + masked(mu_in)));
 }
 
-/// lambda, the area of hidden fibre over that of seen one.
+/// lambda, the area of masked fibres over that of visible ones.
 float SheenLobe::masked(float cosine) const {
   const auto exponent = [this](float x) { return fit_[0] / (1 + fit_[1] * std::pow(x, fit_[2])) + fit_[3] * x + fit_[4]; };
   return std::exp(cosine < 0.5f ? exponent(cosine) : 2 * exponent(0.5f) - exponent(std::max(1 - cosine, 0.0f)));

@@ -9,11 +9,10 @@ namespace etendue {
 namespace {
 
 constexpr int most_cells = 1024;  // in each dimension
-constexpr double most = 1e12;     // any number
+constexpr double most = 1e12;     // magnitude of any number
 constexpr double scales[3] = {1.0 / 1500, 1.15 / 1500, 1.66 / 1500};
 
-/// The cells whose centres lie around a coordinate, and the fraction towards the second. Beyond the outermost centres
-/// nothing changes.
+/// The cells whose centres enclose a coordinate, and the fraction towards the second. Constant beyond the outermost centres.
 struct Span {
   int low, high;
   float fraction;
@@ -23,7 +22,7 @@ Span span_of(float coordinate, int cells) {
   const int low = std::min(int(x), cells - 1);
   return {low, std::min(low + 1, cells - 1), x - float(low)};
 }
-/// The same on a circle.
+/// The same for a periodic coordinate.
 Span span_around(float turn, int cells) {
   const float x = turn * float(cells) - 0.5f, floor = std::floor(x);
   const int low = (int(floor) + cells) % cells;
@@ -67,9 +66,8 @@ MerlTable::MerlTable(const std::string& path) {
   }
 }
 
-// Cells without a measurement are mostly those of which some directions are below the horizon. They take the value of the
-// nearest cell towards smaller theta_d that has one, so that interpolation at the border is not darkened; where there is
-// none, that of smaller theta_h.
+// Most cells without a measurement contain directions below the horizon. They take the value of the nearest measured cell
+// towards smaller theta_d, so that interpolation at the border is not darkened; if there is none, that of smaller theta_h.
 void MerlTable::fill_unmeasured(int channel, const std::vector<bool>& measured) {
   for (int h = 0; h < half_; ++h)
     for (int p = 0; p < azimuth_; ++p)
@@ -78,8 +76,8 @@ void MerlTable::fill_unmeasured(int channel, const std::vector<bool>& measured) 
           values_[index(h, d, p)].c[channel] = values_[d > 0 ? index(h, d - 1, p) : index(h - 1, d, p)].c[channel];
 }
 
-// With unit vectors a and b, a + b lies along the half vector h and a - b across it: their lengths are 2 cos(theta_d) and
-// 2 sin(theta_d), and exchanging a and b turns the second around.
+// With unit vectors a and b, a + b lies along the half-vector h and a - b is perpendicular to it: their lengths are 2
+// cos(theta_d) and 2 sin(theta_d), and exchanging a and b negates the second.
 Rgb MerlTable::evaluate(const Vector3& a, const Vector3& b) const {
   const Vector3 sum = a + b, difference = a - b;
   const float across = std::sqrt(sum.x * sum.x + sum.y * sum.y), whole = length(sum);

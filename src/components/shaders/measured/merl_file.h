@@ -1,13 +1,13 @@
 #pragma once
-// MERL files: isotropic f tabulated over the half vector and the difference vector.
+// MerlTable: MERL files, isotropic f tabulated over the half-vector and the difference vector.
 //
-// Matusik et al. 2003, "A data-driven reflectance model": theta_h is the half vector's angle from the normal; theta_d and
-// phi_d are the coordinates of one of the directions in a frame around the half vector (Rusinkiewicz 1998, "A new change of
-// variables for efficient BRDF representation"). f is reciprocal, so phi_d + pi is the same as phi_d and only half a turn is
-// stored. A file holds three 32-bit integers, the numbers of cells in theta_h, theta_d and phi_d (90, 90 and 180), then
-// for each of red, green and blue a 64-bit number for each cell, phi_d running fastest. Cell i of theta_h spans
-// (pi/2) (i/90)^2 to (pi/2) ((i+1)/90)^2; the others are even. f is the number times 1/1500, 1.15/1500 or 1.66/1500 [1/sr];
-// a negative one says that nothing was measured in the cell.
+// Matusik et al. 2003, "A data-driven reflectance model": theta_h is the half vector's angle from the normal; theta_d and phi_d
+// are the coordinates of one of the directions in a frame around the half vector (Rusinkiewicz 1998, "A new change of variables
+// for efficient BRDF representation"). f is reciprocal, so phi_d + pi is the same as phi_d and only half a turn is stored. A
+// file holds three 32-bit integers, the numbers of cells in theta_h, theta_d and phi_d (90, 90 and 180), then for each of red,
+// green and blue a 64-bit number for each cell, phi_d running fastest. Cell i of theta_h spans (pi/2) (i/90)^2 to (pi/2)
+// ((i+1)/90)^2; the others are even. f is the number times 1/1500, 1.15/1500 or 1.66/1500 [1/sr]; a negative number marks a
+// cell without a measurement.
 
 #include <string>
 #include <vector>
@@ -22,16 +22,16 @@ struct Rgb {
 
 class MerlTable {
  public:
-  /// Throws Error, which says what is wrong with the file.
+  /// Throws Error with a description of what is wrong with the file.
   explicit MerlTable(const std::string& path);
 
-  /// f [1/sr] for two directions above the surface (z > 0), interpolated between the cells' centres. The same, to the bit,
-  /// when they are exchanged.
+  /// f [1/sr] for two directions above the surface (z > 0), interpolated between the cells' centres. Bitwise the same when a
+  /// and b are exchanged.
   Rgb evaluate(const Vector3& a, const Vector3& b) const;
 
  private:
   struct Value {
-    float c[4];  // red, green, blue, and nothing: read at once
+    float c[4];  // red, green, blue, padding: read at once
   };
   void fill_unmeasured(int channel, const std::vector<bool>& measured);
   size_t index(int h, int d, int p) const {

@@ -10,11 +10,11 @@
 namespace etendue {
 namespace {
 
-// Directions are drawn by the half vector m, in coordinates u = (sqrt(2 theta / pi), phi / (2 pi)), phi counted from `out`.
-// There
+// Directions are sampled by the half-vector m, in coordinates u = (sqrt(2 theta / pi), phi / (2 pi)), with phi measured from
+// `out`. In these
 //     dw_in = 4 (out . m) dw_m,    dw_m = sin(theta) dtheta dphi = 2 pi^2 u_x sin(theta) du,
-// and f cos(in) times both is tabulated over u at load, for some angles of `out`. Between them the tables are blended. What
-// lies between the points of the tables is drawn with the help of a share of density cos / pi.
+// and f cos(in) times both Jacobians is tabulated over u at load, for some angles of `out`. Between these angles the tables are
+// blended. A share of the samples has the pdf cos / pi, for variation of f between the points of the tables.
 class MerlData {
  public:
   explicit MerlData(const std::string& path) : table_(path) {
@@ -36,7 +36,7 @@ class MerlData {
           if (cosine_m > 0 && in.z > 0) f = table_.evaluate(out, in);
           const float factor = std::max(in.z, 0.0f) * 4 * std::max(cosine_m, 0.0f) * half_vector_stretch(u, sine(m));
           values.push_back(factor * (f.r + f.g + f.b) / 3);
-          // The trapezoid rule: half of the outermost.
+          // The trapezoid rule: half the weight at the ends.
           const float weight = factor * (column == width - 1 ? 0.5f : 1) * (row == 0 || row == height - 1 ? 0.5f : 1) /
                                ((width - 1) * (height - 1));
           sum[0] += weight * f.r;
@@ -128,10 +128,10 @@ class MerlScatter final : public ScatterModel<MerlScatter> {
  private:
   static constexpr float cosine_share = 0.1f;
 
-  /// The surface is alike on both sides.
+  /// Mirrors a direction to the front: the material is the same on both sides.
   static Vector3 upwards(const Vector3& v) { return {v.x, v.y, std::abs(v.z)}; }
 
-  // f may exceed 1, so it is no reflectance; as a coefficient its spectrum has the same shape.
+  // f may exceed 1, so it is not converted as a reflectance; as a coefficient its spectrum has the same shape.
   Spectrum spectrum(const Rgb& c) const { return rgb_spectrum(*space_, c.r, c.g, c.b, ColorUse::coefficient, wavelengths_); }
   Spectrum value(const Vector3& from, const Vector3& to) const { return spectrum(data_->table().evaluate(from, to)); }
   float pdf_of(const Vector3& from, const Vector3& to) const {
@@ -169,7 +169,7 @@ class MerlShader final : public Shader {
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     return arena.make<MerlScatter>(p, *data_, *space_, w);
   }
-  /// Of the table, which is finer than the measurement but at grazing angles.
+  /// Error of the albedo table, which is finer than the measurement except at grazing angles.
   float albedo_error() const override { return 0.2f; }
   Lobes possible_lobes() const override { return glossy_reflection; }
 

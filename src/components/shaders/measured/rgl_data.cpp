@@ -9,7 +9,7 @@ namespace {
 
 using Type = TensorFile::Type;
 
-/// The angle between a unit vector and z, exact for small ones too.
+/// The angle between a unit vector and z, precise for small angles too.
 float elevation(const Vector3& v) { return 2 * safe_asin(0.5f * length(v - Vector3{0, 0, 1})); }
 float elevation_to_unit(float theta) { return std::sqrt(theta * (2 / pi)); }
 float azimuth_to_unit(float phi) { return (phi + pi) * (inverse_pi / 2); }
@@ -17,7 +17,7 @@ float azimuth_to_unit(float phi) { return (phi + pi) * (inverse_pi / 2); }
 /// dw_m / du [sr]
 float half_vector_stretch(float u_x, float sine) { return std::max(2 * pi * pi * u_x * sine, 1e-20f); }
 
-/// A list of values of a parameter.
+/// Reads the increasing values of a parameter.
 std::vector<float> parameter(TensorFile& file, const std::string& name, size_t most) {
   const TensorFile::Field& field = file.field(name, Type::float32, 1);
   if (field.count > most) throw Error("field '" + name + "' has " + std::to_string(field.count) + " values");
@@ -29,7 +29,7 @@ std::vector<float> parameter(TensorFile& file, const std::string& name, size_t m
 
 constexpr std::uint64_t most_points = 1 << 14;  // along one side of a table
 
-/// Tables over the unit square: the last two dimensions, the others as told.
+/// Reads tables over the unit square, the last two dimensions; `others` are the sizes that the other dimensions must have.
 SquareTables tables(TensorFile& file, const std::string& name, const std::vector<std::uint64_t>& others) {
   const TensorFile::Field& field = file.field(name, Type::float32, others.size() + 2);
   for (size_t i = 0; i < others.size(); ++i)
@@ -49,7 +49,7 @@ void require_at_least(float least, const SquareTables& t, const std::string& nam
                   (least > 0 ? "negative or zero" : "negative") + " makes sense");
 }
 
-/// Puts the channels of a point side by side: in the file each channel has a table of its own.
+/// Interleaves the channels of each point: in the file each channel has a table of its own.
 SquareTables interleaved(SquareTables t, size_t channels) {
   const size_t points = t.points(), slices = t.values().size() / (points * channels);
   std::vector<float> values(t.values().size());
@@ -119,14 +119,14 @@ RglChannels RglData::channels(const Wavelengths& w) const {
 RglData::Incident RglData::incident(const Vector3& from) const {
   Incident i;
   i.direction = from;
-  if (symmetry_ >= 2) {  // into the half circle y <= 0, by half a turn, or into the quarter with x <= 0 too, by mirrors
+  if (symmetry_ >= 2) {  // into the half circle y <= 0 by half a turn, or into the quarter x, y <= 0 by mirroring
     i.flip_y = from.y > 0 ? -1.0f : 1.0f;
     i.flip_x = symmetry_ == 2 ? i.flip_y : from.x > 0 ? -1.0f : 1.0f;
     i.direction = {i.flip_x * from.x, i.flip_y * from.y, from.z};
   }
   const float theta = elevation(i.direction);
   i.phi = std::atan2(i.direction.y, i.direction.x);
-  if (symmetry_ >= 2 && i.phi > 0) i.phi -= 2 * pi;  // pi itself, where y is 0
+  if (symmetry_ >= 2 && i.phi > 0) i.phi -= 2 * pi;  // phi = pi, where y is 0
   i.blend = grid_.locate(i.phi, theta);
   if (jacobian_) i.area = sigma_.at({elevation_to_unit(theta), azimuth_to_unit(i.phi)}, {1, {0}, {1}});
   return i;
@@ -184,7 +184,7 @@ Vector3 RglData::sample(const Vector3& from, Point2 uniform) const {
   return {i.flip_x * to.x, i.flip_y * to.y, to.z};
 }
 
-// For each point of the parameter grid the mean of f cos / p over a few samples, spread evenly.
+// For each point of the parameter grid: the mean of f cos / pdf over a few samples, spread evenly.
 void RglData::estimate_albedo(bool symmetric) {
   constexpr int side = 8;
   const size_t channels = size_t(spectra_.channels());
@@ -203,7 +203,7 @@ void RglData::estimate_albedo(bool symmetric) {
     for (int n = 0; n < side * side; ++n) {
       const Vector3 to = sample(from, {(float(n % side) + 0.5f) / side, (float(n / side) + 0.5f) / side});
       if (!(to.z > 0)) continue;
-      // What `to` is hardly ever drawn for must not count for much.
+      // Limits the weight of directions that are hardly ever sampled.
       const float factor = 1 / (side * side * std::max(pdf(from, to), 0.1f * inverse_pi * to.z));
       const float share = symmetric ? to.z / (from.z + to.z) : 1;
       add(from, to, factor * share);

@@ -1,15 +1,15 @@
 #pragma once
-// A material measured in the adaptive parameterization of Dupuy & Jakob 2018.
+// RglData: a material measured in the adaptive parameterization of Dupuy & Jakob 2018.
 //
-// Directions are measured at points that follow the material: its normal distribution was measured first, and the half
-// vectors at which f is tabulated are spread as that distribution, seen from the incident direction w_i, has it. For each
-// w_i of a grid over (phi_i, theta_i), a warp of the unit square (`vndf`) takes a point s to the half vector, in coordinates
+// The measured directions are adapted to the material: its normal distribution was measured first, and the half-vectors at
+// which f is tabulated follow the distribution of visible normals from the incident direction w_i. For each w_i of a grid over
+// (phi_i, theta_i), a warp of the unit square (`vndf`) maps a point s to the half-vector, in coordinates
 //     u = (sqrt(2 theta / pi), (phi + pi) / (2 pi)),   dw_m = 2 pi^2 u_x sin(theta) du,
-// where phi counts from phi_i when the material is isotropic. At s the file has the spectrum
+// where phi is measured from phi_i if the material is isotropic. At s the file holds the factor `spectra` of
 //     f(w_i, w_o) cos(w_o) = spectra(s; w_i, lambda) ndf(u) / (4 sigma(w_i))                                   [1/sr]
-// sigma being the projected area of the microsurface (files without the factor say jacobian = 0). A second warp
-// (`luminance`) is the density in s of what f cos makes of a sample, so sampling goes from uniform numbers through
-// `luminance`, then through `vndf`, to u, the half vector m and w_o = 2 (w_i . m) m - w_i:
+// sigma being the projected area of the microsurface (files without the factor ndf / (4 sigma) have jacobian = 0). A second
+// warp (`luminance`) has a pdf over s that follows the remaining variation of f cos. So sampling goes from uniform numbers
+// through `luminance`, then through `vndf`, to u, the half-vector m and w_o = 2 (w_i . m) m - w_i:
 //     p(w_o) = p_luminance(s) p_vndf(u) / (2 pi^2 u_x sin(theta_m) 4 (w_i . m))                                [1/sr]
 
 #include <string>
@@ -20,7 +20,7 @@
 
 namespace etendue {
 
-/// Which of a material's channels a path asks for.
+/// The channels of a material between which a path's wavelengths are interpolated.
 struct RglChannels {
   bool spectral = false;  ///< else the three channels are RGB
   std::array<std::uint32_t, spectrum_size> index{};
@@ -29,16 +29,16 @@ struct RglChannels {
 
 class RglData {
  public:
-  /// Throws Error, which says what is wrong with the file. `symmetric` is for the albedo: of the mean over both orders of the
-  /// directions (see rgl_shader.cpp), or of the file as it is.
+  /// Throws Error with a description of what is wrong with the file. `symmetric` concerns the albedo only: it is computed for
+  /// the mean over both orders of the directions (see rgl_shader.cpp), or for the unchanged f of the file.
   RglData(const std::string& path, bool symmetric);
 
   RglChannels channels(const Wavelengths&) const;
-  /// f(from, to) cos(to) [1/sr] for two directions above the surface (z > 0), as the file has it: the first is w_i.
+  /// f(from, to) cos(to) [1/sr] for two directions above the surface (z > 0), as in the file: `from` is w_i.
   Spectrum evaluate(const Vector3& from, const Vector3& to, const RglChannels&, const Wavelengths&) const;
-  /// The density [1/sr] with which `sample` gives a direction.
+  /// The pdf [1/sr] of `sample`.
   float pdf(const Vector3& from, const Vector3& to) const;
-  /// A direction; it may lie below the surface.
+  /// Samples a direction; it may lie below the surface.
   Vector3 sample(const Vector3& from, Point2 u) const;
   /// An estimate of the fraction of light from one direction that is reflected.
   Spectrum albedo(const Vector3& from, const RglChannels&, const Wavelengths&) const;
@@ -49,7 +49,7 @@ class RglData {
   const std::string& description() const { return description_; }
 
  private:
-  /// An incident direction turned to where the file has data, and what it says of the tables.
+  /// An incident direction mirrored into the range that the file covers, and the tables to blend for it.
   struct Incident {
     Vector3 direction;
     float phi = 0, flip_x = 1, flip_y = 1;
@@ -57,9 +57,9 @@ class RglData {
     TableBlend blend;
   };
   Incident incident(const Vector3& from) const;
-  /// The half vector's place in the square.
+  /// The half-vector's coordinates u in the unit square.
   Point2 place(const Vector3& half, float phi_incident) const;
-  /// What f cos is made of, but for the spectrum: where that is tabulated, and a factor [1/sr].
+  /// f cos without the spectrum: the point s at which the spectrum is tabulated, and the factor of the spectrum [1/sr].
   struct Answer {
     Point2 place;
     float factor = 1;
@@ -77,7 +77,7 @@ class RglData {
   std::vector<float> albedo_;       // for each table of spectra_, its channels
   float largest_albedo_ = 0;
   bool isotropic_ = true, jacobian_ = true;
-  int symmetry_ = 1;  // the part of the full circle that phi_i covers is one over this
+  int symmetry_ = 1;  // phi_i covers the full circle divided by this
 };
 
 }  // namespace etendue

@@ -9,14 +9,14 @@
 namespace etendue {
 namespace {
 
-// The file's f(w_i, w_o) is measured and interpolated for the two directions in different ways, so it is reciprocal only up
-// to the noise of both. Paths that are built from the camera, from the lights or from both ends must agree on f. Unless the
-// file is to be taken as it is, with `out` for w_i, its two answers are averaged, each in proportion to the cosine with which
-// it was measured (what the file holds is f cos, so little is known of f where cos is small):
+// The file's f(w_i, w_o) is measured and interpolated differently for the two directions, so it is reciprocal only up to the
+// noise of both. But camera subpaths, light subpaths and connections of both must agree on f. So unless `symmetric` is false
+// and f is taken from the file unchanged, with `out` as w_i, the values of both orders are averaged, each weighted by the
+// cosine with which it was measured (the file holds f cos, so f is imprecise where cos is small):
 //     f(out, in) = (f_file(out, in) cos(in) + f_file(in, out) cos(out)) / (cos(in) + cos(out)).
 //
-// Directions are drawn as the file says (see rgl_data.h). That density may vanish where f_file(in, out) does not, which the
-// mean needs, and importance: one direction in ten is drawn with density cos / pi.
+// Directions are sampled by the file's warps (see rgl_data.h). Their pdf may vanish where f_file(in, out) does not, which
+// contributes to the mean and to importance: one direction in ten is sampled with the pdf cos / pi.
 class RglScatter final : public ScatterModel<RglScatter> {
  public:
   RglScatter(const SurfacePoint& p, const Frame& frame, const RglData& data, const Wavelengths& w, bool symmetric)
@@ -35,7 +35,7 @@ class RglScatter final : public ScatterModel<RglScatter> {
     const Vector3 from = upwards(out);
     const Vector3 to = choice < cosine_share ? warp::cosine_hemisphere(u) : data_->sample(from, u);
     if (!(to.z > 0)) return false;
-    // Both from the direction that came out, rounded as it is: where f is steep they must belong together.
+    // Value and pdf are both computed from the rounded direction: where f is steep they must be consistent.
     s.value = value(from, to);
     s.pdf = pdf_of(from, to);
     s.in = out.z > 0 ? to : Vector3{to.x, to.y, -to.z};
@@ -48,7 +48,7 @@ class RglScatter final : public ScatterModel<RglScatter> {
   }
 
  private:
-  /// The surface is alike on both sides.
+  /// Mirrors a direction to the front: the material is the same on both sides.
   static Vector3 upwards(const Vector3& v) { return {v.x, v.y, std::abs(v.z)}; }
 
   /// f cos(to)
@@ -100,7 +100,7 @@ class RglShader final : public Shader {
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     return arena.make<RglScatter>(p, data_->isotropic() ? Frame(p.shading_normal) : tangent_frame(p), *data_, w, symmetric);
   }
-  /// Of the table, from 64 directions for each that was measured.
+  /// Error of the albedo table, from 64 samples for each direction that was measured.
   float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override { return glossy_reflection; }
   /// As measured, f is reciprocal up to noise only.

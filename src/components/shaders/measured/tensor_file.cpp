@@ -12,7 +12,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are taken from the file as they are");
 
 constexpr std::uint32_t most_fields = 1000;
-constexpr float most = 1e12f;  // any number
+constexpr float most = 1e12f;  // magnitude of any number
 constexpr std::uint16_t most_dimensions = 16, longest_name = 256;
 
 std::uint64_t size_of(TensorFile::Type type) {
@@ -63,7 +63,7 @@ TensorFile::TensorFile(const std::string& path) : file_(path) {
       throw Error(name + " has numbers of unknown type " + std::to_string(type));
     field.type = Type(type);
     if (field.offset > size) throw Error(name + " lies behind the end of the file");
-    // Divided, not multiplied: sizes may be anything.
+    // Divides instead of multiplying, which could overflow: sizes may be anything.
     std::uint64_t room = (size - field.offset) / size_of(field.type);
     field.count = 1;
     for (std::uint16_t k = 0; k < dimensions; ++k) {

@@ -1,9 +1,9 @@
 #pragma once
-// Tensor files, in which the EPFL laboratory RGL publishes its measured materials (.bsdf): arrays of numbers with names.
+// TensorFile: tensor files, in which the EPFL laboratory RGL publishes its measured materials (.bsdf): named arrays of numbers.
 //
-// Little endian: the twelve bytes "tensor_file\0", two bytes of version (1, 0), a 32-bit count of fields, and for each field
-// a 16-bit length and its name, a 16-bit number of dimensions, a byte for the type of its numbers, the 64-bit place of its
-// data in the file and 64 bits for the size of each dimension. The last dimension runs fastest.
+// Little endian: the twelve bytes "tensor_file\0", two bytes of version (1, 0), a 32-bit count of fields, and for each field a
+// 16-bit length and its name, a 16-bit number of dimensions, a byte for the type of its numbers, the 64-bit offset of its data
+// in the file and 64 bits for the size of each dimension. The last dimension runs fastest.
 
 #include <cstdint>
 #include <string>
@@ -36,13 +36,14 @@ class TensorFile {
     std::uint64_t count = 0;  ///< of numbers; all of them lie within the file
   };
 
-  /// Reads what the file holds, not the data. This and all else throws Error, which says what is wrong but not where.
+  /// Reads the list of fields, not their data. This and all other members throw Error, which describes what is wrong but not in
+  /// which file.
   explicit TensorFile(const std::string& path);
 
   bool has(const std::string& name) const { return find(name) != nullptr; }
-  /// A field of a given type and number of dimensions, none of them empty.
+  /// The field of a name, which must have the given type and number of dimensions and must not be empty.
   const Field& field(const std::string& name, Type, size_t dimensions) const;
-  /// Its numbers, none of them infinite, not a number or so large that products overflow.
+  /// Reads a field's numbers; none of them is infinite, not-a-number or so large that products overflow.
   std::vector<float> floats(const Field&);
   std::vector<std::uint8_t> bytes(const Field&);
 

@@ -5,8 +5,8 @@
 namespace etendue {
 namespace {
 
-/// The t in [0, 1] up to which a function that goes linearly from a to b has the given integral. Of the two forms of the
-/// root, this one stays exact where a and b are nearly equal.
+/// The t in [0, 1] up to which a function that goes linearly from a to b has the given integral. Of the two forms of the root,
+/// this one stays precise where a and b are nearly equal.
 float up_to_integral(float integral, float a, float b) {
   const float root = safe_sqrt(a * a + 2 * integral * (b - a)), divisor = a + root;
   return divisor > 0 ? clamp(2 * integral / divisor, 0, 1) : 0;

@@ -1,12 +1,12 @@
 #pragma once
-// Warp2D: tabulated densities on the unit square, sampled exactly.
+// Warp2D: tabulated pdfs on the unit square, sampled exactly.
 //
-// For each point of a grid of two parameters there is a table of values on a grid of the square, bilinear between; between
-// the points of the parameter grid, the neighbours' tables are blended linearly. Each table is normalized, so every blend
-// is a density. A point is found in two steps (as in Dupuy & Jakob 2018, "An adaptive parameterization for efficient
-// material acquisition and rendering"): y by the marginal density, which is piecewise linear, and x by the conditional
-// one on that line, piecewise linear too. Integrals of tables blend as the tables do, so the running sums of all tables are
-// made once and blended when asked.
+// For each point of a grid of two parameters there is a table of values on a grid of the square, interpolated bilinearly;
+// between the points of the parameter grid, the neighbours' tables are blended linearly. Each table is normalized, so every
+// blend is a pdf. A point is sampled in two steps (as in Dupuy & Jakob 2018, "An adaptive parameterization for efficient
+// material acquisition and rendering"): y by the marginal pdf, which is piecewise linear, and x by the conditional pdf on that
+// line, piecewise linear too. Integrals of tables blend as the tables do, so the running sums of all tables are computed once
+// and blended at each call.
 
 #include <array>
 #include <vector>
@@ -15,14 +15,14 @@
 
 namespace etendue {
 
-/// Which tables belong to a pair of parameters, and their shares. Tables of no weight are left out.
+/// The tables to blend for a pair of parameters, and their weights. Tables of weight 0 are left out.
 struct TableBlend {
   int count = 0;
   std::array<std::uint32_t, 4> table{};
   std::array<float, 4> weight{};
 };
 
-/// A grid of two parameters; what lies outside is moved to its border.
+/// A grid of two parameters; values outside are clamped to it.
 class ParameterGrid {
  public:
   ParameterGrid() = default;
@@ -39,7 +39,8 @@ class ParameterGrid {
   std::vector<float> first_{0}, second_{0};
 };
 
-/// The index below a value in an increasing list, and the fraction of the way to the next one; at most the last but one.
+/// The interval of an increasing list that contains a value, by the index of its lower end, and the fraction of the way to the
+/// upper end; values outside are clamped.
 std::pair<std::uint32_t, float> find_interval(const std::vector<float>& increasing, float value);
 
 /// Tables of numbers on the unit square, bilinear between their points: `width` along x, which runs fastest, by `height`.
@@ -57,13 +58,13 @@ class SquareTables {
   const std::vector<float>& values() const { return values_; }
   size_t points() const { return size_t(width_) * size_t(height_); }
 
-  /// The four points around a place: the index of the first, in points of one table, and the fractions.
+  /// The four table points around a point: the index of the first, within one table, and the fractions between them.
   struct Cell {
     size_t index = 0;
     float x = 0, y = 0;
   };
   Cell cell(Point2 p) const;
-  /// Visits the numbers that make up the value there: visit(pointer to a point's channels, weight).
+  /// Calls visit(pointer to a point's channels, weight) for all table points that contribute to the interpolated value at p.
   template <class Visit>
   void gather(Point2 p, const TableBlend& blend, Visit&& visit) const {
     const Cell c = cell(p);
@@ -96,11 +97,11 @@ class Warp2D {
 
   struct Placed {
     Point2 point;
-    float pdf = 0;  ///< per unit area of the square, at the point of the square's warped side
+    float pdf = 0;  ///< per unit area of the square, at the warped point
   };
-  /// From uniform numbers to a point, with its density.
+  /// Warps uniform random numbers to a point; returns it with its pdf.
   Placed sample(Point2 u, const TableBlend&) const;
-  /// The other way: the numbers that give a point, with the point's density.
+  /// The inverse: the random numbers that `sample` warps to p, with the pdf of p.
   Placed invert(Point2 p, const TableBlend&) const;
   float pdf(Point2 p, const TableBlend& blend) const { return tables_.at(p, blend); }
 

@@ -42,7 +42,8 @@ float MicrofacetDistribution::beckmann_lambda(const Vector3& v) const {
 
 // Stretched to alpha 1, the surface has the normal distribution of a hemisphere, and is seen from the stretched direction.
 // Reflecting that direction about the visible normals of the hemisphere gives directions uniform on a spherical cap (Dupuy &
-// Benyoub 2023, "Sampling visible GGX normals with spherical caps"). The half-vector of such a direction is the visible normal.
+// Benyoub 2023, "Sampling visible GGX normals with spherical caps"). Its half-vector with the stretched direction is the
+// visible normal, which is then stretched back.
 Vector3 MicrofacetDistribution::sample_visible_ggx(const Vector3& v, Point2 u) const {
   const Vector3 w = normalize(Vector3{alpha_x * v.x, alpha_y * v.y, v.z});
   const float z = (1 - u.x) * (1 + w.z) - w.z, r = safe_sqrt(1 - z * z);

@@ -22,7 +22,7 @@ class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
   struct Layers {
     Spectrum outside, film, base, absorbing;  ///< indices; the base's is base + i absorbing
     Spectrum thickness;                       ///< in wavelengths
-    bool through = false;                     ///< light goes on into the base
+    bool through = false;                     ///< light is refracted into the base
     bool dispersive = false, single = false;
   };
 

@@ -10,8 +10,8 @@
 namespace etendue {
 namespace {
 
-// Radiance is known at some cosines, alike at all azimuths. In each of two ranges, which meet at the critical angle, where
-// internal reflection changes suddenly, it is integrated by Gauss's rule.
+// Radiance is represented at some cosines, and is the same at all azimuths. It is integrated by Gauss's rule in each of two
+// ranges, which meet at the critical angle, where internal reflection changes abruptly.
 constexpr int per_range = 6, size = 2 * per_range;
 constexpr int moments = 2 * per_range;  // Legendre polynomials below this order are integrated exactly
 
@@ -43,7 +43,7 @@ struct Matrix {
   }
 };
 
-/// a^-1 b, by elimination; all matrices here are dominated by their diagonals.
+/// a^-1 b, by elimination; all matrices here are diagonally dominant.
 Matrix solve(Matrix a, Matrix b) {
   for (int k = 0; k < size; ++k) {
     const double inverse = 1 / a.m[k][k];
@@ -80,8 +80,8 @@ struct Quadrature {
   }
 };
 
-/// The phase function averaged over azimuth, for light that goes on in the same hemisphere and for light that turns back:
-/// p = sum_l (2 l + 1) chi_l P_l(c) P_l(+-c'). A forward peak beyond these moments counts as no scattering at all
+/// The phase function averaged over azimuth, for light scattered into the same hemisphere (onward) and into the opposite one
+/// (back): p = sum_l (2 l + 1) chi_l P_l(c) P_l(+-c'). A forward peak beyond these moments is treated as unscattered light
 /// (Wiscombe 1977, "The delta-M method"): chi_l = (g^l - f) / (1 - f) with f = g^moments.
 struct Redistribution {
   Matrix onward, back;
@@ -108,10 +108,10 @@ struct Redistribution {
   }
 };
 
-/// What a half space makes of radiance that comes down, as a matrix from cosines to cosines. From a thin layer, by the
-/// diamond scheme (Wiscombe 1976), which conserves energy exactly: with a = d/2 M^-1 (1 - w/2 P+ W) and b = d/2 M^-1 w/2 P- W,
-/// R = 2 G b (1 + a)^-1 and T = 2 G - 1 where G = (1 + a - b (1 + a)^-1 b)^-1. Two equal layers together have
-/// R + T (1 - R R)^-1 R T and T (1 - R R)^-1 T.
+/// The reflection of a half space, as a matrix from incident to reflected cosines, by doubling. The first, thin layer is
+/// computed by the diamond scheme (Wiscombe 1976), which conserves energy exactly: with a = d/2 M^-1 (1 - w/2 P+ W) and b = d/2
+/// M^-1 w/2 P- W, R = 2 G b (1 + a)^-1 and T = 2 G - 1 where G = (1 + a - b (1 + a)^-1 b)^-1. Two equal layers together have
+/// the reflection R + T (1 - R R)^-1 R T and the transmission T (1 - R R)^-1 T.
 Matrix half_space(const Quadrature& q, const Redistribution& p, double w) {
   w *= (1 - p.peak) / (1 - w * p.peak);
   constexpr double thickness = 1.0 / 1024;
@@ -150,7 +150,7 @@ AlbedoInversion::AlbedoInversion(double g, double eta) : g_(float(g)) {
   for (int i = 1; i < intervals; ++i) {
     const double root = double(i) / intervals, s = root * root;
     const Matrix r = half_space(q, p, (1 - s * s) / (1 - g * s * s));
-    // Upwards below the boundary: u = R (1 + F u), so u = (1 - R F)^-1 R 1; what leaves is (1 - F) u.
+    // Radiance upwards below the boundary: u = R (1 + F u), so u = (1 - R F)^-1 R 1; of it (1 - F) u leaves.
     Matrix a = Matrix::identity(), ones;
     for (int k = 0; k < size; ++k)
       for (int j = 0; j < size; ++j) {

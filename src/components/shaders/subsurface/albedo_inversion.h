@@ -1,15 +1,15 @@
 #pragma once
-// From the colour of a scattering body to the coefficients of what it is made of.
+// AlbedoInversion: from the colour of a scattering body to the coefficients of its medium.
 //
-// A half space of single-scattering albedo w, with the Henyey-Greenstein phase function of mean cosine g, lies under a
-// smooth boundary of relative index eta. Of light that comes in diffusely (radiance alike in all directions, just below
-// the boundary), the fraction C leaves again after any number of scatterings and internal reflections. C(w) has no closed form;
-// fits such as that of Chiang, Kutz & Burley 2016 ("Practical and controllable subsurface scattering for production path
-// tracing") know neither g nor the boundary. Here it is computed, for the parameters at hand, by adding and doubling
-// (van de Hulst 1980, "Multiple light scattering", chapter 4; Wiscombe 1976, "On initialization, error and flux
-// conservation in the doubling method"), and inverted.
+// A half space of single-scattering albedo w, with the Henyey-Greenstein phase function of mean cosine g, lies under a smooth
+// boundary of relative index eta. Of light that comes in diffusely (equal radiance in all directions, just below the boundary),
+// the fraction C leaves again after any number of scatterings and internal reflections. C(w) has no closed form; fits such as
+// that of Chiang, Kutz & Burley 2016 ("Practical and controllable subsurface scattering for production path tracing") ignore g
+// and the boundary. Here C is computed, for the given g and eta, by adding and doubling (van de Hulst 1980, "Multiple light
+// scattering", chapter 4; Wiscombe 1976, "On initialization, error and flux conservation in the doubling method"), and
+// inverted.
 //
-// Results are in the similarity parameter s = sqrt((1 - w) / (1 - w g)), in which C is smooth and which hardly depends on g.
+// C is tabulated by the similarity parameter s = sqrt((1 - w) / (1 - w g)): C(s) is smooth and hardly depends on g.
 
 #include <array>
 

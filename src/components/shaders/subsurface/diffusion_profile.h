@@ -1,18 +1,19 @@
 #pragma once
-// How light that enters a scattering half space spreads before it leaves again.
+// DiffusionProfile: how light that enters a scattering half space spreads before it leaves again.
 //
-// Christensen & Burley 2015, "Approximate reflectance profiles for efficient subsurface scattering" (eq. 2): of the light that
-// enters at a point and leaves at all, the density by distance r on the surface is
+// Christensen & Burley 2015, "Approximate reflectance profiles for efficient subsurface scattering" (eq. 2): light that enters
+// at a point and leaves again has, by the distance r along the surface, the pdf
 //     R(r) = (exp(-r / d) + exp(-r / 3d)) / (8 pi d r)      [1/m^2],       integral of R 2 pi r dr = 1,
 // which fits simulations of isotropic scattering. For light that is diffuse below the surface (their eq. 6), albedo A and
 // mean free path l,      d = l / (1.9 - A + 3.5 (A - 0.8)^2).
 //
-// These simulations have no boundary that reflects. Under one that sends back the fraction F of diffuse light, a body of
+// These simulations have no reflecting boundary. Under one that reflects the fraction F of diffuse light back inside, a body of
 // albedo A0 returns A = A0 (1 - F) / (1 - A0 F), after 1 / (1 - A0 F) rounds inside on average. d is that of A0 times the
-// number of rounds: for A from 0.2 to 0.9 and indices up to 1.6 this makes the median radius that of a random walk within 11 %.
+// number of rounds: for A from 0.2 to 0.9 and indices up to 1.6 the median radius then agrees with that of a random walk within
+// 11 %.
 //
-// 2 pi r R is a mixture of two exponential densities, one quarter of it with mean d and three quarters with mean 3 d: that is
-// how radii are drawn. Here R ends at 24 d and is scaled to keep its integral, of which 0.025 % lies beyond.
+// 2 pi r R is a mixture of two exponential pdfs, by one quarter one with mean d and by three quarters one with mean 3 d: radii
+// are sampled from this mixture. R is truncated at 24 d and rescaled to keep its integral, of which 0.025 % lies beyond.
 
 #include "etendue/core/math.h"
 
@@ -28,7 +29,7 @@ class DiffusionProfile {
     return mean_free_path / ((1.9f - inner + 3.5f * square(inner - 0.8f)) * (1 - inner * reflected));
   }
 
-  /// Beyond this nothing leaves [m].
+  /// The radius at which the profile is truncated [m].
   float end() const { return end_over_d * d_; }
   /// R(r) [1/m^2]
   float by_area(float r) const {
@@ -36,7 +37,7 @@ class DiffusionProfile {
     const float x = std::max(r / d_, 1e-9f);
     return (std::exp(-x) + std::exp(-x / 3)) / (8 * pi * x * d_ * d_ * kept);
   }
-  /// A radius [m] with density 2 pi r R(r).
+  /// Samples a radius [m] with the pdf 2 pi r R(r) [1/m].
   float sample(float u) const {
     const float t = u * kept;
     const float x =

@@ -1,15 +1,15 @@
 // Subsurface: a body that scatters light inside, such as skin, wax, milk or marble.
 //
-// A smooth dielectric boundary reflects the fraction F of the light that arrives and lets 1 - F in. What is let in spreads
-// inside and leaves elsewhere, over the hemisphere: a body takes light from `in` at x' to `out` at x by
+// A smooth dielectric boundary reflects the fraction F of the incident light and transmits 1 - F. Transmitted light spreads
+// inside and leaves elsewhere, over the hemisphere: from `in` at x' to `out` at x the body has the BSSRDF
 //     S = (1 - F(out)) A R(x, x') (1 - F(in)) / (c pi)     [1/(m^2 sr)],
-// where A R (by a profile, or by a random walk) is the fraction that gets from x to x', per area, and c = 1 - the mean of F
-// over diffuse light makes the last factor, times cos(in), integrate to 1 (Jensen et al. 2001, "A practical model for
+// where A R (by a profile, or by a random walk) is the fraction of light that gets from x to x', per area, and c = 1 - the mean
+// of F over diffuse light makes the last factor, times cos(in), integrate to 1 (Jensen et al. 2001, "A practical model for
 // subsurface light transport"; normalized as in Christensen & Burley 2015). Both ends are on the same side of the boundary, so
 // no squared indices remain. A body of colour 1 returns all light: F + (1 - F) A = 1.
 //
-// To renderers the way in is specular transmission, since no light is let through in any other direction than by way of
-// sample_exit; the index does not change along the path, as it comes out again.
+// To renderers, light enters by specular transmission, since it enters in no other way than by sample_exit; the index does not
+// change along the path, as the path leaves the body again.
 
 #include "albedo_inversion.h"
 #include "components/shaders/fresnel.h"
@@ -27,8 +27,9 @@ Spectrum reflectance_of(float cosine, const Spectrum& eta) {
   return map(eta, [cosine](float e) { return fresnel_dielectric(cosine, e); });
 }
 
-/// The boundary, as seen by light that arrives. Reflection or entry is chosen by the mean of F over the path's wavelengths;
-/// neither direction depends on the wavelength in a way that counts, so all of them are kept. Alike on both sides.
+/// The boundary, for incident light. Reflection or entry is chosen by the mean of F over the path's wavelengths. The reflected
+/// direction is the same for all wavelengths and the refracted one is not used, so all wavelengths are kept. The same on both
+/// sides.
 class BoundaryScatter final : public ScatterModel<BoundaryScatter> {
  public:
   BoundaryScatter(const SurfacePoint& p, Spectrum eta)
@@ -67,7 +68,7 @@ class BoundaryScatter final : public ScatterModel<BoundaryScatter> {
   Spectrum eta_;
 };
 
-/// What comes from inside: f = (1 - F(in)) / (c pi) [1/sr], with directions drawn by cos / pi.
+/// Light that leaves the body: f = (1 - F(in)) / (c pi) [1/sr], sampled with the pdf cos / pi.
 class ExitScatter final : public ScatterModel<ExitScatter> {
  public:
   ExitScatter(const SurfacePoint& p, Spectrum eta)
@@ -151,7 +152,7 @@ class Subsurface final : public Shader {
     return arena.make<BoundaryScatter>(p, relative_index(p, w));
   }
   Lobes possible_lobes() const override { return specular_reflection | specular_transmission; }
-  /// A path that comes out again has never been inside for those who count.
+  /// A path that enters leaves at once by sample_exit, so its media and indices do not nest.
   bool transmits() const override { return false; }
   bool has_subsurface_exit() const override { return true; }
 
@@ -185,7 +186,7 @@ class Subsurface final : public Shader {
   Method method = Method::diffusion;
 
  private:
-  /// Index inside over that of what the body lies in.
+  /// Index inside over that of the surrounding medium.
   Spectrum relative_index(const SurfacePoint& p, const Wavelengths& w) const {
     const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr;
     const Spectrum inside = ior->evaluate(w, ColorUse::coefficient);

@@ -1,15 +1,15 @@
-// Exit points by a diffusion profile.
+// Subsurface exit points by a diffusion profile.
 //
 // Of light that enters at x, the body returns A R(|x' - x|) at x' [1/m^2], R being the profile of a half space (see
-// diffusion_profile.h). Points x' are found where lines through a disc around x meet the body (King, Kulla, Conty &
-// Fajardo 2013, "BSSRDF importance sampling"): a radius r from the profile and an angle give a point on the disc, and the
-// line through it, across the disc, is followed as long as it lies within the profile's end. A line along the axis a finds a
-// point x' of normal n, at distance r_a from the axis, with density
+// diffusion_profile.h). Points x' are found by probe rays through a disc around x (King, Kulla, Conty & Fajardo 2013, "BSSRDF
+// importance sampling"): a radius r from the profile and an angle give a point on the disc, and the probe ray through it,
+// perpendicular to the disc, is followed as long as it lies within the profile's end. A probe ray along the axis a finds a
+// point x' of normal n, at distance r_a from the axis, with the pdf
 //     p_a(x') = p(r_a) / (2 pi r_a) |n . a|     [1/m^2],
-// where p(r) 1/(2 pi r) = R(r), averaged over the path's wavelengths. One line along each of three axes is followed, the
-// normal and two tangents, and all that they find counts by the balance heuristic: a point found contributes A R / sum_a p_a,
-// whichever line found it. One of the points is chosen in proportion to what it contributes. On a plane the line along the
-// normal finds the only point, and its contribution is A at every r.
+// where p(r) 1/(2 pi r) = R(r), averaged over the path's wavelengths. One probe ray along each of three axes is traced, the
+// normal and two tangents, and all points found are weighted by the balance heuristic: each contributes A R / sum_a p_a,
+// whichever ray found it. One of the points is chosen in proportion to its contribution. On a plane the ray along the normal
+// finds the only point, and its contribution is A at every r.
 
 #include "components/shaders/fresnel.h"
 #include "diffusion_profile.h"
@@ -18,7 +18,7 @@
 namespace etendue {
 namespace {
 
-/// Profiles of the path's wavelengths and with what probability a radius is drawn from each.
+/// The profiles of the path's wavelengths, and the probability of sampling a radius from each.
 struct Profiles {
   DiffusionProfile profile[spectrum_size];
   Spectrum share;
@@ -37,10 +37,10 @@ struct Profiles {
   int choose(float u) const {
     int k = 0;
     for (float rest = u - share[0]; rest >= 0 && k + 1 < spectrum_size; rest -= share[k]) ++k;
-    while (k > 0 && !(share[k] > 0)) --k;  // by rounding, behind the last that counts
+    while (k > 0 && !(share[k] > 0)) --k;  // by rounding: the probability of the last ones may be 0
     return k;
   }
-  /// Beyond this radius none of those that are chosen reaches.
+  /// The greatest end of the profiles that can be chosen [m].
   float end() const {
     float furthest = 0;
     for (int i = 0; i < spectrum_size; ++i)
@@ -59,7 +59,7 @@ struct Profiles {
 
 bool exit_by_diffusion(const SubsurfaceBody& body, const SurfacePoint& entry, const Scene& scene, NumberStream& random,
                        SurfacePoint& exit, Spectrum& weight) {
-  constexpr int most = 64;  // points on one line
+  constexpr int most = 64;  // points on one probe ray
   const Profiles profiles(body);
   const Frame frame(entry.normal);
   const Vector3 axes[3] = {Vector3(frame.n), frame.s, frame.t};
@@ -100,7 +100,8 @@ bool exit_by_diffusion(const SubsurfaceBody& body, const SurfacePoint& entry, co
       const float size = part.average();
       if (!(size > 0 && size < infinity)) continue;
       sum += size;
-      // Keeps the last of the points so far with probability size / sum; a fresh number is made of what is left of the choice.
+      // Reservoir sampling: the last point replaces the one kept so far with probability size / sum; `choice` is rescaled for
+      // reuse.
       const float keep = size / sum;
       if (choice < keep) {
         choice = choice / keep;

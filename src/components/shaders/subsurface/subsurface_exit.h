@@ -1,31 +1,31 @@
 #pragma once
-// The two ways in which the Subsurface shader finds where light leaves a body.
+// The two methods by which the Subsurface shader finds where light leaves a body.
 
 #include "etendue/sampler.h"
 #include "etendue/scene.h"
 
 namespace etendue {
 
-/// What fills the body, at the point where light enters.
+/// The scattering parameters of the body, at the point where light enters.
 struct SubsurfaceBody {
-  Spectrum returned;               ///< fraction of the light inside that leaves again, by a half space
+  Spectrum returned;               ///< albedo of a half space: fraction of the light let in that leaves again
   Spectrum mean_free_path;         ///< transport mean free path 1 / (s_a + s_s (1 - g)) [m]
   Spectrum single_albedo;          ///< s_s / (s_a + s_s); for the random walk
   float anisotropy = 0;            ///< g
   Spectrum eta = Spectrum(1.0f);   ///< index inside over index outside
-  bool single_wavelength = false;  ///< the path has lost all but the hero
+  bool single_wavelength = false;  ///< only the path's hero wavelength is left
 };
 
-/// Where light that entered at a point leaves. `weight` is what it is multiplied by on its way, over the density of the
-/// choice. False: it does not.
+/// Samples the point where light that entered at `entry` leaves. `weight` is the throughput between the two over the pdf of the
+/// choice. False: the light does not leave.
 bool exit_by_diffusion(const SubsurfaceBody&, const SurfacePoint& entry, const Scene&, NumberStream&, SurfacePoint& exit,
                        Spectrum& weight);
 bool exit_by_random_walk(const SubsurfaceBody&, const SurfacePoint& entry, const Scene&, NumberStream&, SurfacePoint& exit,
                          Spectrum& weight);
 
-/// The nearest point at which a ray meets the surface of an object, through all others; the ray goes on from there.
+/// The nearest hit of a ray with the surface of `object`, through all other surfaces; the ray is moved on to start there.
 inline bool next_on_object(const Scene& scene, const SceneObject* object, Ray& ray, SurfacePoint& point, float& distance) {
-  constexpr int most = 64;  // surfaces of others in between
+  constexpr int most = 64;  // hits, with the surfaces of other objects in between
   distance = 0;
   for (int i = 0; i < most; ++i) {
     Hit hit;

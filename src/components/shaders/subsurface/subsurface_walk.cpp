@@ -1,17 +1,17 @@
-// Exit points by a random walk through the body (Chiang, Kutz & Burley 2016; Kulla & Conty 2017, "Revisiting physically
-// based shading at Imageworks").
+// Subsurface exit points by a random walk through the body (Chiang, Kutz & Burley 2016; Kulla & Conty 2017, "Revisiting
+// physically based shading at Imageworks").
 //
-// Below the boundary light starts in all directions alike, with density cos / pi [1/sr] about the inward normal, which is
-// what AlbedoInversion supposes. It goes an exponentially distributed distance, is scattered by the Henyey-Greenstein phase
-// function, and so on. At the boundary it is reflected, by Fresnel's equations, or leaves.
+// Below the boundary light starts with equal radiance in all directions, i.e. with the pdf cos / pi [1/sr] about the inward
+// normal, as AlbedoInversion assumes. It travels an exponentially distributed distance, is scattered by the Henyey-Greenstein
+// phase function, and so on. At the boundary it is reflected, by Fresnel's equations, or leaves.
 //
-// The coefficients differ between the path's wavelengths. Distances are drawn for one of them, chosen in proportion to the
-// throughputs W, and all use the density of the mixture (as in transport/medium.h): with w_k = W_k / sum W,
+// The coefficients differ between the path's wavelengths. Distances are sampled for one of them, chosen in proportion to the
+// throughputs W, and all use the pdf of the mixture (as in transport/medium.h): with w_k = W_k / sum W,
 //     scattered at t:      W_j *= s_s,j T_j(t) / sum_k w_k s_t,k T_k(t),       T = exp(-s_t t) [s_t in 1/m],
 //     boundary at t:       W_j *= T_j(t) / sum_k w_k T_k(t).
-// The boundary reflects with the mean of F by the same shares: W_j *= F_j / sum_k w_k F_k, or (1 - F_j) / (1 - sum).
-// So sum W changes by absorption and Russian roulette only, and roulette keeps its mean: where nothing is absorbed, as much
-// leaves as came in.
+// The boundary reflects with a probability that is the mean of F with the same shares: W_j *= F_j / sum_k w_k F_k, or (1 - F_j)
+// / (1 - sum). So sum W changes by absorption and Russian roulette only, and roulette keeps its expected value: without
+// absorption, all light that enters leaves.
 
 #include "components/shaders/fresnel.h"
 #include "etendue/core/warp.h"
@@ -20,7 +20,7 @@
 namespace etendue {
 namespace {
 
-/// Numbers for the walk: as many as it takes, from a seed (splitmix64, Steele, Lea & Flood 2014).
+/// Random numbers for the walk, in any number, from a seed (splitmix64, Steele, Lea & Flood 2014).
 class WalkRandom {
  public:
   explicit WalkRandom(NumberStream& random) {
@@ -41,8 +41,8 @@ Spectrum shares(const Spectrum& throughput) { return throughput / (throughput.av
 
 float mean(const Spectrum& share, const Spectrum& values) { return (share * values).average() * spectrum_size; }
 
-/// A direction turned from another by the Henyey-Greenstein phase function (Henyey & Greenstein 1941), whose cosine is found
-/// by inversion: c = (1 + g^2 - ((1 - g^2) / (1 + g x))^2) / (2 g), x = 2 u - 1.
+/// Samples the Henyey-Greenstein phase function (Henyey & Greenstein 1941) around a direction. The cosine is found by
+/// inversion: c = (1 + g^2 - ((1 - g^2) / (1 + g x))^2) / (2 g), x = 2 u - 1.
 Vector3 scattered(const Vector3& direction, float g, Point2 u) {
   const float x = 2 * u.x - 1;
   const float c = std::abs(g) < 1e-3f ? x + 1.5f * g * (1 - x * x)  // to first order in g
@@ -53,8 +53,8 @@ Vector3 scattered(const Vector3& direction, float g, Point2 u) {
   return Frame(Normal3(direction)).to_world({r * cosine, r * sine, c});
 }
 
-/// Whether a point is still inside: a way out always meets the surface from behind. Rounding lets a walk slip through a
-/// crack of a mesh once in a long while.
+/// Whether a ray's origin is still inside: a ray from inside always hits the surface from behind. By rounding, a walk slips
+/// through a crack of a mesh once in a long while.
 bool inside(const Scene& scene, const SceneObject* object, Ray ray) {
   SurfacePoint point;
   float distance = 0;
@@ -125,7 +125,7 @@ bool exit_by_random_walk(const SubsurfaceBody& body, const SurfacePoint& entry, 
     ray.origin = ray(reach);
     ray.direction = scattered(ray.direction, body.anisotropy, numbers.pair());
 
-    // Only what is left of the light is worth the way.
+    // Russian roulette by the throughput.
     const float left = throughput.maximum();
     if (left < 0.25f) {
       const float survival = 4 * left;
@@ -134,7 +134,8 @@ bool exit_by_random_walk(const SubsurfaceBody& body, const SurfacePoint& entry, 
     }
     if (++n % checked_every == 0 && !inside(scene, entry.object, ray)) return false;
   }
-  // Only in a vast body that hardly absorbs: what wanders that long leaves where it came in, so that none is lost.
+  // Reached only in a vast body that hardly absorbs: light that wanders that long leaves where it entered, so that none is
+  // lost.
   exit = entry;
   weight = throughput;
   return true;

@@ -29,7 +29,7 @@ std::vector<Ref<Importer>> all_importers() {
 
 Ref<Importer> importer_of(const std::string& path) {
   const std::string ending = ending_of_contents(path);
-  if (ending.empty()) return nullptr;
+  if (ending.empty() || ending == "etd") return nullptr;  // our own language needs no importer
   for (Ref<Importer>& importer : all_importers())
     if (std::ranges::count(importer->extensions(), ending)) return importer;
   return nullptr;

@@ -1,4 +1,4 @@
-#include "components/importers/permissions.h"
+#include "formats/permissions.h"
 
 namespace etendue {
 
