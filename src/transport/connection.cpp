@@ -25,7 +25,7 @@ std::optional<Connection> connect(const Scene& scene, const SubpathVertex& y, co
   const ScatterValue at_y = scattering(y, y.out, -c.direction, Transport::importance);
   c.light = y.throughput * at_y.value * at_z.value * z.throughput / squared;
   // If both subpaths have dropped wavelengths, both contain the factor spectrum_size, which must be applied once only.
-  if (y.single && z.single) c.light /= float(spectrum_size);
+  if (y.hero_only && z.hero_only) c.light /= float(spectrum_size);
   if (c.light.black()) return {};
   MediumStack scratch;
   Spectrum likely;

@@ -1,4 +1,5 @@
-// Scenes as JSON: they read as what they say, mistakes in them are located, and whatever is saved so reads back the same.
+// Scenes as JSON: they are read like the same scenes in the description language, errors in them are located, and every scene
+// saved as JSON reads back the same.
 
 #include <gtest/gtest.h>
 
@@ -125,7 +126,7 @@ std::vector<std::string> scenes() {
     if (entry.path().extension() != ".etd" || entry.file_size() > 200000) continue;
     std::ostringstream text;
     text << std::ifstream(entry.path()).rdbuf();
-    // 60 000 hairs, if they were made, take long to read.
+    // Its 60 000 hairs, if that file was made, take long to read.
     if (text.str().find("data/highland_cow") != std::string::npos) continue;
     if (text.str().find("Job {") != std::string::npos) found.push_back(entry.path().string());
   }
@@ -140,7 +141,7 @@ TEST(JsonScene, EveryExampleReadsBackAsItWas) {
     try {
       job = load_job(file);
     } catch (const Errors&) {
-      continue;  // that files are there which others make is checked elsewhere
+      continue;  // whether files made by scripts exist is checked elsewhere
     }
     const std::string folder = fs::path(file).parent_path().string();
     for (const bool all : {false, true}) {

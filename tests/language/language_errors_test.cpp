@@ -1,4 +1,4 @@
-// Names, components and files of the render description language, and what it says of mistakes in them.
+// Names, components and files of the render description language, and the messages about errors in them.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Names that are used twice by names that are used twice …: what doubles with every line is bounded, and says so.
+// Names that are used twice by names that are used twice …: whatever doubles with every line is bounded, and the message says
+// so.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@
 namespace etendue::language_test {
 namespace {
 
-/// A chain of definitions a0, a1, …, of which each uses the one before wherever `link` has an @.
+/// A chain of definitions a0, a1, …, each of which uses the one before in place of each @ in `link`.
 std::string chain(const std::string& first, const std::string& link, int length) {
   std::string text = "a0 = " + first + "\n";
   for (int i = 1; i <= length; ++i) {
@@ -30,7 +31,7 @@ std::string lit(const std::string& object) {
          object + "\nEnvironment { emission: DiffuseEmission { radiance: 1 } } ] } }\n";
 }
 
-/// What loading and preparing a job says.
+/// The errors of loading and preparing a job.
 std::string said(const std::string& text) {
   return errors_of([&] { prepare_tree(*load_job_text(text, "text")); });
 }
@@ -49,7 +50,7 @@ TEST(Expansion, OfMapsAndShadersIsBounded) {
       "and 10000 are the most that shared parts may amount to");
   const std::string mixes = chain("Lambertian {}", "MixShader { first: @, second: @, amount: a0a }", 20);
   EXPECT_NE(said("a0a = NoiseMap {}\n" + mixes + lit("Sphere { shader: a20 }")).find("is asked for 1"), std::string::npos);
-  // Two chains that cross: no part has the same part twice.
+  // Two chains that cross: no part uses the same part twice.
   std::string crossed = "a0 = NoiseMap {}\nb0 = NoiseMap { seed: 2 }\n";
   for (int i = 1; i <= 30; ++i) {
     const std::string n = std::to_string(i), m = std::to_string(i - 1);
@@ -65,7 +66,7 @@ TEST(Expansion, OfSolidsIsBounded) {
   EXPECT_NE(text.find("'a13' is asked for 16383 parts at every hit, as 'a0' stands in 8192 places"), std::string::npos) << text;
 }
 
-// A scene of many objects that share a few parts, or of scenes within scenes, is what sharing is for.
+// Scenes of many objects that share a few parts, and scenes within scenes, are the purpose of sharing and are not bounded.
 TEST(Expansion, OfScenesIsNot) {
   std::string objects;
   for (int i = 0; i < 3000; ++i) objects += "Sphere { shader: plain }\n";
@@ -76,7 +77,7 @@ TEST(Expansion, OfScenesIsNot) {
   EXPECT_EQ(said(forest + lit("Instance { scene: a6 }")), "");
 }
 
-// What was written out may be long.
+// Parts that are written out may be many.
 TEST(Expansion, OfWhatIsWrittenIsAllowed) {
   std::string sum = "NoiseMap {}", text;
   for (int level = 0; level < 7; ++level) sum = "AddMap { first: " + sum + ", second: " + sum + " }";
@@ -98,7 +99,7 @@ TEST(Expansion, OfListsIsBounded) {
   const std::string lists = chain("[1, 1]", "[@, @]", 30);
   EXPECT_EQ(part_errors(lists + "LanguagePart { indices: a30 }"),
             "20:7: the list holds 1048576 values, more than the 1000000 that lists within lists may: 'a18' alone holds 524288");
-  // As long as they were written is no expansion.
+  // A list that is as long as it was written is no expansion.
   std::string rows = "v = [1, 2, 3]\nLanguagePart { points: [";
   for (int i = 0; i < 400000; ++i) rows += "v,";
   EXPECT_EQ(part(rows + "] }")->points.size(), 400000u);
@@ -123,7 +124,7 @@ TEST(Expansion, LongChainsOfNamesNeedNoDepth) {
   EXPECT_NE(part_errors(circle + use).find("too deeply"), std::string::npos);
 }
 
-// The deepest that is allowed can be prepared, written, read again, copied, compared and destroyed.
+// The deepest nesting that is allowed can be prepared, written, read again, copied, compared and destroyed.
 TEST(Expansion, TheDeepestThatIsAllowedWorks) {
   const std::string deep = chain("LanguagePart {}", "LanguagePart { child: @ }", 495) + "LanguagePart { child: a495 }";
   const Ref<LanguagePart> made = part(deep);

@@ -24,7 +24,7 @@ TEST(IncludedFiles, TakeValuesForTheirParams) {
   const Folder folder;
   folder.write("tree.etd", tree);
   EXPECT_EQ(part_in(folder, "include \"tree.etd\" with { height: 3 m }\nLanguagePart { child: trunk }")->child->length, 3.0f);
-  // The values belong to where they are written.
+  // Names in the given values are those of the including file.
   const auto p = part_in(folder,
                          "height = 5 m\ninclude \"tree.etd\" with { height: 2 * height,\n bark: mine } as tall\n"
                          "include \"tree.etd\" with { height: 1 m\n bark: mine } as small\nmine = LanguagePart { count: 7 }\n"
@@ -42,7 +42,7 @@ TEST(IncludedFiles, TakeValuesForTheirParams) {
   EXPECT_TRUE(equal(Value(Ref<Component>(p)), Value(Ref<Component>(part(written)))));
 }
 
-// What is included here as well is the same for all; what is not is read for the name.
+// A file that is also included at the top level is shared by all named includes; one that is not is read once for each name.
 TEST(IncludedFiles, UnderNamesFindWhatIsAroundThem) {
   const Folder folder;
   folder.write("wood.etd", "param tint = 3\nwood = LanguagePart { count: tint }\n");

@@ -1,4 +1,4 @@
-// The layout that `etendue format` gives: what it changes, and that nothing else changes.
+// The layout of `etendue format`: what it changes, and that it changes nothing else.
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ TEST(Layout, OfWhatCannotBeReadIsRefused) {
   EXPECT_EQ(errors_of([] { layout("a = \xFF"); }), "the text is not valid UTF-8");
 }
 
-// What the layout is compared by does see differences.
+// The comparison by which layouts are tested, same_syntax, does detect differences.
 TEST(Layout, IsComparedByMeaning) {
   const auto read = [](const std::string& text) {
     language::Diagnostics none;
@@ -59,7 +59,7 @@ TEST(Layout, IsComparedByMeaning) {
   }
 }
 
-// Every description of the project keeps its meaning and its comments, and comes out again as it is.
+// Every description of the project keeps its meaning and its comments, and a second formatting changes nothing.
 TEST(Layout, KeepsWhatTheScenesMean) {
   size_t files = 0;
   for (const auto& entry :

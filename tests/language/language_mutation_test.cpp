@@ -1,4 +1,4 @@
-// Descriptions with mistakes in them: they load or are rejected with a place, whatever the mistake.
+// Descriptions with errors in them: they load, or are rejected with a location, whatever the error.
 
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ std::vector<Example> examples() {
 
 enum class Outcome { loaded, rejected };
 
-/// Anything but Errors with places is a failure of the test.
+/// Loads a text. Any outcome but success or Errors with locations is a failure of the test.
 Outcome load(const Example& example, const std::string& text) {
   const auto check = [&](const Error& e) {
     EXPECT_TRUE(e.location.known()) << e.what() << "\n" << text;

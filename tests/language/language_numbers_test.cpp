@@ -1,5 +1,5 @@
 // Numbers of the language to the last digits: each unit in each kind of member, arithmetic on numbers and lists, functions,
-// colours, transforms of points against matrices written down by hand.
+// colours, and points under transforms against matrices written by hand.
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ TEST(LanguageNumbers, UnitsHaveTheirFactors) {
               {"3 kW", 3000}, {"3 lm", 3},       {"3 cd", 3},          {"3 lx", 3},    {"3 s", 3},     {"3 ms", 0.003}};
   for (const auto& r : rows) EXPECT_NEAR(number(r.text), r.value, 1e-15 * r.value) << r.text;
   EXPECT_EQ(units().size(), 17u);
-  // In members' units, floats.
+  // In members' units, as floats.
   EXPECT_FLOAT_EQ(part("LanguagePart { length: 25 mm }")->length, 0.025f);
   EXPECT_FLOAT_EQ(part("LanguagePart { length: 25 um }")->length, 25e-6f);
   EXPECT_FLOAT_EQ(part("LanguagePart { length: 25 nm }")->length, 25e-9f);
@@ -66,7 +66,7 @@ TEST(LanguageNumbers, UnitsHaveTheirFactors) {
   EXPECT_NEAR(member("DiffuseEmission { luminous_intensity: 70 cd }", "luminous_intensity"), 70, 1e-9);
   EXPECT_NEAR(member("DiffuseEmission { illuminance: 500 lx }", "illuminance"), 500, 1e-9);
   EXPECT_NEAR(member("PerspectiveCamera { shutter_close: 20 ms }", "shutter_close"), 0.02, 1e-8);
-  // A map of thicknesses in nanometres from a length.
+  // A map of thicknesses in nanometres, given as a length.
   for (const char* text : {"ThinFilm { thickness: 0.4 um }", "ThinFilm { thickness: 400 nm }", "ThinFilm { thickness: 400 }"}) {
     const Ref<Component> film = parse_component(text, "text");
     const Value v = get(*film, "thickness");
@@ -136,7 +136,7 @@ TEST(LanguageNumbers, Colours) {
     EXPECT_NEAR(c.y, m[3] * linear(r) + m[4] * linear(g) + m[5] * linear(b), 6e-4) << text;
     EXPECT_NEAR(c.z, m[6] * linear(r) + m[7] * linear(g) + m[8] * linear(b), 6e-4) << text;
   }
-  // As it is written back, to all digits.
+  // The colour is written back with all digits.
   EXPECT_EQ((*parse_value("srgb(\"#337f0a\")").as<Color>())->expression(),
             (*parse_value("srgb(51 / 255, 127 / 255, 10 / 255)").as<Color>())->expression());
   const Xyz c = xyz("xyz(0.3, 0.4, 0.2)", ColorUse::radiance);
@@ -181,7 +181,7 @@ TEST(LanguageNumbers, Transforms) {
   expect_point("rotate(33, \"z\")", p,
                {std::cos(33 * M_PI / 180) - 2 * std::sin(33 * M_PI / 180),
                 std::sin(33 * M_PI / 180) + 2 * std::cos(33 * M_PI / 180), 3});
-  // A third of a turn about the diagonal exchanges the axes.
+  // A rotation by a third of a turn about the diagonal permutes the axes.
   expect_point("rotate(120 deg, [1, 1, 1])", p, {3, 1, 2});
   expect_point("rotate(-120, [2, 2, 2])", p, {2, 3, 1});
   // About a slanted axis, by quaternions: v' = v + 2 w (u x v) + 2 u x (u x v), u = n sin(a / 2), w = cos(a / 2).
@@ -201,7 +201,7 @@ TEST(LanguageNumbers, Transforms) {
   expect_point("scale(2) * translate(1, 0, 0)", p, {4, 4, 6});
   expect_point("matrix(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, -11, 12)", p, {18, 46, 8});
   expect_point("matrix([1, 2, 3, 4, 5, 6, 7, 8, 9, 10, -11, 12, 0, 0, 0, 1])", p, {18, 46, 8});
-  // z looks from `from` to `to`, y is up, x completes the left-handed picture: up x forward.
+  // z points from `from` to `to`, y is up, and x = up x forward.
   expect_point("look_at([1, 0, 0], [1, 0, 5], [0, 1, 0])", p, {2, 2, 3});
   expect_point("look_at([0, 0, 2], [3, 0, 2], [0, 0, 1])", p, {3, 1, 4});
 }

@@ -1,4 +1,4 @@
-// One character too few or too many is one mistake, and is told as one: what only follows from it is not.
+// One missing or superfluous character is one mistake and gives one error; errors that only follow from it are not reported.
 
 #include <gtest/gtest.h>
 
@@ -80,7 +80,7 @@ struct Told {
 
 Told told(const std::string& text, const std::string& folder = {}) {
   Told all;
-  testing::internal::CaptureStderr();  // warnings of names that are not used any more
+  testing::internal::CaptureStderr();  // warnings about names that are no longer used
   try {
     load_job_text(text, "text", folder);
   } catch (const Errors& e) {
@@ -96,7 +96,7 @@ Told told(const std::string& text, const std::string& folder = {}) {
   return all;
 }
 
-/// How many of the texts with one character of `kind` taken out give more than one error; prints those.
+/// Checks that the text without any one character of `kind` gives at most one error; prints the failures.
 void expect_one_error(const std::string& text, const std::string& kind) {
   ASSERT_EQ(told(text).errors, 0u) << told(text).text;
   for (size_t i = 0; i < text.size(); ++i) {
@@ -137,7 +137,8 @@ TEST(OneMistake, ABracketTooManyGivesOneError) {
     }
 }
 
-// Every seventh bracket, separator and quote of the examples: what is meant cannot always be told, but nearly.
+// Every seventh bracket, separator and quote of the examples is removed: the intended text cannot always be recovered, but
+// nearly always.
 TEST(OneMistake, InExamplesGivesOneErrorNearlyAlways) {
   size_t tried = 0, several = 0;
   std::string those;
@@ -147,7 +148,8 @@ TEST(OneMistake, InExamplesGivesOneErrorNearlyAlways) {
     read << std::ifstream(entry.path()).rdbuf();
     const std::string text = read.str();
     const std::string folder = entry.path().parent_path().string();
-    if (text.find("data/highland_cow") != std::string::npos) continue;  // 60 000 hairs, if they were made, take long to read
+    if (text.find("data/highland_cow") != std::string::npos)
+      continue;  // its 60 000 hairs, if that file was made, take long to read
     if (text.find("Job {") == std::string::npos || told(text, folder).errors > 0) continue;
     bool comment = false;
     for (size_t i = 0; i < text.size(); ++i) {

@@ -1,4 +1,4 @@
-// What other languages write: one error, which says how it is written here.
+// The syntax of other languages gives one error, which says how to write it here.
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 namespace etendue::language_test {
 namespace {
 
-/// All errors of a text, as "line:column: message" each in a line.
+/// All errors of a text, one per line as "line:column: message".
 std::string told(std::string text) {
-  // A job needs a camera: in a line of its own, behind all that is looked at.
+  // A job needs a camera: it is inserted on a line of its own, after everything that is tested.
   const std::string end = "] } }";
   if (const size_t at = text.rfind(end); at != std::string::npos)
     text.insert(at + end.size() - 1, "\n camera: PerspectiveCamera {} ");
@@ -29,7 +29,7 @@ std::string told(std::string text) {
   return all;
 }
 
-/// A job whose first line is the one given, and which uses its name `white`.
+/// A job with the given first line, which uses its name `white`.
 std::string using_white(const std::string& line, const std::string& use = "white") {
   return line + "\nJob { scene: BvhScene { objects: [Sphere { shader: " + use + " }, Box { shader: " + use + " }] } }\n";
 }
@@ -41,12 +41,12 @@ TEST(OtherHabits, ADefinitionThatFailedIsKnownAllTheSame) {
             "1:1: a definition has no 'def' before it: write white(…) = …");
   EXPECT_EQ(told(using_white("white(c, 3) = Lambertian { color: c }", "white(0.5, 2)")),
             "1:10: expected the name of a parameter, not '3'");
-  // Behind the Job as well, which has no such member; its camera stands in a line of its own.
+  // Also after the Job, which has no such member; the inserted camera takes a line of its own.
   EXPECT_EQ(told("Job { scene: BvhScene { objects: [Sphere { shader: white }] } }\nwhite: Lambertian {}\n"),
             "3:6: a name is defined by '=', not ':': write white = …");
 }
 
-/// That the text of a value gives one error, with this in it.
+/// Checks that the text of a value gives one error that contains `hint`.
 void expect_hint(const std::string& value, const std::string& hint) {
   const std::string all =
       told("p = [1, 2, 3]\ns = Sphere {}\nJob { seed: " + value + "\n scene: BvhScene { objects: [s, Box { size: p }] } }\n");

@@ -1,4 +1,4 @@
-// Lists by comprehension, conditions, functions: what they make, what is told where they are wrong, and that they end.
+// Lists by comprehension, conditions, functions: their results, the errors in them, and that they terminate.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ TEST(Comprehension, PacksNumbersAsAListWrittenOutDoes) {
   EXPECT_EQ(parse_value("[[10 * i + j for j in 0..2] for i in 0..2]"), parse_value("[[0, 1], [10, 11]]"));
 }
 
-// What is made in each turn is an object of its own; what is named outside is one, however often it is used.
+// Each iteration makes objects of its own; a name from outside is one shared object, however often it is used.
 TEST(Comprehension, MakesObjectsOfItsOwnAndSharesNames) {
   const auto p = part("one = LanguagePart {}\nLanguagePart { parts: [ LanguagePart { child: one } for i in 0..2 ] }");
   ASSERT_EQ(p->parts.size(), 2u);
@@ -62,7 +62,7 @@ TEST(Comprehension, NamesAreItsOwn) {
             (std::vector<LanguageMode>{LanguageMode::hidden, LanguageMode::visible}));
 }
 
-// Words that mean something between values are names like any other where a name stands.
+// Keywords that have a meaning between values are ordinary names where a name is expected.
 TEST(Comprehension, ItsWordsStayNames) {
   EXPECT_EQ(
       counts("[LanguagePart { count: for }, in, if]", "for = 3\nin = LanguagePart { count: 4 }; if = LanguagePart {count: 5}"),
@@ -82,7 +82,7 @@ TEST(Conditions, ChooseAndCompare) {
   EXPECT_EQ(number("if 1 < 2 then 3 else 4"), 3);
   EXPECT_EQ(number("1 + (if 1 > 2\n then 3\n else if true then 5 else 6)"), 6);
   EXPECT_EQ(number("count([1, 2, 3]) + count([]) + count(0..5) + ([4, 5, 6])[0] * 0 + (join([1, 2], [], [7]))[2]"), 15);
-  // What is not chosen is not evaluated, but the names in it are looked at.
+  // The branch that is not chosen is not evaluated, but the names in it are checked.
   EXPECT_EQ(number("if true then 1 else 1 / 0"), 1);
   EXPECT_EQ(value_errors("if true then 1 else q"), "1:21: 'q' is not defined");
   EXPECT_EQ(value_errors("true or q"), "1:9: 'q' is not defined");
@@ -104,7 +104,8 @@ TEST(Conditions, AreRefusedWhereTheyHaveNoMeaning) {
 }
 
 TEST(RandomNumbers, AreEvenAndUnrelated) {
-  // Over 10,000 numbers mean and mean of products of neighbours: 1/2 and 1/4, with standard deviations 0.0029 and 0.0026.
+  // Over 10,000 numbers, the mean and the mean product of neighbours are 1/2 and 1/4, with standard deviations 0.0029 and
+  // 0.0026.
   const Value value = parse_value("[random(7, i) for i in 0..10000]");
   const std::vector<double>& x = value.as<Numbers>()->values;
   double mean = 0, product = 0;
@@ -126,7 +127,7 @@ TEST(Functions, TakeArgumentsByPlaceAndName) {
             "2:24: expects f(a, b = …, c = …): 'a' is missing\n2:40: expects f(a, b = …, c = …); 4 arguments were given\n"
             "2:49: 'f' has no parameter 'd' (did you mean 'a'?)\n2:62: 'a' is given twice\n"
             "2:79: an argument by its place cannot follow one by its name");
-  // The names of the place of a call mean nothing inside.
+  // Names at the place of a call are not visible inside the function.
   EXPECT_EQ(part_errors("f(x) = x + i\nLanguagePart { indices: [f(1) for i in 0..2] }"),
             "1:12: 'i' is not defined (did you mean 'pi'?)");
 }
@@ -152,7 +153,7 @@ TEST(Functions, MayCallThemselves) {
   EXPECT_EQ(number("count([1])"), 1);
 }
 
-// A list that grows by what a function makes of itself is as deep as its entries, not as the calls were.
+// A list that a function builds recursively is as deep as its entries, not as the calls were.
 TEST(Functions, GrowListsWithoutDepth) {
   const auto p = part(
       "grow(n) = if n == 0 then [LanguagePart {}] else [x for i in 0..2 for x in grow(n - 1)]\n"
@@ -166,7 +167,7 @@ TEST(Functions, ErrorsTellTheWay) {
                   "LanguagePart { parts: [LanguagePart { child: g(i) } for i in 0..5] }"),
       "1:30: LanguagePart.count must be from 0 to 1000, not 2000 (in 'f', called at line 2:8, in 'g', called at line 3:46, "
       "with i = 2)");
-  // Once, however often it is called; and whether it is called or not.
+  // An error in a function is reported once, however often the function is called, and also if it is never called.
   EXPECT_EQ(part_errors("f(n) = LanguagePart { cunt: n }\nLanguagePart { parts: [f(1), f(2)] }"),
             "1:23: LanguagePart has no member 'cunt' (did you mean 'count'?)");
   EXPECT_EQ(part_errors("f(n) = [q, 3 * 3 kg, g(2)]\nLanguagePart {}"),
@@ -181,7 +182,7 @@ TEST(Functions, ErrorsTellTheWay) {
       "defined\n3:6: there is a parameter 'x' already");
 }
 
-/// What is refused, and within which time of the processor, as others may be at work.
+/// Expects the error `said` within a CPU time; other processes may be running.
 void expect_refused(const std::string& text, const std::string& said, double most_seconds = 30) {
   const std::clock_t begin = std::clock();
   const std::string errors = part_errors(text);
@@ -211,7 +212,8 @@ TEST(BoundedWork, EndsWhereItCannotBeForeseen) {
       "nested too deeply");
 }
 
-// A list in a name is looked into where it lies: 100,000 places of a list of 100,000 take no longer than 100,000 numbers.
+// An element of a named list is read without copying the list: 100,000 elements of a list of 100,000 take no longer than
+// 100,000 numbers.
 TEST(BoundedWork, PlacesInListsAreNoCopies) {
   const auto p = part("a = [2 * i for i in 0..100000]\nLanguagePart { indices: [a[i] for i in 0..count(a)] }");
   ASSERT_EQ(p->indices.size(), 100000u);

@@ -1,4 +1,4 @@
-// What could be passed over in silence, and is not.
+// Faults that could pass without a message, but are reported.
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ TEST(NothingSilent, NumbersThatDoNotFit) {
   EXPECT_EQ(part_errors("LanguagePart { large: 9007199254740993 }"),
             "1:23: LanguagePart.large must be less than 2^53 = 9007199254740992");
   EXPECT_EQ(part_errors("LanguagePart { length: 1e300 * 1e300 }"), "1:30: the result is too large for a number");
-  // More than nothing, but nothing in single precision.
+  // Positive, but 0 in single precision.
   EXPECT_EQ(part_errors("x = BricksMap { joint: 0 }\ny = Torus { tube_radius: 1e-50 }\nLanguagePart {}").substr(0, 5), "2:26:");
 }
 
@@ -67,7 +67,8 @@ TEST(NothingSilent, WhatToWriteInstead) {
       std::string::npos);
 }
 
-// A part cannot have been meant by the name of a choice, but a text of another choice can.
+// A warning is given only if the definition could have been meant: a part cannot stand for a choice, but the name of another
+// choice can.
 TEST(NothingSilent, NamesOfChoicesThatWereMeant) {
   const auto told = [](const std::string& definition) {
     return warnings([&] {
@@ -97,7 +98,7 @@ TEST(NothingSilent, NamesThatMeanSomethingElse) {
             std::string::npos);
 }
 
-// Chunks of PNG as its specification has them; checksums are not looked at.
+// A PNG chunk as in the specification; checksums are not tested.
 std::string chunk(const std::string& type, const std::string& data) {
   const auto n = static_cast<std::uint32_t>(data.size());
   return std::string{char(n >> 24), char(n >> 16), char(n >> 8), char(n)} + type + data + "crc!";
@@ -126,7 +127,7 @@ TEST(NothingSilent, EncodingsThatFilesState) {
             "chromaticities: red 0.708 0.292, green 0.17 0.797, blue 0.131 0.046, white 0.3127 0.329\n");
 }
 
-// What our own outputs state, through the program's description of a picture.
+// The encoding that our own outputs state, as shown by the program's description of an image.
 TEST(NothingSilent, APicturesDescriptionTellsItsEncoding) {
   const Folder folder;
   Image image(2, 1, {"R", "G", "B"});

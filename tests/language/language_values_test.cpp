@@ -1,4 +1,4 @@
-// Values of the render description language, on small components of its own.
+// Values of the render description language, tested on small components made for this purpose.
 
 #include <gtest/gtest.h>
 
@@ -227,7 +227,7 @@ TEST(Language, NewLinesSeparateItemsOfLists) {
     const Value v = parse_value(text);
     return v.as<Numbers>() ? v.as<Numbers>()->values : std::vector<double>();
   };
-  EXPECT_EQ(list("[1\n-2]"), (std::vector<double>{1, -2}));      // packed
+  EXPECT_EQ(list("[1\n-2]"), (std::vector<double>{1, -2}));      // stored as a packed list
   EXPECT_EQ(list("[1\n-2 * 1]"), (std::vector<double>{1, -2}));  // not packed
   EXPECT_EQ(list("[1 -\n2]"), (std::vector<double>{-1}));
   EXPECT_EQ(list("[(1\n-2)]"), (std::vector<double>{-1}));
@@ -254,7 +254,7 @@ TEST(Language, NumbersWithUnitsStandForMapsOfTheMembersUnit) {
     const Value map = get(*film, "thickness");
     return ref_cast<ObjectMap>(*map.as<Ref<Component>>())->scalar({});
   };
-  EXPECT_EQ(thickness("400"), 400);  // nm, as the member says
+  EXPECT_EQ(thickness("400"), 400);  // in nm, the member's unit
   EXPECT_NEAR(thickness("400 nm"), 400, 1e-3);
   EXPECT_NEAR(thickness("0.4 um"), 400, 1e-3);
   EXPECT_THROW(thickness("3 deg"), Errors);
@@ -280,7 +280,7 @@ TEST(Language, LoadsLargeListsFast) {
   EXPECT_EQ(p->points[1000].x, 1.0f);
   EXPECT_LT(seconds, 10) << "for " << text.size() << " bytes";
   RecordProperty("seconds", std::to_string(seconds));
-  // One wrong entry at the end is found at its place.
+  // One wrong entry at the end is reported at its location.
   text.replace(text.size() - 3, 3, "x] }");
   EXPECT_NE(part_errors(text).find("'x' is not defined"), std::string::npos);
 }

@@ -1,4 +1,4 @@
-// Descriptions that are changed by path, and those that are written.
+// Changing descriptions by path, and writing them.
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ TEST(Language, SetsByPath) {
   EXPECT_EQ(wrong("count", "1 +"), "1:10: expected a value, not the end of the text");
   EXPECT_EQ(wrong("mode", "visble"),
             "1:6: LanguagePart.mode has no choice 'visble' (did you mean 'visible'?); known are visible, hidden");
-  EXPECT_EQ(p->count, 8);  // nothing half-set
+  EXPECT_EQ(p->count, 8);  // no member was changed by the refused settings
   try {
     set_path(*p, "child.count", "many");
     ADD_FAILURE();
@@ -106,7 +106,7 @@ TEST(Language, WritesSharedComponentsOnce) {
   const auto again = part(write_description(*p));
   EXPECT_EQ(again->child, again->parts[0]);
   EXPECT_EQ(again->child->child, again->parts[2]);
-  // Names that two components have, or that cannot be read, are replaced.
+  // Names that two components share, or that cannot be parsed, are replaced.
   shared->origin = std::make_unique<Component::Origin>();
   inner->origin = std::make_unique<Component::Origin>();
   shared->origin->name = inner->origin->name = "twin";

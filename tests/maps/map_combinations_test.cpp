@@ -1,4 +1,4 @@
-// Maps made of other maps: arithmetic, formulas, and where they are looked up.
+// Maps made of other maps: arithmetic, formulas, and mappings of the point at which a map is evaluated.
 
 #include "components/maps/footprint.h"
 #include "components/maps/mapping/mapping.h"
@@ -53,7 +53,7 @@ TEST(CombinedMaps, ActOnSpectraAndNumbers) {
   EXPECT_NEAR(create<ObjectMap>("RemapMap", {{"input", 9.0}, {"from", from}, {"to", to}})->scalar(at(0, 0)), -1, 1e-6f);
 }
 
-// r = f_r a_r b_r + g_r, and the spectrum made of that: not the product of the spectra.
+// r = f_r a_r b_r + g_r, and the spectrum of the resulting RGB: not the product of the spectra.
 TEST(CombinedMaps, MultiplyRedGreenAndBlue) {
   const ImageFile a("a.exr", {1, 1, 3, NumberType::single}, {0.8f, 0.4f, 0.9f}),
       b("b.exr", {1, 1, 1, NumberType::single}, {0.5f});
@@ -61,7 +61,7 @@ TEST(CombinedMaps, MultiplyRedGreenAndBlue) {
   const std::vector<double> factor{1, 0.5, 0.25}, offset{0, 0.1, -0.2};
   const Ref<ObjectMap> map =
       create<ObjectMap>("RgbProductMap", {{"first", image(a)}, {"second", image(b)}, {"factor", factor}, {"offset", offset}});
-  const float wanted[3] = {0.8f * 0.5f, 0.4f * 0.5f * 0.5f + 0.1f, 0};  // the last would be below 0
+  const float wanted[3] = {0.8f * 0.5f, 0.4f * 0.5f * 0.5f + 0.1f, 0};  // the last would be negative
   EXPECT_NEAR(map->scalar(at(0.5f, 0.5f)), (wanted[0] + wanted[1]) / 3, 1e-5f);
   const RgbSpace& space = rgb_space("srgb");
   for (const float hero : {380.0f, 450.0f, 590.0f})
@@ -71,7 +71,7 @@ TEST(CombinedMaps, MultiplyRedGreenAndBlue) {
                      of = rgb_spectrum(space, wanted[0], wanted[1], wanted[2], use, w);
       for (int i = 0; i < spectrum_size; ++i) EXPECT_NEAR(got[i], of[i], 1e-4f);
     }
-  // A colour counts by what it is in white light, a product by its numbers, any other map as a grey.
+  // The second factor is a colour's RGB under white light, a product's RGB numbers, or the grey of any other map.
   const Ref<ObjectMap> by_color = create<ObjectMap>(
       "RgbProductMap",
       {{"first", map}, {"second", create<ObjectMap>("ConstantMap", {{"value", rgb_color("srgb", 0.5, 1, 1)}})}});
@@ -96,7 +96,7 @@ TEST(CombinedMaps, GiveFiniteValuesWhateverTheyAreGiven) {
 }
 
 TEST(CombinedMaps, AskForWhatIsMeant) {
-  // A light of RGB times a factor of RGB has the white's spectrum once.
+  // An RGB radiance times an RGB factor contains the white's spectrum once.
   const Wavelengths w = test::wavelengths();
   const Color rgb = rgb_color("srgb", 2, 1, 0.5);
   const Spectrum light =
@@ -136,7 +136,7 @@ TEST(Formula, ComputesWhatIsWritten) {
       {"smoothstep(0, 10, b)", 0.5},
       {"mean(a)", 2},
       {"1e-3 * 1e3", 1},
-      // What is no finite number is 0, where it arises.
+      // A subexpression that is not a finite number is 0.
       {"1 + a / 0", 1},
       {"nan + 3", 3},
       {"sqrt(-1) + log(0) + log(-1) + 1", 1},
@@ -207,7 +207,7 @@ TEST(Mappings, TangentsFollowTheCoordinates) {
     EXPECT_NEAR(dot(p.dpdu, p.normal), 0, 1e-4f);
     EXPECT_NEAR(dot(p.dpdv, p.normal), 0, 1e-4f);
   }
-  // On a wall that is seen edge-on one coordinate does not change, and no footprint makes it.
+  // On a wall that is seen edge-on one coordinate does not change, so the footprint does not extend along it.
   SurfacePoint p = test::surface_point({1, 0, 0});
   set_uv(p, {{0, 0}, {1, 0, 0}, {0, 1, 0}});
   p.footprint = 0.1f;
@@ -216,7 +216,7 @@ TEST(Mappings, TangentsFollowTheCoordinates) {
   EXPECT_NEAR(box.y, 0.1f, 1e-4f);
 }
 
-/// A sphere with a transform, and points on it as a scene gives them in which it is nested with another.
+/// A sphere with a transform, and points on it as they are found in a scene that is nested in another.
 struct Nested {
   Ref<SceneObject> sphere = create<SceneObject>("Sphere");
   Transform inside =
@@ -246,13 +246,13 @@ TEST(Mappings, PlacementGoesThroughNestedScenes) {
     Transform scratch;
     const Transform::Matrix& got = placement(p, scratch).matrix();
     for (size_t k = 0; k < 12; ++k) EXPECT_NEAR(got[k], wanted.matrix()[k], 1e-4f) << k;
-    // The whole is neither larger nor smaller than the sphere was, so its textures have the same footprint.
+    // The composed transform does not change the sphere's size, so its textures have the same footprint.
     EXPECT_NEAR(solid_point(p, MapSpace::object, 1).width, p.footprint / std::sqrt(p.footprint_cosine), 1e-4f * p.footprint);
   }
 }
 
 TEST(Mappings, TransformedMapsSeeTheFootprintMovedAlong) {
-  // Surface coordinates stay where they are whatever moves the surface, and what a ray sees of them is the same.
+  // A transform of the map leaves surface coordinates unchanged, and with them the footprint in them.
   const Nested nested;
   const Ref<ObjectMap> fine = create<ObjectMap>("CheckerMap", {{"repeat", std::vector<double>{60, 30, 1}}});
   test::Random random(4);
@@ -279,7 +279,7 @@ TEST(Mappings, TransformedMapsSeeTheFootprintMovedAlong) {
         EXPECT_EQ(moved->scalar(p), fine->scalar(p));
       }
     }
-  EXPECT_GT(without, 0.1);  // directions matter here
+  EXPECT_GT(without, 0.1);  // the footprint's direction matters here
 }
 
 TEST(Mappings, AgreeWithTheSphereItself) {
@@ -291,9 +291,9 @@ TEST(Mappings, AgreeWithTheSphereItself) {
   const Wavelengths w = test::wavelengths();
   for (int i = 0; i < 200; ++i) {
     const SurfacePoint p = nested.point(random);
-    if (std::abs(p.object_normal.z) > 0.95f) continue;  // near the poles the tangents' directions decide
+    if (std::abs(p.object_normal.z) > 0.95f) continue;  // near the poles the directions of the tangents dominate
     for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(uv->reflectance(p, w)[k], spherical->reflectance(p, w)[k], 2e-3f);
-    EXPECT_NEAR(fine->scalar(p), mapped->scalar(p), 1e-2f);  // filtered alike
+    EXPECT_NEAR(fine->scalar(p), mapped->scalar(p), 1e-2f);  // filtered over the same footprint
   }
 }
 
@@ -320,7 +320,7 @@ TEST(Mappings, PlanarAndTriplanarAreFilteredOverTheFootprint) {
 }
 
 TEST(Mappings, ChangesOfCoordinatesKeepTheFootprint) {
-  // A map laid twice as densely is the map at doubled coordinates, sharp or filtered; likewise through space.
+  // A map repeated twice as densely equals the map at doubled coordinates, sharp or filtered; likewise for solid textures.
   test::TestSquare square(1);
   square.reference();
   const std::vector<double> eight{8, 8, 1}, four{4, 4, 1}, two{2, 2};

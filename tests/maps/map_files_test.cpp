@@ -18,7 +18,7 @@ using test::create;
 using test::Setting;
 using test::write_image;
 
-/// A folder that goes with the test.
+/// A folder for one test, removed by the destructor.
 struct Folder {
   std::filesystem::path path;
   explicit Folder(const std::string& name)
@@ -49,7 +49,7 @@ TEST(ImageMap, UdimFilesCoverUnitSquares) {
   for (const auto& [number, value] : {std::pair(1001, 0.1f), {1003, 0.3f}, {1011, 0.5f}})
     write_image(folder / ("wood." + std::to_string(number) + ".exr"), {2, 2, 1, NumberType::single},
                 {value, value, value, value});
-  write_image(folder / "wood.10x1.exr", {1, 1, 1, NumberType::single}, {1});  // not one of them
+  write_image(folder / "wood.10x1.exr", {1, 1, 1, NumberType::single}, {1});  // no UDIM number
   for (const char* interpolation : {"nearest", "bilinear"}) {
     const Ref<ObjectMap> map =
         create<ObjectMap>("ImageMap", {{"file", folder / "wood.<UDIM>.exr"}, {"interpolation", interpolation}});
@@ -57,10 +57,10 @@ TEST(ImageMap, UdimFilesCoverUnitSquares) {
     EXPECT_NEAR(map->scalar(at(2.99f, 0.01f)), 0.3f, 1e-6f);
     EXPECT_NEAR(map->scalar(at(0.01f, 1.5f)), 0.5f, 1e-6f);
     EXPECT_EQ(map->scalar(at(1.5f, 0.5f)), 0);  // no such file
-    EXPECT_EQ(map->scalar(at(0.5f, 7.5f)), 0);  // beyond all
+    EXPECT_EQ(map->scalar(at(0.5f, 7.5f)), 0);  // beyond all tiles
     EXPECT_EQ(map->scalar(at(-0.5f, 0.5f)), 0);
     EXPECT_EQ(map->scalar(at(10.5f, 0.5f)), 0);          // 1011 is above 1001, not right of 1010
-    EXPECT_NEAR(map->scalar(at(1, 0.5f)), 0.1f, 1e-6f);  // the border belongs to the square that is there
+    EXPECT_NEAR(map->scalar(at(1, 0.5f)), 0.1f, 1e-6f);  // the border belongs to the existing tile
     EXPECT_NEAR(map->scalar(at(0, 2)), 0.5f, 1e-6f);
     EXPECT_NEAR(map->scalar(at(3, 1)), 0.3f, 1e-6f);
     EXPECT_EQ(map->scalar(at(NAN, 0)), 0);
@@ -89,14 +89,14 @@ TEST(ImageMap, ChannelsByName) {
   const Spectrum coat = map(file, "coat")->reflectance(at(0, 0), w),
                  wanted = rgb_spectrum(rgb_space("srgb"), 0.7f, 0.6f, 0.5f, ColorUse::reflectance, w);
   for (int i = 0; i < spectrum_size; ++i) EXPECT_NEAR(coat[i], wanted[i], 1e-5f);
-  EXPECT_NEAR(map(bits, "A")->scalar(at(0, 0)), 0.6f, 1e-5f);  // alpha is never encoded
+  EXPECT_NEAR(map(bits, "A")->scalar(at(0, 0)), 0.6f, 1e-5f);  // alpha is never sRGB-encoded
   EXPECT_NEAR(map(bits, "G")->scalar(at(0, 0)), decode_transfer("srgb", 0.2), 1e-4);
   const std::string message = error_of("ImageMap", {{"file", file}, {"channel", "coat.S"}});
   EXPECT_NE(message.find("ImageMap.channel"), std::string::npos) << message;
   EXPECT_NE(message.find("depth.Z"), std::string::npos) << message;
 }
 
-// What is nearly transparent is as bright as its file says: how much of it is there is another map's business.
+// A nearly transparent texel has the colour in the file: opacity is applied by another map.
 TEST(ImageMap, AlphaWeighsNoColours) {
   const Folder folder("alpha");
   for (const char* name : {"clear.png", "clear.tga", "clear.tif"}) {
@@ -138,11 +138,11 @@ TEST(ImageMap, AveragesOverTheEllipse) {
     EXPECT_NEAR(length(f.longer), p.footprint / std::cos(slant), 1e-4f);
     EXPECT_NEAR(std::abs(dot(f.longer, along)), length(f.longer), 1e-4f);
     EXPECT_NEAR(dot(f.longer, f.shorter), 0, 1e-6f);
-    // The mean over the ellipse that has the footprint's axes; and over one that is turned by a right angle.
+    // The mean over the ellipse with the footprint's axes; and over the ellipse rotated by a right angle.
     double mean = 0, turned = 0;
     constexpr int n = 2000;
     for (int k = 0; k < n; ++k) {
-      const float r = 0.5f * std::sqrt((float(k) + 0.5f) / n), phi = 2.399963f * float(k);  // a sunflower
+      const float r = 0.5f * std::sqrt((float(k) + 0.5f) / n), phi = 2.399963f * float(k);  // on Vogel's spiral (sunflower)
       const Vector3 s = r * std::cos(phi) * f.longer + r * std::sin(phi) * f.shorter;
       mean += double(value(p.uv.x + s.x / 2, p.uv.y + s.y / 2)) / n;
       turned += double(value(p.uv.x - s.y / 2, p.uv.y + s.x / 2)) / n;
@@ -185,7 +185,7 @@ TEST(AttributeMap, InterpolatesWhatVerticesHave) {
   const Ref<SceneObject> a = create<SceneObject>("TriangleMesh", {{"file", folder / "a.ply"}});
   const Ref<SceneObject> b = create<SceneObject>("TriangleMesh", {{"file", folder / "b.ply"}});
   const auto map = [](const char* name) { return create<ObjectMap>("AttributeMap", {{"name", name}, {"otherwise", 0.125}}); };
-  const SurfacePoint p = point_of(*a, 0.25f, 0.5f);  // a quarter, a quarter, a half
+  const SurfacePoint p = point_of(*a, 0.25f, 0.5f);  // barycentric weights 1/4, 1/4, 1/2
   const float green = float(decode_transfer("srgb", 188 / 255.0)), blue = float(decode_transfer("srgb", 128 / 255.0));
   const Wavelengths w = test::wavelengths();
   const Spectrum got = map("color")->reflectance(p, w),
@@ -198,7 +198,7 @@ TEST(AttributeMap, InterpolatesWhatVerticesHave) {
   EXPECT_EQ(map("red")->scalar(p), 0.125f);
   EXPECT_NEAR(map("color")->scalar(point_of(*b, 0.2f, 0.2f)), 0.2f, 1e-5f);  // floats are linear
   EXPECT_EQ(map("quality")->scalar(point_of(*b, 0.2f, 0.2f)), 0.125f);
-  EXPECT_EQ(map("quality")->scalar(at(0, 0)), 0.125f);  // no object at all
+  EXPECT_EQ(map("quality")->scalar(at(0, 0)), 0.125f);  // no object
 }
 
 TEST(AttributeMap, ListedColoursStayWithTheirCornersWhateverTheTransform) {
@@ -221,8 +221,8 @@ TEST(AttributeMap, ListedColoursStayWithTheirCornersWhateverTheTransform) {
 }
 
 TEST(AttributeMap, FacesHaveTheirOwn) {
-  // A square of four corners, which becomes two triangles, beside a triangle; before both one without an area, which is left
-  // out. Numbers NAME_0, NAME_1, ... belong together.
+  // A quad, which becomes two triangles, beside a triangle; before both a triangle without area, which is left out. The
+  // properties NAME_0, NAME_1, ... form one attribute.
   const Folder folder("faces");
   std::ofstream(folder / "f.ply")
       << "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"

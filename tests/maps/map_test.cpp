@@ -56,7 +56,8 @@ TEST(CheckerMap, FlatSurfacesBetweenCubesDoNotFlicker) {
   EXPECT_NE(map->scalar(p), first);
 }
 
-// Where the normal is (0.6, 0, 0.8) the projections along x and z count as 0.6^s and 0.8^s: u is y on the one, x on the other.
+// With the normal (0.6, 0, 0.8) the projections along x and z have the weights 0.6^s and 0.8^s: u is y in the first, x in the
+// second.
 TEST(Mappings, TriplanarBlendsByPowersOfTheNormal) {
   const Ref<ObjectMap> across = create<ObjectMap>("FormulaMap", {{"formula", "u"}});
   SurfacePoint p = test::surface_point({0.6f, 0, 0.8f});
@@ -68,8 +69,8 @@ TEST(Mappings, TriplanarBlendsByPowersOfTheNormal) {
   }
 }
 
-// On a square metre that is seen from straight above it makes no difference which way coordinates are turned: what is filtered
-// over the footprint at turned coordinates is what the map is at those coordinates.
+// On a square metre seen from straight above the footprint is independent of rotation: a map filtered at rotated coordinates
+// equals the map at those coordinates.
 TEST(Mappings, TurnedCoordinatesKeepTheFootprint) {
   test::TestSquare square(1);
   square.reference();
@@ -87,7 +88,7 @@ TEST(Mappings, TurnedCoordinatesKeepTheFootprint) {
   }
 }
 
-// A 2 x 2 image: grey values that tell the texels apart.
+// A 2 x 2 image whose grey values distinguish the texels.
 const std::vector<float> four{0.1f, 0.2f, 0.3f, 0.4f};
 
 TEST(ImageMap, RowZeroIsAtTheTop) {
@@ -130,7 +131,7 @@ TEST(ImageMap, MayBeContinuedOtherwiseAboveAndBelow) {
   }
 }
 
-// A thousand times as far out as it is wide, places in texels are beyond what whole numbers count.
+// A thousand times the image's width away, texel coordinates exceed the range of integers.
 TEST(ImageMap, FarBesideAWideImageIsItsBorder) {
   std::vector<float> ramp(2'200'000, 0.5f);
   ramp.front() = 0.25f;
@@ -148,7 +149,7 @@ TEST(ImageMap, EightBitsAreSrgbAndDecodedBeforeFiltering) {
   const ImageFile file("bits.png", {2, 1, 3, NumberType::uint8}, {0, 0, 0, 1, 1, 1});
   const Ref<ObjectMap> map =
       create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", "bilinear"}, {"wrap", "clamp"}});
-  EXPECT_NEAR(map->scalar(at(0.5f, 0.5f)), 0.5f, 1e-3f);  // encoded, the mean would have been 0.214
+  EXPECT_NEAR(map->scalar(at(0.5f, 0.5f)), 0.5f, 1e-3f);  // averaged before decoding it would be 0.214
   const ImageFile grey("grey.png", {1, 1, 3, NumberType::uint8}, {0.5f, 0.5f, 0.5f});
   EXPECT_NEAR(create<ObjectMap>("ImageMap", {{"file", grey.path}})->scalar(at(0.5f, 0.5f)),
               decode_transfer("srgb", 128 / 255.0), 1e-4);
@@ -172,7 +173,7 @@ TEST(ImageMap, ColoursBecomeSpectra) {
 }
 
 TEST(ImageMap, FiltersOverTheFootprint) {
-  // A fine checkerboard of 64 x 64 texels: what is smaller than the footprint averages to a half.
+  // A fine checkerboard of 64 x 64 texels: detail smaller than the footprint averages to a half.
   std::vector<float> values;
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x) values.push_back(float((x + y) % 2));
@@ -183,7 +184,7 @@ TEST(ImageMap, FiltersOverTheFootprint) {
   square.reference();
   SurfacePoint p = at((10 + 0.5f) / 64, (10 + 0.5f) / 64);
   p.object = &square;
-  const float texel = map->scalar(p);  // no footprint: the texel itself
+  const float texel = map->scalar(p);  // without a footprint: the texel itself
   EXPECT_TRUE(texel == 0 || texel == 1);
   p.footprint = 2.0f / 64 / 100;
   EXPECT_NEAR(map->scalar(p), texel, 1e-3f);
@@ -229,7 +230,7 @@ TEST(ImageMap, SaysWhatIsWrong) {
   std::ofstream(nonsense.path) << "this is no picture";
   EXPECT_NE(error_of({{"file", nonsense.path}}).find(nonsense.path), std::string::npos);
 
-  // A file that ends in the middle.
+  // A file that is cut off in the middle.
   std::vector<float> values;
   test::Random random(1);
   for (int i = 0; i < 200 * 200 * 3; ++i) values.push_back(random());

@@ -1,4 +1,4 @@
-// Maps that are computed: noise and what is made of it, patterns and their means over the footprint.
+// Procedural maps: noise and maps made of it, patterns, and their means over the footprint.
 
 #include "components/maps/noise.h"
 #include "components/maps/periodic.h"
@@ -25,7 +25,7 @@ TEST(Noise, IsZeroOnTheLatticeAndWhereThereIsNone) {
 }
 
 TEST(Noise, HasTheMeansItClaims) {
-  // Points of different lattice cubes are independent: 4.4 standard errors are exceeded once in 10^5.
+  // Points of different lattice cubes are independent; 4.4 standard errors are exceeded once in 10^5.
   test::Random random(1);
   constexpr int n = 300000;
   double sum = 0, squares = 0, absolute = 0;
@@ -46,22 +46,22 @@ TEST(Noise, HasTwoContinuousDerivatives) {
   test::Random random(2);
   const float h = 1e-2f;
   for (int i = 0; i < 2000; ++i) {
-    // Across a lattice plane, and somewhere inside.
+    // Across a lattice plane, and at other points.
     Vector3 p = anywhere(random, 16);
     if (i % 2) p.x = std::round(p.x);
     const auto at = [&](float dx) { return double(perlin_noise({p.x + dx, p.y, p.z})); };
     const double before = (at(0) - at(-h)) / double(h), after = (at(h) - at(0)) / double(h);
     EXPECT_LT(std::abs(before), 4);                            // no steps
     EXPECT_LT(std::abs(after - before), 20 * double(h)) << i;  // no creases: the second derivative stays below 20
-    // Nor jumps of the second derivative, which a cubic fade has on the planes.
+    // Nor are there jumps of the second derivative, which a cubic fade has on the lattice planes.
     const double third = (at(2 * h) - 3 * at(h) + 3 * at(0) - at(-h)) / std::pow(double(h), 2);
     EXPECT_LT(std::abs(third), 3.0) << i;
   }
 }
 
 TEST(Noise, FadesAsAnAverageOverTheFootprintDoes) {
-  // The best factor for the value in the middle of a square is E[mean * value] / E[value^2]. The formula, (1 - w^2 / 8)^4, is
-  // to be that to what it is off: 0.012 and 0.006 for widths up to one feature, 0.1 where little is left.
+  // The best factor for the value at the middle of a square is E[mean * value] / E[value^2]. The formula, (1 - w^2 / 8)^4, may
+  // differ from it by 0.012 and 0.006 for widths up to one feature, and by 0.1 where little is left.
   struct Row {
     float width;
     double formula, off;
@@ -96,7 +96,7 @@ TEST(Octaves, AreBandLimited) {
   test::Random random(4);
   const Octaves many{8, 2, 0.5f, 5}, few{3, 2, 0.5f, 5};
   const auto total = [](int n) { return 2 - std::pow(0.5f, float(n - 1)); };
-  // Octave i is gone when 2^i times the width exceeds sqrt(8): here all from the fourth on.
+  // Octave i vanishes when 2^i times the width exceeds sqrt(8): here all from the fourth on.
   const float width = 0.36f;
   for (int i = 0; i < 200; ++i) {
     const Vector3 p = anywhere(random);
@@ -107,7 +107,7 @@ TEST(Octaves, AreBandLimited) {
 }
 
 TEST(Octaves, AreWavesTwiceAsFineAndHalfAsHigh) {
-  // Of two octaves: (noise(p) + gain noise(lacunarity p)) / (1 + gain), each with a seed of its own.
+  // Two octaves: (noise(p) + gain noise(lacunarity p)) / (1 + gain), each with a seed of its own.
   test::Random random(10);
   for (int i = 0; i < 200; ++i) {
     const Vector3 p = anywhere(random, 16);
@@ -134,7 +134,7 @@ TEST(Periodic, MeansAreIntegrals) {
   }
 }
 
-/// A point of a square of one metre, seen from above with a footprint, so that this is a square along u and v.
+/// A point of a square of one metre, seen from above, so that its footprint is a square along u and v.
 SurfacePoint square_point(const SceneObject& square, float u, float v, float footprint) {
   SurfacePoint p = test::surface_point({0, 0, 1});
   p.object = &square;
@@ -185,7 +185,7 @@ TEST(Patterns, SmoothRampsAreIntegrated) {
     EXPECT_NEAR(ramp->scalar(square_point(square, b / 2, 0.5f, b)), b * b * (1 - b / 2), 1e-5f) << b;
 }
 
-// On a square of one metre rows are 1/9 m high, their joints 0.3 of it, 1/30 m: a tenth of the length of bricks of 1/3 m.
+// On a square of one metre rows are 1/9 m high and their joints 0.3 of that, 1/30 m: a tenth of the length of bricks of 1/3 m.
 TEST(Patterns, BricksHaveJointsOfOneThickness) {
   test::TestSquare square(1);
   square.reference();
@@ -218,14 +218,14 @@ TEST(Patterns, SolidTexturesFadeToTheirMeans) {
       squares += x * x;
     }
     p.position = p.object_position;
-    p.footprint = 500;  // coarser than anything that disturbs
+    p.footprint = 500;  // coarser than any displacement of the pattern
     const double error = std::sqrt((squares / n - sum * sum / n / n) / n);
     EXPECT_NEAR(double(map->scalar(p)), sum / n, 4.4 * error + 1e-3) << name;
   }
 }
 
 TEST(Patterns, TexturesStayWithTheirObject) {
-  // The same object ten times as large, seen with a footprint ten times as wide, shows the same.
+  // The same object ten times as large, seen with a footprint ten times as wide, has the same texture.
   const Ref<SceneObject> small = create<SceneObject>("Sphere");
   const Ref<SceneObject> large = create<SceneObject>("Sphere");
   set(*large, "transform",
@@ -250,7 +250,7 @@ TEST(CellularMap, DistancesAreDistances) {
                        cell = map("cell");
   test::Random random(9);
   SurfacePoint p = test::surface_point();
-  const float large = 1000;  // means need no footprint
+  const float large = 1000;  // a footprint for which the map returns its mean
   for (int i = 0; i < 20000; ++i) {
     p.object_position = Point3{} + anywhere(random);
     p.footprint = 0;
@@ -259,7 +259,7 @@ TEST(CellularMap, DistancesAreDistances) {
     if (f2 < 1) {
       EXPECT_NEAR(d, f2 - f1, 1e-6f);
     }
-    // A distance to a set changes by no more than one moves; a point that was overlooked would make it jump.
+    // The distance to a set changes by no more than the distance moved; an overlooked feature point would make it jump.
     const Vector3 step = 0.05f * random.direction();
     p.object_position = p.object_position + step;
     const float moved = length(step) / 0.5f + 2e-4f;
@@ -290,7 +290,7 @@ TEST(HypertextureMap, IsABallWithASoftBorder) {
   EXPECT_NEAR(at(map(0.8, 0.5, 0), 1), 0.8f, 1e-5f);
   EXPECT_NEAR(at(map(0.5, 0.9, 0), 1), 0.5f, 1e-5f);
   EXPECT_GT(at(map(0.5, 0.9, 0), 0.9f), 0.9f);
-  EXPECT_LT(at(map(0.5, 0.5, 2), 0.93f), at(plain, 0.93f));  // turbulence only takes away
+  EXPECT_LT(at(map(0.5, 0.5, 2), 0.93f), at(plain, 0.93f));  // turbulence can only remove density
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Files that are read by several threads before anything is prepared.
+// Files that several threads read before anything is prepared.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace etendue {
 namespace {
 
-/// Panes with an image each, beside each other in front of the camera; of `files` images, in turns.
+/// Panes side by side in front of the camera, each with an image; the images are `files` files in turn.
 Ref<Job> gallery(const TemporaryFolder& folder, int panes, int files) {
   std::string text;
   for (int i = 0; i < panes; ++i)

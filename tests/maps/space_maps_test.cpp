@@ -1,4 +1,4 @@
-// Maps through space: GridMap, BlackbodyMap, CloudMap.
+// Maps through space (solid textures): GridMap, BlackbodyMap, CloudMap.
 
 #include <fmt/format.h>
 
@@ -16,7 +16,8 @@ SurfacePoint place(const Point3& p) {
   return s;
 }
 
-// Values are a linear function of the cells' middles, and so between them; with three for each, so is each channel.
+// Values that are a linear function of the cells' middles are interpolated linearly; with three values per cell, so is each
+// channel.
 TEST(GridMap, IsLinearBetweenTheMiddlesOfCells) {
   const auto wanted = [](const Point3& p) { return 1 + 2 * p.x + 3 * p.y - 5 * p.z; };
   std::string one, three;
@@ -34,7 +35,7 @@ TEST(GridMap, IsLinearBetweenTheMiddlesOfCells) {
   const Point3 p{0.4f, 0.3f, 0.6f};
   EXPECT_NEAR(map(one)->scalar(place(p)), wanted(p), 1e-5f);
   EXPECT_NEAR(map(one, ", placement: translate([1, 2, 3]) * scale(2)")->scalar(place({1.8f, 2.6f, 4.2f})), wanted(p), 1e-5f);
-  // As a colour nothing is below 0.
+  // As a colour, negative values become 0.
   EXPECT_LT(map(one)->scalar(place({0.2f, 0.2f, 0.7f})), 0);
   EXPECT_EQ(map(one)->color(place({0.2f, 0.2f, 0.7f}), wavelengths(), ColorUse::coefficient)[0], 0);
   const Ref<ObjectMap> colored = map(three);
@@ -47,7 +48,7 @@ TEST(GridMap, IsLinearBetweenTheMiddlesOfCells) {
   expect_refused("GridMap { resolution: [2, 1], values: [1, 2] }", "resolution", "three numbers");
 }
 
-// Over a footprint a map is the mean: of a checkerboard of cells, seen from above by cones as wide as four of them, 1/2.
+// Over a footprint a map is the mean: 1/2 for a checkerboard of cells, seen from above by cones as wide as four cells.
 TEST(GridMap, IsTheMeanOverAFootprint) {
   std::string values;
   for (int i = 0; i < 64; ++i) values += fmt::format("{}{}", i ? ", " : "", (i % 8 + i / 8) % 2);
@@ -61,7 +62,8 @@ TEST(GridMap, IsTheMeanOverAFootprint) {
   EXPECT_NEAR(map->scalar(p), 0.5f, 1e-5f);
 }
 
-// Of Wien's law the place of the highest value, of Planck's the ratio; the colour `blackbody` is another way to it.
+// The ratio follows Planck's law, and the position of the maximum Wien's; the colour `blackbody` is an independent
+// implementation.
 TEST(BlackbodyMap, IsPlancksRadiance) {
   const Wavelengths w = wavelengths();
   for (const double kelvin : {900.0, 2856.0, 6500.0}) {
@@ -70,7 +72,7 @@ TEST(BlackbodyMap, IsPlancksRadiance) {
     const Color expected = blackbody_spectrum(kelvin);
     for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(s[k] / (3 * expected->at(w[k], ColorUse::radiance)), 1, 1e-4);
   }
-  // At 5000 K the highest value is at 579.55 nm.
+  // At 5000 K the maximum is at 579.55 nm.
   const Ref<ObjectMap> one = prepared_as<ObjectMap>("BlackbodyMap { temperature: 5000, normalized: true }");
   const Color black = blackbody_spectrum(5000);
   const Spectrum s = one->color(place({}), w, ColorUse::radiance);
@@ -80,7 +82,7 @@ TEST(BlackbodyMap, IsPlancksRadiance) {
   EXPECT_TRUE(std::isfinite(prepared_as<ObjectMap>("BlackbodyMap { temperature: 1e30 }")->scalar(place({}))));
 }
 
-// Solid up to the foot, nothing above the top, and torn between: there some of it is empty and some is full.
+// Solid up to the base, empty above the top, and torn between them: partly empty and partly full.
 TEST(CloudMap, IsSolidAtItsFootAndTornAbove) {
   const Ref<ObjectMap> map = prepared_as<ObjectMap>("CloudMap { size: 2, base: [1, 1, 1], up: [0, 3, 0], amount: 3 }");
   int empty = 0, between = 0;
@@ -95,11 +97,11 @@ TEST(CloudMap, IsSolidAtItsFootAndTornAbove) {
     if (v > 0) ++between;
     sum += double(v);
   }
-  // The noise is as often negative as positive.
+  // The noise is negative as often as positive.
   EXPECT_NEAR(empty, 2000, 400);
   EXPECT_NEAR(between, 2000, 400);
   EXPECT_GT(sum / between, 0.2);
-  // Without billows all noise is that of a lattice point, 0: what is solid remains.
+  // Without billows all noise is that of a lattice point, 0: the solid part remains.
   EXPECT_FLOAT_EQ(prepared_as<ObjectMap>("CloudMap { wispiness: 0, frequency: 0 }")->scalar(place({0.3f, 0.1f, 0.3f})), 0.4f);
   expect_refused("CloudMap { up: [0, 0, 0] }", "up", "direction");
 }
