@@ -171,7 +171,7 @@ std::optional<PathContribution> BidirectionalSubpaths::connect_to_lens(int s) co
 std::optional<PathContribution> BidirectionalSubpaths::merge(const Photon& photon, int t) const {
   const SubpathVertex& z = camera_vertex(t);
   const double merging = z.in_medium() ? weights_.merging.medium : weights_.merging.surface;
-  const Spectrum scattered = scattered_from_photon(z, photon, {sample_.wavelengths, z.single});
+  const Spectrum scattered = scattered_from_photon(z, photon, {sample_.wavelengths, z.hero_only});
   if (scattered.black()) return {};
   PathContribution found{int(photon.vertices), t, true, z.throughput * scattered / float(merging), photon.from(context_.scene)};
   if (weights_.weighted) {

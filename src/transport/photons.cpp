@@ -4,12 +4,12 @@
 
 namespace etendue {
 
-Spectrum carried(const Spectrum& light, bool single, const Carrying& to) {
-  if (!to.single) return light;
+Spectrum carried(const Spectrum& light, bool hero_only, const Carrying& to) {
+  if (!to.hero_only) return light;
   const int lane = std::max(to.lane, 0);
   Spectrum one;
   one.set(0, light[lane]);
-  if (single) one *= lane == 0 ? to.branches / float(spectrum_size) : 0;
+  if (hero_only) one *= lane == 0 ? to.branches / float(spectrum_size) : 0;
   return one;
 }
 
@@ -112,7 +112,7 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
       for (int axis = 0; axis < 3; ++axis) p.normal[size_t(axis)] = std::int16_t(32767 * v.point.normal[axis]);
       p.throughput = v.throughput;
       p.vertices = std::uint32_t(i);
-      p.single = v.single;
+      p.hero_only = v.hero_only;
       p.in_medium = v.in_medium();
       p.caustic = caustic;
       p.luminaire = walk[0].point.object->luminaire_index;

@@ -79,7 +79,7 @@ void store_vertex(const Walk<false>& walk, const SubpathVertex& before, float pd
                   SubpathVertex& v) {
   static_cast<PathVertex&>(v) = walk.vertex;
   v.infinite = v.kind == PathVertex::Kind::escape;
-  v.single = walk.sample.wavelengths.single();
+  v.hero_only = walk.sample.wavelengths.single();
   v.throughput = walk.throughput;
   v.mean_transmittance = walk.segment_transmittance.average();
   if (v.in_medium())
@@ -188,7 +188,7 @@ void record_subpath(std::vector<PathRecord::Vertex>& vertices, std::span<const S
     v.throughput = w.throughput;
     v.pdf = w.pdf_forward;
     if (w.specular) v.lobe = "specular";
-    if (w.single) v.note = "the hero wavelength alone";
+    if (w.hero_only) v.note = "the hero wavelength alone";
     vertices.push_back(std::move(v));
   }
 }

@@ -148,8 +148,7 @@ TEST(OneMistake, InExamplesGivesOneErrorNearlyAlways) {
     read << std::ifstream(entry.path()).rdbuf();
     const std::string text = read.str();
     const std::string folder = entry.path().parent_path().string();
-    if (text.find("data/highland_cow") != std::string::npos)
-      continue;  // its 60 000 hairs, if that file was made, take long to read
+    if (text.find("data/highland_cow") != std::string::npos) continue;  // its 60 000 hairs take long to read
     if (text.find("Job {") == std::string::npos || told(text, folder).errors > 0) continue;
     bool comment = false;
     for (size_t i = 0; i < text.size(); ++i) {

@@ -1,4 +1,4 @@
-// Cylinders, cones, tubes and other surfaces around an axis, sampled by the directions in which they are seen.
+// Cylinders, cones, tubes and other surfaces around an axis, sampled by the solid angle under which they are seen.
 
 #include "support/geometry_support.h"
 
@@ -23,7 +23,8 @@ const std::vector<Solid> solids{cylinder,
                                 {"Cone", {{"radius", 0.2}, {"top_radius", 0.5}, {"height", 1}}},
                                 {"Paraboloid", {{"radius", 0.5}, {"height", 1}}}};
 
-/// 1 / density of samples that are found, else 0; and how many are found.
+/// The mean of 1 / pdf over samples of the visible surface (0 for samples that fail), which estimates the solid angle; and the
+/// number of valid samples.
 struct Seen {
   Mean solid_angle;
   double squares = 0;
@@ -43,14 +44,14 @@ struct Seen {
       }
     }
   }
-  /// Of one sample, relative.
+  /// The relative standard deviation of one sample.
   double deviation() const { return std::sqrt(std::max(0.0, squares / (solid_angle.value() * solid_angle.value()) - 1)); }
 };
 
 TEST(AxialSampling, SolidAnglesAreThoseOfClosedForms) {
   // A cap seen from the axis at a height c above it: 2 pi (1 - c / sqrt(c^2 + r^2)). A long cylinder at a distance d from the
-  // axis: nearly 2 * 2 asin(r / d). From afar: the silhouette over the squared distance. 5 standard errors, and what is
-  // missing at the ends.
+  // axis: nearly 2 * 2 asin(r / d). From afar: the area of the silhouette over the squared distance. Tolerance: 5 standard
+  // errors, and the part that is missing at the ends.
   const auto closed = object("Cylinder", {{"radius", 0.5}, {"height", 2}});
   for (const float c : {0.01f, 0.5f, 30.0f}) {
     const Seen seen(*closed, {0, 0, 1 + c});
@@ -69,8 +70,8 @@ TEST(AxialSampling, SolidAnglesAreThoseOfClosedForms) {
 }
 
 TEST(AxialSampling, RaysSeeWhatIsSampled) {
-  // The solid angle that rays find; the direction's first moment with it. From afar, close to the side and above, looking
-  // through, in a bore, right beside a tip; moving and stretched. 5 standard errors.
+  // The solid angle found by uniform rays equals that of the samples: from afar, close to the side and above, looking through,
+  // in a bore, right beside a tip; moving and stretched. 5 standard errors.
   const AnimatedTransform moving(
       {{0, Transform::scale({1.5f, 0.7f, 1})}, {1, Transform::translate({0.5f, 0, 0}) * Transform::rotate(1, {0, 1, 1})}});
   for (const Solid& solid : solids) {
@@ -95,7 +96,7 @@ TEST(AxialSampling, RaysSeeWhatIsSampled) {
 }
 
 TEST(AxialSampling, LittleIsLostAndDensitiesAreEven) {
-  // Where points by area would crowd: the standard deviation of 1 / density, relative.
+  // From places where points sampled by area would have a large variance: the relative standard deviation of 1 / pdf.
   for (const Solid& solid : solids) {
     const auto o = object(solid.name, solid.settings);
     for (const Point3 from : {Point3{2, 1, 0.3f}, {0.51f, 0, 0.1f}, {1.01f, 0, 0}, {0.4f, 0.1f, 1.1f}, {1, 0.5f, -1.5f}}) {

@@ -1,4 +1,4 @@
-// Solids made of others by union, intersection and difference, against closed forms and a test of points.
+// Solids made of others by union, intersection and difference, against closed forms and tests of points.
 
 #include "components/objects/csg/csg.h"
 #include "etendue/core/arena.h"
@@ -16,7 +16,7 @@ Ref<SceneObject> solid(const std::string& text) {
   return made;
 }
 
-/// The length of a ray inside of a solid, by its crossings, which must go in and out in turn.
+/// The length of a ray inside a solid, from its crossings, which must enter and leave alternately.
 double length_inside(const SceneObject& object, Ray r) {
   const Point3 begin = r.origin;
   double sum = 0;
@@ -36,7 +36,7 @@ double length_inside(const SceneObject& object, Ray r) {
   return sum;
 }
 
-/// Volume by parallel rays from a square of the given half width around the origin; many errors are no more than 5 of it.
+/// The volume by parallel rays from a square of the given half width around the origin, with its standard error.
 Mean volume(const SceneObject& object, double half, unsigned seed, int rays = 20000) {
   Random random(seed);
   Mean mean;
@@ -70,7 +70,7 @@ TEST(Csg, BallsHaveTheVolumesAndAreasOfTheirLens) {
   }
 }
 
-// The middle of the hole, the wall and what is left have known distances along a line.
+// The middle of the hole, the wall and the remaining solid have known distances along a line.
 TEST(Csg, ADrilledBoxHasWallsThatFaceTheHole) {
   const auto object = solid("Difference { operands: [ Box {}, Box { size: [0.5, 0.5, 1] m } ] }");  // ends flush with faces
   const auto first = [&](const Point3& o, const Vector3& d, SurfacePoint& p) {
@@ -81,7 +81,7 @@ TEST(Csg, ADrilledBoxHasWallsThatFaceTheHole) {
     return hit.distance;
   };
   SurfacePoint p;
-  EXPECT_EQ(first({0.1f, 0.1f, 3}, {0, 0, -1}, p), infinity);  // through the hole: no skin over its ends
+  EXPECT_EQ(first({0.1f, 0.1f, 3}, {0, 0, -1}, p), infinity);  // through the hole: no surface remains at its ends
   EXPECT_EQ(first({0.1f, 0.1f, 0}, {0, 0, 1}, p), infinity);
   EXPECT_NEAR(first({0.1f, 0.1f, 0}, {1, 0, 0}, p), 0.15f, 1e-6f);
   EXPECT_NEAR(p.normal.x, -1, 1e-6f);
@@ -93,8 +93,8 @@ TEST(Csg, ADrilledBoxHasWallsThatFaceTheHole) {
   EXPECT_NEAR(double(object->area(0)), 4 + 2 * 0.75 + 4 * 0.5, 5e-3);
 }
 
-// Boxes that touch are one: no surface between them, and none where their flanks are flush. Far away and turned, so that
-// rounding decides which of two faces in one place is nearer.
+// Boxes that touch form one solid: no surface lies between them, nor where their side faces coincide. Far away and rotated, so
+// that rounding decides which of two coincident faces is nearer.
 TEST(Csg, CoincidentFacesLeaveNoGapsAndStopNoRays) {
   const std::string place = "transform: translate(300, -200, 100) * rotate(33, [1, 2, 3])";
   const auto object = solid("Union { operands: [ Box { centre: [-0.5, 0, 0] m, " + place + " }, Box { centre: [0.7, 0, 0] m, " +
@@ -103,7 +103,7 @@ TEST(Csg, CoincidentFacesLeaveNoGapsAndStopNoRays) {
   Random random(4);
   const Transform t = solid("Box { " + place + " }")->transform.still();
   for (int i = 0; i < 20000; ++i) {
-    // From within, the nearest wall is that of the long box; back from there nothing but the opposite one.
+    // From inside, the nearest wall is that of the long box; a ray that leaves it outwards hits nothing.
     const Point3 o = t(Point3{random.between(-0.9f, 1.3f), random.between(-0.4f, 0.4f), random.between(-0.4f, 0.4f)});
     const Vector3 d = random.direction(), own = t.back(d);
     float expected = infinity;
@@ -118,11 +118,11 @@ TEST(Csg, CoincidentFacesLeaveNoGapsAndStopNoRays) {
     object->surface_point(r, hit, p);
     const Vector3 out = normalize(Vector3(p.normal) + 0.95f * random.direction());
     p.leave(out, r);
-    EXPECT_FALSE(object->occludes(r));  // it is convex
+    EXPECT_FALSE(object->occludes(r));  // the solid is convex
   }
 }
 
-// Nested, turned, mirrored and moving: whether a point is inside by rays and by each operand's own formula.
+// Nested, rotated, mirrored and moving: whether a point is inside, by rays and by each operand's own formula.
 TEST(Csg, NestedSolidsHoldThePointsOfTheirFormula) {
   const auto object = solid(
       "Difference { transform: translate(1, 2, 3) * scale([1.5, -1, 0.5]), operands: [\n"
@@ -157,7 +157,7 @@ TEST(Csg, NestedSolidsHoldThePointsOfTheirFormula) {
   EXPECT_LE(wrong, 2);
 }
 
-// A ball that moves through a box, out of which it is taken: at each time the area is that of the box with a hollow.
+// A ball that moves through a box from which it is subtracted: at each time the area is that of the box with a hollow.
 TEST(Csg, OperandsMoveWithinTheSolid) {
   const auto object = solid(
       "Difference { operands: [ Box {}, Sphere { radius: 0.3 m, transform: keyframes(0, translate(0, 0, 0), 1, "
@@ -172,7 +172,7 @@ TEST(Csg, OperandsMoveWithinTheSolid) {
   EXPECT_NEAR(from_middle(1), 0.5f, 1e-6f);
 }
 
-// Points by area are spread evenly when weighted by their densities: on the ball of a hollow, and on each wall.
+// Points by area, weighted by 1 / pdf, give the area of each part: of the hollow's spherical surface, and of a wall.
 TEST(Csg, DensitiesByAreaGiveTheAreaOfEachPart) {
   const auto object = solid("Difference { operands: [ Box {}, Sphere { centre: [0, 0, 0.5] m, radius: 0.4 m } ] }");
   Random random(6);
@@ -188,7 +188,7 @@ TEST(Csg, DensitiesByAreaGiveTheAreaOfEachPart) {
   EXPECT_NEAR(bowl.value(), 2 * M_PI * 0.16, 5 * bowl.error());
   EXPECT_NEAR(top.value(), 1 - M_PI * 0.16, 5 * top.error());
 
-  // Balls that lie apart, of which lines along the axes often find none.
+  // Balls far apart, which lines parallel to the axes often miss.
   const auto balls = solid("Union { operands: [ Sphere {}, Sphere { centre: [3, 3, 3] m, radius: 0.5 m } ] }");
   Mean small;
   for (int i = 0; i < 20000; ++i) {
@@ -243,7 +243,8 @@ TEST(Csg, WhatHasNoInsideIsRefusedWhereItStands) {
   EXPECT_FALSE(nothing->bounds().empty());
 }
 
-// Operands whose surfaces are open, or whose faces do not agree on what is outside, are told from those that are not.
+// Operands whose surfaces are open, or whose faces are oriented inconsistently, are refused; closed and consistent ones are
+// accepted.
 TEST(Csg, OperandsThatAreOpenOrDisagreeAreRefusedWhereTheyStand) {
   const auto message = [](const std::string& operands) {
     try {
@@ -259,9 +260,9 @@ TEST(Csg, OperandsThatAreOpenOrDisagreeAreRefusedWhereTheyStand) {
   const std::string whole = "[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]", moving = ", times: [0, 1], motion_positions: ";
   const std::string open = "2 TriangleMesh: it cannot be part of a solid: its surface is not closed";
   EXPECT_EQ(message(tetrahedron(whole)), "");
-  EXPECT_EQ(message(tetrahedron("[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]")), "");  // inside out, but all alike
+  EXPECT_EQ(message(tetrahedron("[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]")), "");  // inside out, but consistently
   EXPECT_EQ(message(tetrahedron("[0, 2, 1], [0, 1, 3], [0, 3, 2]")).find(open), 0u);
-  EXPECT_EQ(message(tetrahedron("[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 3, 2]")).find(open), 0u);           // one face turned
+  EXPECT_EQ(message(tetrahedron("[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 3, 2]")).find(open), 0u);           // one face reversed
   EXPECT_EQ(message(tetrahedron(whole + ", [1, 2, 3]")).find(open), 0u);                                  // one twice
   EXPECT_EQ(message(tetrahedron(whole, moving + "[[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]] m")), "");  // it grows
   EXPECT_EQ(message("Curve { form: ribbon }").substr(0, 9), "2 Curve: ");
@@ -277,8 +278,8 @@ TEST(Csg, WhereNothingIsLeftThereIsAWarning) {
   EXPECT_NE(said.find("nothing seems to be left"), std::string::npos) << said;
 }
 
-// A part is one number of 32 bits: 16 of them tell 2^16 objects apart, and leave 2^16 for the triangles of a mesh, whether it
-// stands still or moves.
+// A part's number has 32 bits: 16 of them distinguish 2^16 objects, and 16 remain for the triangles of a mesh, whether it is
+// still or moves.
 TEST(Csg, PartsThatAreTooManyAreRefused) {
   const auto solid_of = [](const std::string& later) {
     std::string positions, triangles, keys;

@@ -11,7 +11,7 @@ using namespace geometry_test;
 
 const Transform odd_place = Transform::translate({3, -2, 5}) * Transform::rotate(0.8f, {1, 2, -1});
 
-/// Follows a ray through an object; calls with each point.
+/// Follows a ray through an object and calls a function with each point.
 template <class F>
 int for_all_hits(const SceneObject& object, Ray r, const F& call) {
   int n = 0;
@@ -26,7 +26,8 @@ int for_all_hits(const SceneObject& object, Ray r, const F& call) {
   return n;
 }
 
-/// The volume inside, by parallel rays through the bounds: signed chords, with its standard error. Counts odd crossings.
+/// The volume inside, with its standard error, by parallel rays through the bounds: signed chords. `odd` counts rays with an
+/// odd number of crossings.
 Mean volume(const SceneObject& object, int rays, unsigned seed, int& odd) {
   Random random(seed);
   const Bounds3 box = object.bounds();
@@ -52,7 +53,7 @@ TEST(Torus, ClosedForms) {
   for (const float scale : {1e-3f, 1.0f, 1e4f}) {
     const Ref<SceneObject> torus = object("Torus", {{"radius", 2.0 * double(scale)}, {"tube_radius", 0.5 * double(scale)}});
     EXPECT_NEAR(double(torus->area()) / (4 * M_PI * M_PI * double(scale) * double(scale)), 1, 1e-6);
-    // Across the middle: -2.5, -1.5, 1.5, 2.5; up through the tube: 0.5 sin.
+    // Through the middle: -2.5, -1.5, 1.5, 2.5; up through the tube: 0.5 sin.
     std::vector<float> found;
     for_all_hits(*torus, ray({-10 * scale, 0, 0}, {1, 0, 0}), [&](const SurfacePoint& p) { found.push_back(p.position.x); });
     ASSERT_EQ(found.size(), 4u);
@@ -105,7 +106,7 @@ TEST(Heightfield, AgreesWithItsFormula) {
     EXPECT_NEAR(p.uv.x, p.position.x / 2 + 0.5f, 1e-6f);
     EXPECT_NEAR(dot(p.normal, normalize(Vector3{-0.1f * p.position.y, -0.1f * p.position.x, 1})), 1, 1e-6f);
   }
-  // Straight down onto the grid's lines, where cells meet.
+  // Straight down onto the grid lines, where cells meet.
   for (int i = 0; i <= 8; ++i)
     for (int j = 0; j <= 5; ++j) {
       Hit hit;
@@ -130,7 +131,7 @@ TEST(Heightfield, LargeFieldIsFoundQuickly) {
   const Ref<SceneObject> field =
       object("Heightfield", {{"heights", heights}, {"nx", n}, {"ny", n}, {"size", {1024, 1024}}, {"height", 1}});
   Random random(3);
-  for (int i = 0; i < 20000; ++i) {  // against all cells the ray may pass: the height changes its sign there first
+  for (int i = 0; i < 20000; ++i) {  // against all cells the ray may cross: the first sign change of the height difference
     const float phi = 2 * pi * random.number();
     const Ray r = ray({random.between(-400, 400), random.between(-400, 400), 2},
                       normalize(Vector3{std::cos(phi), std::sin(phi), random.between(-2, -0.02f)}));
@@ -145,11 +146,11 @@ TEST(Heightfield, LargeFieldIsFoundQuickly) {
 
 TEST(Curve, StraightTubesAreConesWithFlatEnds) {
   const double r0 = 0.3, r1 = 0.1, h = 2, slant = std::hypot(h, r0 - r1);
-  // A cone tangent to both spheres, cut across at both ends: radii there are r / sqrt(1 - k^2).
+  // A cone tangent to both spheres, cut off perpendicularly at both ends: the radii there are r / sqrt(1 - k^2).
   const double c = std::sqrt(1 - square(float((r0 - r1) / h)) * 1.0), a = r0 / c, b = r1 / c;
   const double side = M_PI * (a + b) * std::hypot(h, a - b);
   EXPECT_GT(side, M_PI * (r0 + r1) * slant);
-  for (const bool whole : {true, false}) {  // in one piece, or in two that must fit
+  for (const bool whole : {true, false}) {  // in one piece, or in two that must fit together
     std::vector<double> points{0, 0, 0, 0, 0, h}, radii{r0, r1};
     if (!whole) points = {0, 0, 0, 0, 0, h / 4, 0, 0, h}, radii = {r0, r0 + (r1 - r0) / 4, r1};
     const Ref<SceneObject> tube = object("Curve", {{"points", points}, {"radius", radii}}, odd_place);
@@ -162,8 +163,8 @@ TEST(Curve, StraightTubesAreConesWithFlatEnds) {
   }
 }
 
-// Pappus: a tube whose pieces turn has the volume pi r^2 times the length of its axis, however it is cut into pieces, for
-// the wedges at bends even out; of a bend too sharp for it, parts are counted twice.
+// Pappus: a bent tube has the volume pi r^2 times the length of its axis, however it is cut into pieces, because the wedges at
+// bends cancel; at a bend too sharp for the tube, parts are counted twice.
 TEST(Curve, BentTubesAreClosed) {
   struct Bent {
     const char* basis;
@@ -185,7 +186,7 @@ TEST(Curve, BentTubesAreClosed) {
       EXPECT_NEAR(v.value(), M_PI * 0.01 * (3 + std::sqrt(2.0)), 4.5 * v.error());
       EXPECT_NEAR(double(tube->area()), M_PI * 0.2 * (3 + std::sqrt(2.0)) + 2 * M_PI * 0.01, 1e-5);
     }
-    Random random(6);  // points by area lie where rays find them, with the density that integrates to one
+    Random random(6);  // points by area lie on the surface; 1 / pdf averages to the area
     Mean area;
     for (int i = 0; i < 8000; ++i) {
       const SurfaceSample s = tube->sample_area(random.pair(), 0);
@@ -197,8 +198,8 @@ TEST(Curve, BentTubesAreClosed) {
 }
 
 TEST(Curve, SplinesRunWhereTheyShould) {
-  // The middle of a Bezier curve: (b0 + 3 b1 + 3 b2 + b3) / 8; of a B-spline's span (1, 23, 23, 1) / 48; a Catmull-Rom
-  // spline passes through its points. A tube's point at u is its radius away from there, square to the curve.
+  // The middle of a Bézier curve: (b0 + 3 b1 + 3 b2 + b3) / 8; of a B-spline's span (1, 23, 23, 1) / 48; a Catmull-Rom spline
+  // passes through its points. A tube's point at u is its radius away from that point, perpendicular to the curve.
   const std::vector<double> points{0, 0, 0, 1, 0, 1, 2, 1, 1, 3, 1, 0};
   const auto at = [&](const char* basis, float u) {
     const Ref<SceneObject> tube =
@@ -216,7 +217,7 @@ TEST(Curve, SplinesRunWhereTheyShould) {
   EXPECT_LT(distance(at("bezier", 0.5f), {1.5f, 0.5f, 0.75f}), 2e-3f);
   EXPECT_LT(distance(at("b_spline", 0.5f), {1.5f, 0.5f, 46 / 48.0f}), 2e-3f);
   EXPECT_LT(distance(at("catmull_rom", 1 / 3.0f), {1, 0, 1}), 2e-3f);
-  // What is a parabola at four even points, here z = x (3 - x) / 2, is that parabola between the inner two.
+  // Of four evenly spaced points on a parabola, here z = x (3 - x) / 2, the spline is that parabola between the inner two.
   EXPECT_LT(distance(at("catmull_rom", 0.5f), {1.5f, 0.5f, 1.125f}), 2e-3f);
 }
 

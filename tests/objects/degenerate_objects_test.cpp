@@ -1,6 +1,6 @@
-// Members with zeros, tiny, huge, infinite and undefined numbers, for every class of objects there is: what comes is an error
-// that says where, or an object whose answers are numbers. Through the registry, so that new classes are tested without being
-// named here.
+// Members with zero, tiny, huge, infinite and undefined numbers, for every class of objects: the result is an error that gives
+// its location, or an object all of whose results are numbers. The classes come from the registry, so that new classes are
+// tested without being named here.
 
 #include "check/conform/draw.h"
 #include "etendue/language/language.h"
@@ -11,7 +11,7 @@ namespace {
 
 using namespace geometry_test;
 
-/// Whatever is asked of the object ends, and is finite where it is said to be something.
+/// Every query of the object terminates, and a result is finite where it is valid.
 void expect_sane(const SceneObject& object, const std::string& what) {
   SCOPED_TRACE(what);
   const Bounds3 box = object.bounds();
@@ -93,8 +93,8 @@ std::vector<Value> numbers_like(const Member& m, const Value& usual) {
     add(std::vector<double>(list.begin(), list.begin() + width));
   }
   for (const double x : {0.0, nan, inf, 1e-30, 1e-6, 1e6, 1e30}) {
-    add(std::vector<double>(list.size(), x));  // all in one place
-    std::vector<double> one = list;            // and one of them alone
+    add(std::vector<double>(list.size(), x));  // all numbers equal
+    std::vector<double> one = list;            // and only the last one
     one.back() = x;
     add(one);
   }
@@ -107,7 +107,7 @@ std::vector<Value> numbers_like(const Member& m, const Value& usual) {
   return out;
 }
 
-/// For each class whose name begins with a letter between two.
+/// Tests each class whose name begins with a letter in a range.
 void try_classes(char from, char to) {
   const conform::Fixtures fixtures;
   const ClassInfo& objects = *Registry::instance().find("SceneObject");
@@ -119,7 +119,7 @@ void try_classes(char from, char to) {
       if (m.name == "priority") continue;
       const conform::Drawn usual = conform::default_part(*c, fixtures, random);
       ASSERT_TRUE(usual.part) << c->name << ": " << usual.refused;
-      // Else it takes long.
+      // Smaller settings, because the test would take long otherwise.
       if (m.name == "edge_length" && c->find("levels")) set(*usual.part, "levels", Value(Number{2}));
       if (c->name == "SignedDistanceGrid" && m.name != "resolution" && m.name != "distances")
         set(*usual.part, "resolution", Value(Numbers{{9, 9, 9}, 1, Dimension::none}));
@@ -152,7 +152,7 @@ TEST(DegenerateObjects, FromSToZGiveAnErrorOrNumbers) { try_classes('S', 'Z'); }
 
 // ---- lists that say nothing together ------------------------------------------------------------------------------------
 
-/// The error an object of this text gives, with its line; empty: there is none, and the object is sane.
+/// The error that an object of this text gives, with its line; or "" if there is none and the object passes expect_sane().
 std::string error_of(const std::string& text) {
   Ref<SceneObject> object;
   try {
@@ -199,8 +199,8 @@ TEST(DegenerateObjects, PartsThatMeanNothingAreLeftOut) {
   EXPECT_EQ(error_of("Polygon { points: [[0, 0, 0], [1, 0, 0], [1, 0, 0], [1, 1, 0], [0.5, 0.5, 0]] m }"), "");
 }
 
-// Of two triangles that open and close, each is flat at one key; two more are flat at both, and go. Half way all have moved
-// half way.
+// Of two triangles that open and close, each is flat at one key; two more are flat at both keys and are left out. Half way, all
+// vertices have moved half of their way.
 TEST(DegenerateObjects, TrianglesFlatAtOneKeyAreThereAtOthers) {
   const auto mesh = ref_cast<SceneObject>(parse_component(R"(TriangleMesh {
     positions: [[0, 0, 0], [1, 0, 0], [0.5, 0, 0],  [2, 0, 0], [3, 0, 0], [2, 1, 0],  [5, 0, 0], [6, 0, 0], [7, 0, 0]] m,

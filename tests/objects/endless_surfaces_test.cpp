@@ -1,5 +1,5 @@
-// Light from infinity on surfaces without end, which reach beyond the sphere in which light paths once began: known answers
-// for all renderers that follow light, and tile by tile the same picture by all.
+// Lights at infinity on unbounded surfaces, which extend beyond the sphere in which light paths begin: known results for all
+// renderers that trace light paths, and tile by tile the same picture with all renderers.
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@ const std::string plane = "InfinitePlane { shader: Lambertian { color: 0.5 } }\n
                   sky = "Environment { emission: DiffuseEmission { radiance: 2 } }\n",
                   ball = "Sphere { centre: [0, 0, 0.3], radius: 0.3, shader: Lambertian { color: 0.6 } }\n";
 
-// Where nothing but the plane reflects, its radiance is rho E / pi: rho L under a sky of radiance L, and rho S cos / pi under
-// a sun whose irradiance across is S. Seen are its parts at 2 to 30 and at 2000 radii of the scene, of which there is none but
-// the plane: R = 1.
+// Where nothing but the plane reflects, its radiance is rho E / pi: rho L under a sky of radiance L, and rho S cos / pi under a
+// sun whose irradiance perpendicular to its light is S. The camera sees parts of the plane at 2 to 30 and at 2000 radii of the
+// scene, which is R = 1, since there is nothing but the plane.
 std::vector<Row> rows() {
   const std::string near = "PerspectiveCamera { from: [0, -3, 2], to: [0, 1, 1], up: [0, 0, 1], fov: 20 }",
                     far = "PerspectiveCamera { from: [2000, 0, 2], to: [2000, 1, 0], up: [0, 0, 1], fov: 40 }",
@@ -26,7 +26,7 @@ std::vector<Row> rows() {
           {"SunNear", near, plane + sun, 3 / exact_pi, ways},
           {"SkyFar", far, plane + sky, 1, eye},
           {"SunFar", far, plane + sun, 3 / exact_pi, eye},
-          // The plane above the scene's sphere lets nothing through.
+          // The plane above the scene's sphere occludes the sun.
           {"SunAboveARoof", near, plane + "InfinitePlane { transform: translate(0, 0, 4) }\n" + sun, 0, ways}};
 }
 
@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(All, EndlessSurfaces, testing::ValuesIn(cases(rows())),
 
 constexpr int width = 24, height = 16, tile = 4, passes = 16, tiles = (width / tile) * (height / tile);
 
-/// Mean and squared standard error of each tile, from renders with different seeds.
+/// Mean and squared standard error of each tile, over renders with different seeds.
 struct Tiles {
   double mean[tiles] = {}, variance[tiles] = {};
 };
@@ -65,7 +65,7 @@ Tiles measured(const std::string& renderer, const std::string& objects) {
   return t;
 }
 
-// 5.5 standard errors of a difference, of about 30 degrees of freedom: 6e-6 for each tile, 6e-4 for all of them.
+// 5.5 standard errors of a difference with about 30 degrees of freedom: probability 6e-6 for each tile, 6e-4 for all of them.
 void expect_same(const std::string& renderer, int samples, const std::string& objects, double notice = 0.02) {
   const Tiles a = measured("PathTracer { max_depth: 3, samples: 64 }", objects),
               b = measured(renderer + " { max_depth: 3, samples: " + std::to_string(samples) + " }", objects);

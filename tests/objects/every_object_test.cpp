@@ -1,4 +1,5 @@
-// One of every object that rays can meet, in scenes/verify/every_object.etd: all structures find the same of it.
+// One of each class of object that rays can hit, in scenes/verify/every_object.etd: all acceleration structures find the same
+// hits.
 
 #include <set>
 
@@ -19,11 +20,11 @@ void classes_in(const SceneObject& object, std::set<std::string>& found) {
     for (const auto& each : inner->objects) classes_in(*each, found);
 }
 
-// A class that is added has to be put into the scene.
+// A new class has to be added to the scene.
 TEST(EveryObject, IsInTheScene) {
   std::set<std::string> found;
   classes_in(*every_object()->scene, found);
-  // Those no ray meets, and what holds objects of other files.
+  // Objects that no ray hits, and objects that hold those of other files.
   const std::set<std::string> never_met{"Point", "Distant", "Environment", "Import", "Surroundings"};
   const ClassInfo& objects = *Registry::instance().find("SceneObject");
   for (const ClassInfo* c : Registry::instance().subclasses(objects))
@@ -40,7 +41,7 @@ Ref<Scene> searched_by(const char* structure) {
   return made;
 }
 
-/// The objects a hit lies in, outermost first, by their classes and places in lists: the same for equal scenes.
+/// The outermost object in which a hit lies, by its class and its index in the scene's list: the same for equal scenes.
 std::string name_of(const Scene& scene, const Hit& hit) {
   const SceneObject* outermost = hit.depth ? hit.scenes[hit.depth - 1] : hit.object;
   for (size_t i = 0; i < scene.objects.size(); ++i)
@@ -58,7 +59,7 @@ TEST(EveryObject, IsFoundAlikeByAllStructures) {
   std::set<std::string> met;
   Random random(1);
   for (int i = 0; i < rays; ++i) {
-    // From the camera, from all around and from among the objects, towards these.
+    // From the camera, from all around and from among the objects, towards the objects.
     const Point3 target{random.between(-2.7f, 2.7f), random.between(-1.7f, 1.5f), random.between(0, 0.6f)};
     Point3 from{0, -6, 3.4f};
     if (i % 3 == 1) from = target + 9.0f * random.direction();
@@ -68,7 +69,7 @@ TEST(EveryObject, IsFoundAlikeByAllStructures) {
     const bool hit = scenes[0]->nearest(r, expected);
     hits += hit;
     if (hit) met.insert(name_of(*scenes[0], expected));
-    // Every object for every ray takes long: a tenth of them.
+    // BruteForceScene tests every object for every ray, which takes long: only for a tenth of the rays.
     for (size_t k = 0; k < (i % 10 == 0 ? count : count - 1); ++k) {
       Hit found;
       const bool hit2 = k ? scenes[k]->nearest(r, found) : hit;
@@ -91,7 +92,7 @@ TEST(EveryObject, IsFoundAlikeByAllStructures) {
   }
   EXPECT_GT(hits, rays / 2);
   EXPECT_EQ(met.size(), scenes[0]->objects.size()) << "all of them";
-  // On an edge, rounding decides which of two surfaces is met, or whether one is.
+  // At an edge, rounding decides which of two surfaces is hit, or whether one is hit.
   for (size_t k = 0; k < count; ++k) {
     EXPECT_LE(other_distance[k], 5) << structures[k];
     EXPECT_LE(other_object[k], 5) << structures[k];

@@ -1,5 +1,6 @@
-// Objects and scenes that count from a point far from the origin give what they give at the origin, in every way of nesting;
-// and walks within closed objects stay there. No renderer takes part: see far_away_test.cpp for pictures.
+// Objects and scenes in a space that is relative to a point far from the origin give the same results as at the origin, in
+// every way of nesting; and walks within closed objects stay inside. No renderer takes part: see far_away_test.cpp for
+// pictures.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@ namespace {
 
 using geometry_test::Random;
 
-/// A place of the world, and how large things are there.
+/// A place in the world, and the scale of the objects there.
 struct Where {
   double x = 0, y = 0, z = 0, scale = 1;
   DoublePoint3 at(double a, double b, double c) const { return {x + scale * a, y + scale * b, z + scale * c}; }
@@ -55,7 +56,7 @@ AnimatedTransform moving(const Transform& from, const Transform& to) {
 
 // ---- the same as at the origin --------------------------------------------------------------------------------------------
 
-/// Rays from the camera into both: hits, points, normals and places in the world agree but for rounding.
+/// Traces rays from the camera in both scenes: hits, points, normals and world positions agree except for rounding.
 void expect_same(const Ref<Scene>& there, const Where& w, const Ref<Scene>& here, const std::string& what) {
   const Where home;
   count_from(*there, w.at(0.1, -1.6, 0.1), 0);
@@ -87,7 +88,7 @@ void expect_same(const Ref<Scene>& there, const Where& w, const Ref<Scene>& here
     turned = std::max(turned, double(length(Vector3(p.normal) - Vector3(q.normal))));
     in_world =
         std::max(in_world, length(1 / w.scale * (world_position(p) - w.at(0, 0, 0)) - (world_position(q) - DoublePoint3{})));
-    // And a ray that leaves does not meet the surface again.
+    // A ray that leaves the surface does not hit it again.
     const Vector3 out = dot(p.normal, ray.direction) > 0 ? -Vector3(p.normal) : Vector3(p.normal);
     const Ray leaving = p.leave(normalize(out + 0.3f * random.direction()));
     Hit next;
@@ -141,7 +142,7 @@ TEST(FarAwayObjects, AreThoseAtTheOrigin) {
   }
 }
 
-/// Places of all kinds: a point, a corner and edges, a list, a solid of two, a motion.
+/// Objects with positions of all kinds: a point, a corner and edges, a list, a solid of two operands, a motion.
 std::vector<Ref<SceneObject>> things(const Where& w, double shift = 0) {
   const double s = w.scale;
   const auto cube = [&](const DoublePoint3& at, double edge) {
@@ -215,8 +216,8 @@ Ref<SceneObject> room(int kind, const Where& w) {
                      kind == 3 ? AnimatedTransform() : turned);
 }
 
-/// How many rays get out of a closed room whose points are counted from `centre`; each leaves a point into the half space
-/// within.
+/// The number of rays that escape from a closed room in a space relative to `centre`; each ray leaves a point towards the
+/// inside.
 long leaks(const std::string& structure, const Where& w, const DoublePoint3& centre, int kind, long rays) {
   const Ref<Scene> scene = make_scene(structure, {room(kind, w)});
   count_from(*scene, centre, 0);
@@ -238,7 +239,7 @@ long leaks(const std::string& structure, const Where& w, const DoublePoint3& cen
     if (met) scene->locate(ray, hit, p);
     const bool within = met && dot(p.normal, ray.direction) > 0;
     out += !within;
-    // A direction in the plane itself has no side, and no light is scattered there.
+    // A direction within the surface's plane has no side; no light is scattered there.
     again = !within || i % 8 == 7 || dot(d, p.normal) == 0;
     if (!again) ray = p.leave(dot(d, p.normal) > 0 ? -d : d);
   }
@@ -247,7 +248,7 @@ long leaks(const std::string& structure, const Where& w, const DoublePoint3& cen
 
 const char* const structures[] = {"BvhScene", "EmbreeScene", "OctreeScene", "GridScene", "BruteForceScene"};
 
-/// LEAK_RAYS asks for more than are usual.
+/// The environment variable LEAK_RAYS replaces the usual number of rays.
 long rays_asked(long usual) {
   const char* asked = std::getenv("LEAK_RAYS");
   return asked ? std::atol(asked) : usual;
@@ -262,7 +263,7 @@ TEST(FarAwayObjects, WalksStayInClosedOnes) {
             << structure << " at " << w.x << ", scale " << w.scale << ", room " << kind;
 }
 
-// As of a room far from the camera in a large scene: points within rounding of an edge must not be outside.
+// Like a room far from the camera in a large scene: points within rounding of an edge must not be outside.
 TEST(FarAwayObjects, WalksStayInClosedOnesFarFromTheCentre) {
   for (const char* structure : structures)
     for (const Where& w : {away(100), away(1e3), away(1e4)})

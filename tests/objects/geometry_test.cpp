@@ -23,7 +23,7 @@ TEST(Transform, InverseUndoes) {
     EXPECT_LT(largest_difference(t * t.inverse(), Transform()), 2e-4f);
     const Point3 p = random.in_box(5);
     EXPECT_LT(distance(t.back(t(p)), p), 1e-3f);
-    // A normal stays perpendicular to what it was perpendicular to.
+    // A normal stays perpendicular to the tangents that it was perpendicular to.
     const Normal3 n(random.direction());
     const Frame f(n);
     EXPECT_NEAR(dot(normalize(t(n)), normalize(t(f.s))), 0, 1e-4f);
@@ -76,7 +76,7 @@ TEST(AnimatedTransform, RotationKeepsSize) {
   }
   EXPECT_EQ(a.at(-3), a.keys()[0].transform);
   EXPECT_EQ(a.at(7), a.keys()[1].transform);
-  // Halfway is half the angle.
+  // Half way between the keys the rotation has half the angle.
   const Transform half = Transform::translate({3, 0, 0}) * Transform::rotate(1.25f, {1, 2, 3}) * Transform::scale({2, 2, 2});
   EXPECT_LT(largest_difference(a.at(0.5f), half), 1e-5f);
   EXPECT_THROW(AnimatedTransform({{1, {}}, {1, {}}}), Error);
@@ -244,14 +244,14 @@ TEST(ClosedForm, SphereAboveAndHalfBelowTheHorizon) {
 // ---- rays leave surfaces
 // ------------------------------------------------------------------------------------------------------
 
-/// Whether a ray meets anything but an edge that it passes closer than rounding can tell.
+/// Whether a ray hits anything, apart from an edge that it passes within rounding.
 bool meets(const Scene& scene, const Ray& ray) {
   Hit hit;
   if (!scene.nearest(ray, hit)) return false;
   return hit.object->class_info().name != "TriangleMesh" || std::min({hit.u, hit.v, 1 - hit.u - hit.v}) > 1e-5f;
 }
 
-/// How many of the rays that leave an object's surface to a side where nothing of it lies meet it again.
+/// The number of rays that hit an object again after leaving its surface to a side on which nothing of the object lies.
 int met_again(const SceneObject& object, const Scene& scene, bool both_sides, int rays, Random& random) {
   int met = 0;
   for (int i = 0; i < rays; ++i) {
@@ -260,15 +260,15 @@ int met_again(const SceneObject& object, const Scene& scene, bool both_sides, in
     Vector3 d = random.direction();
     if (!both_sides && dot(s.point.normal, d) < 0) d = -d;
     if (i % 4 == 0) d = normalize(d - (1 - 1e-4f) * dot(s.point.normal, d) * Vector3(s.point.normal));  // grazing
-    if (std::abs(dot(s.point.normal, d)) < 1e-5f) continue;  // on either side, by rounding
+    if (std::abs(dot(s.point.normal, d)) < 1e-5f) continue;  // rounding may put it on either side
     met += meets(scene, s.point.leave(d));
-    // The same from a point that a ray found.
+    // The same from a point that was found by tracing a ray.
     const Ray in = ray(s.point.position + 3 * std::sqrt(object.area(time)) * d, -d, time);
     Hit hit;
     if (!scene.nearest(in, hit) || hit.object != &object) continue;
     SurfacePoint p;
     scene.locate(in, hit, p);
-    // Found beside an edge by rounding, it may lie just behind the next triangle.
+    // If rounding put the hit beside an edge, the point may lie just behind the next triangle.
     if (object.class_info().name == "TriangleMesh" && std::min({p.u, p.v, 1 - p.u - p.v}) < 1e-5f) continue;
     if (dot(p.normal, d) > 1e-5f) met += meets(scene, p.leave(d));
   }
@@ -279,7 +279,7 @@ TEST(Objects, LeavingRaysDoNotReturn) {
   Random random(17);
   for (const char* structure : {"BruteForceScene", "EmbreeScene"})
     for (float size : {1e-3f, 1.0f, 1e5f})
-      for (float away : {0.0f, 3.0f, 1000.0f}) {  // in sizes
+      for (float away : {0.0f, 3.0f, 1000.0f}) {  // in multiples of the size
         SCOPED_TRACE(std::string(structure) + ", size " + std::to_string(size) + ", away " + std::to_string(away));
         const auto test = [&](const std::string& name, const std::vector<Setting>& settings, bool both_sides,
                               const AnimatedTransform& place) {

@@ -9,8 +9,8 @@ namespace {
 using test::create;
 
 TEST(HairCurves, TubesAndRibbonsScatterAlike) {
-  // Seen from afar over its whole width, lit once from in front, from the side and from behind, where the light has to get
-  // through: the same hair. 5 standard errors.
+  // Seen from afar over its whole width, and lit by one light in front, at the side or behind, where light has to pass through:
+  // tube and ribbon look the same. 5 standard errors.
   for (const char* direction : {"[0.3, -1, 0.2]", "[1, 0.1, 0.3]", "[0.5, 1, -0.3]", "[0.1, 1, 0]"}) {
     SCOPED_TRACE(direction);
     test::Measured m[2];
@@ -30,8 +30,8 @@ TEST(HairCurves, TubesAndRibbonsScatterAlike) {
 }
 
 TEST(HairCurves, OffsetsFollowFromNormalsOfTubes) {
-  // Where the normal is turned by an angle around the fibre, h is its sine: the same values as on a ribbon there, seen along
-  // its own normal. The ribbon from behind is the ribbon turned around.
+  // Where the tube's normal is rotated by an angle around the fibre, h is the angle's sine: the values are those of a ribbon at
+  // this h, seen along its own normal. Seen from behind, the ribbon is rotated by half a turn.
   const auto hair = create<Shader>("HairShader", {{"azimuthal_roughness", 0.15}});
   const auto tube = create<SceneObject>("Curve"), ribbon = create<SceneObject>("Curve", {{"form", "ribbon"}});
   Arena arena;
@@ -44,7 +44,7 @@ TEST(HairCurves, OffsetsFollowFromNormalsOfTubes) {
   };
   const Vector3 out = normalize(Vector3{0.3f, 0, 1});
   for (const float h : {-0.8f, -0.3f, 0.0f, 0.6f}) {
-    // h counts along normal x fibre, which is y here.
+    // h is measured along normal x fibre, which is y here.
     const Scatter* round = bound(tube, std::asin(h), 0.123f);
     const Scatter* flat = bound(ribbon, 0, (1 + h) / 2);
     const Scatter* behind = bound(ribbon, pi, (1 - h) / 2);

@@ -1,4 +1,4 @@
-// Quadrics, metaballs, grids of distances and formulas: against closed forms, and no thin feature is missed.
+// Quadrics, metaballs, grids of distances and formulas: against closed forms; and thin features are not missed.
 
 #include <unistd.h>
 
@@ -20,7 +20,7 @@ SurfacePoint located(const SceneObject& o, const Ray& r, const Hit& hit) {
   return p;
 }
 
-/// Distances of all crossings of a ray, each found by a ray that leaves the one before.
+/// Distances of all crossings along a ray; each is found by a ray that leaves the point before.
 std::vector<double> crossings(const SceneObject& o, Ray r) {
   std::vector<double> all;
   const Point3 start = r.origin;
@@ -60,11 +60,11 @@ std::vector<Form> forms() {
     a.push_back(b);
     return a;
   };
-  const double single = std::sqrt(1 - std::cbrt(0.2));  // of a lone ball's radius
+  const double single = std::sqrt(1 - std::cbrt(0.2));  // for a single ball, in units of its radius
   return {{"sphere", object("Quadric"), 4 * M_PI},
           {"open cylinder", object("Quadric", also(cylinder, open)), 2 * M_PI},
           {"closed cylinder", object("Quadric", also(cylinder, closed)), 2.5 * M_PI},
-          // Two cones of slope 1, cut by a cube: over the square [-1, 1]^2 both, sqrt(2) times the disc.
+          // Two cones of slope 1, clipped by a cube: both over the square [-1, 1]^2, each sqrt(2) times its area.
           {"double cone", object("Quadric", also(cone, open)), 2 * M_PI * std::sqrt(2.0)},
           {"half space", object("Quadric", {{"squares", {0, 0, 0}}, {"linear", {0, 0, 1}}, {"constant", 0.0}}), 16},
           {"one ball", object("Metaballs", {{"centres", {0, 0, 0}}}), 4 * M_PI * single * single},
@@ -91,8 +91,8 @@ TEST(Implicit, StretchedSpheresHaveTheAreaOfASpheroid) {
 }
 
 TEST(Implicit, PointsLieEvenlyOnTheSurface) {
-  // A torus: the share of points outside of its middle circle is (pi + 2 r / R) / (2 pi), as 1 / (2 pi) of the area between
-  // angles phi and phi + d phi of the tube is 1 + r / R cos phi. 5 standard errors.
+  // A torus: the fraction of points outside its middle circle is (pi + 2 r / R) / (2 pi), because the area between the tube's
+  // angles phi and phi + d phi is proportional to (1 + r / R cos phi) / (2 pi). 5 standard errors.
   const Ref<SceneObject> torus = object("ImplicitSurface");
   Random random(11);
   Mean outer, up;
@@ -142,7 +142,7 @@ TEST(Implicit, ClosedSolidsAreCrossedInPairsWithinWhichTheirVolumeLies) {
 }
 
 TEST(Implicit, SmallLargeAndFarOnesAreFoundAndLeft) {
-  // A unit sphere, made small or large, far off, by its transform: rays that leave it outwards do not meet it again.
+  // A unit sphere that its transform makes small or large and moves far off: rays that leave it outwards do not hit it again.
   Random random(13);
   for (const char* name : {"Quadric", "Metaballs", "ImplicitSurface", "SignedDistanceGrid"})
     for (const float scale : {1e-3f, 1.0f, 1e5f})
@@ -175,8 +175,8 @@ TEST(Implicit, SmallLargeAndFarOnesAreFoundAndLeft) {
 }
 
 TEST(Implicit, NothingThinIsMissed) {
-  // Sheets of a thousandth of the box's edge, at places a coarse search would step over; and a blade of a ball that reaches
-  // just above the threshold.
+  // Sheets with the thickness of a thousandth of the box's edge, at positions that a coarse search would step over; and a
+  // metaball that only just exceeds the threshold.
   Random random(14);
   const Ref<SceneObject> sheet =
       object("ImplicitSurface", {{"formula", std::string("abs(x - 0.31234 + 0.05*sin(3*y)) - 0.0005")}});
@@ -247,7 +247,7 @@ TEST(Implicit, ErrorsSayWhatAndWhere) {
 }
 
 TEST(Implicit, FormulasKnowAllFunctions) {
-  // The plane x = 1/4 or the like, written with each function, its gradient along x.
+  // The plane x = 1/4 or the like, written with each function; the gradient is along x.
   for (const char* formula : {"abs(x - 1) - 0.75",
                               "sqrt(x + 1) - sqrt(1.25)",
                               "exp(x) - exp(0.25)",

@@ -1,4 +1,4 @@
-// Instances, meshes that change their shape, transforms and shutters over time.
+// Instances, deforming meshes, transforms and shutters over time.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ std::vector<Ref<SceneObject>> contents() {
   return {object("TriangleMesh", cube_settings()), object("Sphere", {{"radius", 0.7}}, Transform::translate({2.5f, 0, 0}))};
 }
 
-// The same things placed by hand: a structure that is told nothing of instances.
+// The reference has the same objects placed one by one, in a structure without instances.
 TEST(Motion, InstancesAreTheSceneInOtherPlaces) {
   Random random(1);
   const Ref<Scene> shared = scene("EmbreeScene", contents());
@@ -66,7 +66,7 @@ TEST(Motion, InstancesAreTheSceneInOtherPlaces) {
       ++differ;
     else if (dot(p.normal, Vector3(q.normal)) < 0.999f && h.primitive == g.primitive)
       ++flipped;
-    // On its way out along the normal a ray does not meet the place it leaves.
+    // A ray that leaves a point to the outside does not hit the same place again.
     Hit again;
     const Vector3 away = normalize(Vector3(p.normal) + 0.7f * random.direction());
     if (dot(p.normal, away) > 0.05f && a->nearest(p.leave(away), again) && again.distance < 1e-3f * size) {
@@ -139,7 +139,7 @@ TEST(Motion, ManyInteriorsAreFoundByTheTree) {
   EXPECT_GT(inside, 500);
 }
 
-/// The cube's corners, each moved by some of its own.
+/// The cube's corners, each moved by a random offset.
 std::vector<double> shaken(unsigned seed, double by) {
   Random random(seed);
   std::vector<double> p;
@@ -158,12 +158,12 @@ std::vector<Setting> deforming(const std::vector<double>& times) {
   return settings;
 }
 
-// At every time the mesh is the still one whose vertices lie between those of the keys around; by Embree's own motion, by
-// user geometry (two clocks in one scene, moving transforms), within an instance, and tested one by one.
+// At every time the mesh equals the still mesh whose vertices are interpolated between the keys: with Embree's own motion, as
+// user geometry (two time ranges in one scene, moving transforms), within an instance, and intersected directly.
 TEST(Motion, AMeshThatChangesItsShapeIsTheStillOneOfThatTime) {
   Random random(5);
   for (const std::vector<double>& times : {std::vector<double>{2, 3}, {2, 2.5, 3}, {2, 2.1, 2.9, 3}}) {
-    // One for each scene: to prepare a mesh again takes the arrays away that an older structure refers to.
+    // One mesh for each scene: preparing a mesh again frees the arrays to which an older structure refers.
     const auto made = [&] { return object("TriangleMesh", deforming(times)); };
     const auto later = [] { return object("TriangleMesh", deforming({5, 9}), Transform::translate({10, 0, 0})); };
     const Ref<SceneObject> mesh = made();
@@ -246,7 +246,7 @@ TEST(Motion, BoundsHoldWhatTurns) {
     std::vector<AnimatedTransform::Key> keys;
     float time = 0;
     const Vector3 axis = random.direction();
-    for (int k = 0; k < 4; ++k) {  // by up to 3 rad from key to key, and in steps of very different length
+    for (int k = 0; k < 4; ++k) {  // by up to 3 rad from key to key, at very unequal time steps
       keys.push_back({time, Transform::translate(random.in_box(2) - Point3{}) * Transform::rotate(2.9f * float(k), axis) *
                                 Transform::scale({random.between(0.5f, 2), 1, 1})});
       time += trial % 2 ? random.between(0.1f, 1) : std::pow(10.0f, random.between(-4, 0));
@@ -276,7 +276,7 @@ TEST(Motion, TheShutterLetsInLightAsFarAsItIsOpen) {
   camera->shutter_opening = 0.8f;
   camera->shutter_closing = 0.4f;
   prepare_tree(*camera);
-  // The quantiles follow from the trapezium's area, 2 - 0.6 = 1.4: half its first ramp is 0.4, and so on.
+  // The quantiles follow from the trapezoid's area, 2 - 0.6 = 1.4: half its first ramp is 0.4, and so on.
   EXPECT_FLOAT_EQ(camera->shutter_time(0), 1);
   EXPECT_NEAR(camera->shutter_time(0.4f / 1.4f), 1.8f, 1e-5f);
   EXPECT_NEAR(camera->shutter_time(0.1f / 1.4f), 1.4f, 1e-5f);
@@ -330,7 +330,7 @@ TEST(Motion, ABlurredPictureIsTheMeanOfStillOnes) {
   for (size_t k = 0; k < 16; ++k) EXPECT_NEAR(blurred[k] / mean[k], 1, 0.01) << "tile " << k;
 }
 
-// What floats cannot count with is refused before a ray meets it.
+// Transforms beyond the range of floats are refused before rays are traced.
 TEST(Transforms, BeyondFloatsAreNotValid) {
   EXPECT_FALSE(Transform::scale({1, 1, 1e-30f}).valid());
   EXPECT_FALSE(Transform::scale({1e20f, 1, 1}).valid());

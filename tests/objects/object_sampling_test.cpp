@@ -1,4 +1,4 @@
-// Points on shapes: what rays find, and sampling by area and by solid angle.
+// Points on shapes: found by rays, and sampled by area and by solid angle.
 
 #include "support/geometry_support.h"
 
@@ -65,7 +65,7 @@ TEST(Objects, SurfacePointsAgreeWithRays) {
       EXPECT_LT(distance(t(p.object_position), p.position), 2e-5f);
       EXPECT_NEAR(dot(normalize(t(p.object_normal)), p.normal), 1, 1e-4f);
       EXPECT_EQ(p.time, c.time);
-      // Tangents: p(u + h, v) by a second ray to where the tangent says it is.
+      // Tangents: p(u + h, v) is found by a second ray towards the point that the tangent predicts.
       c.object->tangents(p);
       EXPECT_NEAR(dot(p.normal, normalize(p.dpdu)), 0, 1e-3f);
       EXPECT_NEAR(dot(p.normal, normalize(p.dpdv)), 0, 1e-3f);
@@ -78,7 +78,7 @@ TEST(Objects, SurfacePointsAgreeWithRays) {
       c.object->surface_point(second, hit2, p2);
       float du = p2.uv.x - p.uv.x;
       du -= std::round(du);
-      if (c.name.starts_with("Sphere") && (p.uv.y < 0.1f || p.uv.y > 0.9f)) continue;  // u is no good coordinate at the poles
+      if (c.name.starts_with("Sphere") && (p.uv.y < 0.1f || p.uv.y > 0.9f)) continue;  // u is ill-conditioned near the poles
       EXPECT_NEAR(du, h, 0.1f * h);
       EXPECT_NEAR(p2.uv.y, p.uv.y, 0.1f * h);
     }
@@ -94,7 +94,8 @@ TEST(Objects, SurfacePointsAgreeWithRays) {
   }
 }
 
-// A place that is 0.3 of the first corner, 0.2 of the second and 0.5 of the third has a normal along the same of their normals.
+// A point with the barycentric weights 0.3, 0.2 and 0.5 has a normal that is the mean of the corners' normals with these
+// weights.
 TEST(Objects, NormalsOfCornersAreInterpolated) {
   const Ref<SceneObject> mesh = object("TriangleMesh", {{"positions", {0, 0, 0, 4, 0, 0, 0, 4, 0}},
                                                         {"normals", {0, 0, 1, 0.6, 0, 0.8, 0, 0.28, 0.96}},
@@ -109,8 +110,8 @@ TEST(Objects, NormalsOfCornersAreInterpolated) {
 }
 
 TEST(Objects, AreaSamplingMatchesItsDensity) {
-  // The mean of 1/density is the area; the mean of position/density its first moment, compared with hits of parallel
-  // rays (which see each piece of area under its cosine). 5 standard errors.
+  // The mean of 1 / pdf is the area; the mean of position / pdf is its first moment, compared with hits of parallel rays (which
+  // hit each piece of area in proportion to its cosine). 5 standard errors.
   Random random(4);
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
@@ -126,7 +127,8 @@ TEST(Objects, AreaSamplingMatchesItsDensity) {
   }
 }
 
-// What an even spread over a surface has in closed form: the mean of x^2 + y^2 and that of z^2, by midpoints of the square.
+// For surfaces whose points by area are uniform, the mean of x^2 + y^2 and that of z^2 have closed forms; by the midpoint rule
+// over the unit square.
 TEST(Objects, PointsLieEvenly) {
   const struct {
     const char* shape;
@@ -140,11 +142,12 @@ TEST(Objects, PointsLieEvenly) {
       {"Rectangle", {{"corner", {-1, -2, 0}}, {"edge_u", {2, 0, 0}}, {"edge_v", {0, 4, 0}}}, 1 / 3.0 + 4 / 3.0, 0},
       // From z = -h/2 to h/2.
       {"Cylinder", {{"radius", 2}, {"height", 3}, {"caps", false}}, 4, 9 / 12.0},
-      // A cone from radius a to b: of what is even along its side, r = a + (b - a) t has the density r.
+      // A cone from radius a to b: with points uniform by area, the parameter t along its side has a pdf proportional to r = a
+      // + (b - a) t.
       {"Cone", {{"radius", 3}, {"top_radius", 0}, {"height", 2}, {"caps", false}}, 9 / 2.0, 4 / 6.0},
-      // Over q = 1 + 3 r^2 / 4 from 1 to 4 the density is sqrt(q); r^2 = 4 (q - 1) / 3 and z^2 = (q - 1)^2 / 3.
+      // q = 1 + 3 r^2 / 4 from 1 to 4 has a pdf proportional to sqrt(q); r^2 = 4 (q - 1) / 3 and z^2 = (q - 1)^2 / 3.
       {"Paraboloid", {{"radius", 2}, {"height", std::sqrt(3.0)}, {"cap", false}}, 232 / 105.0, 848 / 735.0},
-      // (R + r cos p)^2 with the density R + r cos p; (r sin p)^2 with the same.
+      // The means of (R + r cos p)^2 and (r sin p)^2 with a pdf proportional to R + r cos p.
       {"Torus", {{"radius", 2}, {"tube_radius", 1}}, 4 + 3 / 2.0, 1 / 2.0},
   };
   constexpr int side = 256;
@@ -163,8 +166,9 @@ TEST(Objects, PointsLieEvenly) {
   }
 }
 
-// Of points spread otherwise the mean of 1 / density is the area: of an oblate ellipsoid 2 pi (a^2 + c^2 / e artanh e), of a
-// prolate one 2 pi (a^2 + a c / e asin e). Both are flat or long enough not to have their points evenly on the unit sphere.
+// For points that are not uniform, the mean of 1 / pdf is the area: of an oblate ellipsoid 2 pi (a^2 + c^2 / e artanh e), of a
+// prolate one 2 pi (a^2 + a c / e asin e). Both are so flat or so long that their points do not come from uniform points of the
+// unit sphere.
 TEST(Objects, PointsOfEllipsoidsAddUpToTheirAreas) {
   const auto expect = [](double a, double c, double area) {
     const Ref<SceneObject> shape = object("Ellipsoid", {{"radii", {a, a, c}}});
@@ -195,7 +199,7 @@ void for_all_hits(const SceneObject& object, Ray r, const F& call) {
 }
 
 TEST(Objects, VisibleSamplingMatchesItsDensity) {
-  // Against uniform directions: the density integrates to one, and so do its products with three functions of direction
+  // Against uniform directions: the pdf integrates to one, and the integrals of its products with three functions of direction
   // agree with means over samples. 5 standard errors; fixed seeds.
   Random random(5);
   const Point3 places[] = {{0, 0, 2.5f}, {1.1f, 1.5f, 0.8f}, {-1.2f, 0.3f, -0.9f}, {0.35f, -0.15f, 0.45f}};
@@ -226,7 +230,7 @@ TEST(Objects, VisibleSamplingMatchesItsDensity) {
         for (int k = 0; k < 3; ++k) integral[k].add(pdf * double(d[k]));
         integral[3].add(pdf);
       }
-      if (hits < 400) continue;  // seen edge-on: too few for a standard error to mean anything
+      if (hits < 400) continue;  // seen edge-on: too few for a meaningful standard error
       ++judged;
       EXPECT_NEAR(integral[3].value(), 1, 5 * integral[3].error() + 1e-3);
       for (int k = 0; k < 3; ++k)

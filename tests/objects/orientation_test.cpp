@@ -1,5 +1,5 @@
-// Which way things point, as the manual says it: surface coordinates of every object, the middle and the columns of
-// environments, right and up in pictures, projected images, the axis of spotlights.
+// Orientations as the manual defines them: the surface coordinates of every object, the middle and the columns of environments,
+// right and up in pictures, projected images, the axis of spotlights.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@ namespace {
 
 struct UvCase {
   const char* object;
-  Point3 point;     ///< on its surface
-  Vector3 outward;  ///< from where it is looked at
+  Point3 point;     ///< on the surface
+  Vector3 outward;  ///< towards the viewer
   Point2 uv;
 };
 
@@ -22,7 +22,7 @@ void PrintTo(const UvCase& c, std::ostream* out) { *out << c.object; }
 
 constexpr float h = 0.70710678f;  // sqrt(1/2)
 
-// What each object's page says, at points where it can be worked out by hand.
+// The statements of each object's manual page, at points where they can be worked out by hand.
 const UvCase uv_cases[] = {
     // u around z from +x towards +y, v from the pole at -z to that at +z.
     {"Sphere { radius: 2 }", {0, 2, 0}, {0, 1, 0}, {0.25f, 0.5f}},
@@ -32,19 +32,19 @@ const UvCase uv_cases[] = {
     {"Sphere { radius: 2 }", {0, 2 * h, -2 * h}, {0, h, -h}, {0.25f, 0.25f}},
     {"Ellipsoid { radii: [1, 2, 3] }", {0, 2, 0}, {0, 1, 0}, {0.25f, 0.5f}},
     {"Ellipsoid { radii: [1, 2, 3] }", {0, 2 * h, 3 * h}, {0, h, h}, {0.25f, 0.75f}},
-    // Over the square around a disc, u along x and v along y.
+    // u along x and v along y over the square around a disc.
     {"Disc { radius: 2 }", {1, -1, 0}, {0, 0, 1}, {0.75f, 0.25f}},
     {"Annulus { inner_radius: 0.5, radius: 2 }", {1, -1, 0}, {0, 0, 1}, {0.75f, 0.25f}},
     {"Rectangle { corner: [0, 0, 0], edge_u: [4, 0, 0], edge_v: [0, 2, 0] }", {1, 1.5f, 0}, {0, 0, 1}, {0.25f, 0.75f}},
     {"Rectangle {}", {-0.25f, 0.25f, 0}, {0, 0, 1}, {0.25f, 0.75f}},
-    // +x: u along y, v along z; +y: along z and x; +z: along x and y; u runs backwards on the faces opposite.
+    // On +x, u is along y and v along z; on +y along z and x; on +z along x and y; u runs backwards on the opposite faces.
     {"Box { size: [4, 4, 4] }", {2, -1, 1}, {1, 0, 0}, {0.25f, 0.75f}},
     {"Box { size: [4, 4, 4] }", {-2, -1, 1}, {-1, 0, 0}, {0.75f, 0.75f}},
     {"Box { size: [4, 4, 4] }", {1, 2, -1}, {0, 1, 0}, {0.25f, 0.75f}},
     {"Box { size: [4, 4, 4] }", {1, -2, -1}, {0, -1, 0}, {0.75f, 0.75f}},
     {"Box { size: [4, 4, 4] }", {-1, 1, 2}, {0, 0, 1}, {0.25f, 0.75f}},
     {"Box { size: [4, 4, 4] }", {-1, 1, -2}, {0, 0, -1}, {0.75f, 0.75f}},
-    // Around from +x towards +y, and up; caps as a disc, u backwards on what faces down.
+    // u around z from +x towards +y, v upwards; caps like a disc, with u backwards on the one that faces down.
     {"Cylinder { radius: 1, height: 4 }", {0, 1, 1}, {0, 1, 0}, {0.25f, 0.75f}},
     {"Cylinder { radius: 1, height: 4, sweep: 180 }", {0, 1, 1}, {0, 1, 0}, {0.5f, 0.75f}},
     {"Cylinder { radius: 1, height: 4, caps: true }", {0.5f, -0.5f, 2}, {0, 0, 1}, {0.75f, 0.25f}},
@@ -61,7 +61,7 @@ const UvCase uv_cases[] = {
     {"Torus { radius: 2, tube_radius: 0.5 }", {0, 2, 0.5f}, {0, 0, 1}, {0.25f, 0.25f}},
     {"Torus { radius: 2, tube_radius: 0.5 }", {-2, 0, -0.5f}, {0, 0, -1}, {0.5f, 0.75f}},
     {"InfinitePlane {}", {1.5f, -2.5f, 0}, {0, 0, 1}, {1.5f, -2.5f}},
-    // Along the first edge, and across it to the left, over the extent.
+    // u along the first edge, v perpendicular to it to the left, over the polygon's extent.
     {"Polygon { points: [[0, 0, 0], [4, 0, 0], [4, 2, 0], [0, 2, 0]] }", {1, 1.5f, 0}, {0, 0, 1}, {0.25f, 0.75f}},
     {"Triangle { a: [0, 0, 0], b: [4, 0, 0], c: [0, 4, 0] }", {1, 2, 0}, {0, 0, 1}, {0.25f, 0.5f}},
     {"TriangleMesh { positions: [[0, 0, 0], [4, 0, 0], [0, 4, 0]], triangles: [[0, 1, 2]] }",
@@ -73,13 +73,13 @@ const UvCase uv_cases[] = {
      {0, 0, 1},
      {0.75f, 0.5f}},
     {"Heightfield { size: [4, 4], heights: [0, 0, 0, 0], nx: 2, ny: 2 }", {-1, 1, 0}, {0, 0, 1}, {0.25f, 0.75f}},
-    // The faces of a box, as on a Box.
+    // Coordinates on the faces of the bounding box, as on a Box.
     {"ImplicitSurface { formula: \"x * x + y * y + z * z - 1\", low: [-2, -2, -2], high: [2, 2, 2] }",
      {0, 0, 1},
      {0, 0, 1},
      {0.5f, 0.5f}},
     {"Quadric { low: [-2, -2, -2], high: [2, 2, 2] }", {0.6f, 0, 0.8f}, {0.6f, 0, 0.8f}, {0.65f, 0.5f}},
-    // What was taken away is seen from behind: u runs backwards.
+    // The surface of a subtracted operand is seen from behind: u runs backwards.
     {"Difference { operands: [ Box { size: [8, 8, 8] }, Box { centre: [0, 0, 4], size: [4, 4, 4] } ] }",
      {-1, 1, 2},
      {0, 0, 1},
@@ -92,7 +92,7 @@ TEST_P(UvOf, ObjectsIsWhatTheirPagesSay) {
   const UvCase& c = GetParam();
   const Ref<Job> job =
       load_job_text(job_text("PathTracer {}", "PerspectiveCamera { from: [0, 0, 50], to: [0, 0, 0] }", 4, c.object), "uv.etd");
-  prepare_tree(*job->scene);  // alone, it counts from the origin
+  prepare_tree(*job->scene);  // the scene alone, so that coordinates stay relative to the origin
   Ray ray;
   ray.origin = c.point + 0.5f * c.outward;
   ray.direction = normalize(-c.outward);
@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(Points, UvOf, testing::ValuesIn(uv_cases));
 
 // ---- pictures ----------------------------------------------------------------------------------------------------------
 
-/// Where the brightest pixel is.
+/// The position of the brightest pixel.
 Point2 brightest(const std::string& camera, const std::string& objects, int size = 9) {
   const Ref<Job> job = load_job_text(job_text("PathTracer { samples: 64, max_depth: 1 }", camera, size, objects), "view.etd");
   const Image image = rendered(job)->film().develop();
@@ -136,15 +136,15 @@ TEST(Orientation, RightInAPictureIsTheViewingDirectionTimesUp) {
   }
 }
 
-/// An image that is black but for one texel.
+/// An image that is black except for one texel.
 std::vector<float> one_texel(int width, int height, int x, int y) {
   std::vector<float> rgb(size_t(3 * width * height));
   for (size_t c = 0; c < 3; ++c) rgb[3 * (size_t(y) * size_t(width) + size_t(x)) + c] = 1;
   return rgb;
 }
 
-/// Which way to look to see a texel of an environment that is an image of 8 x 4: the way among all texels' middles where it is
-/// brightest.
+/// The direction in which a texel of an environment, an 8 x 4 image, is seen: the brightest among the directions of all texel
+/// centres.
 Vector3 seen_at(int column, int row, const std::string& transform = "") {
   const ImageFile file(fmt::format("orientation-{}-{}.exr", column, row), 8, 4, one_texel(8, 4, column, row));
   Vector3 best;
@@ -163,8 +163,8 @@ Vector3 seen_at(int column, int row, const std::string& transform = "") {
   return best;
 }
 
-// The middle along +z, the top along +y, the edges along -z; columns grow from -z by +x. The middles of columns of 8 lie half a
-// column, 22.5 degrees, beside these.
+// The image's middle is at +z, its top at +y, its left and right edges at -z; columns run from -z by +x. With 8 columns their
+// centres lie half a column, 22.5 degrees, beside these directions.
 TEST(Orientation, AnEnvironmentsImage) {
   const float c = std::cos(3.14159265f / 8), s = std::sin(3.14159265f / 8);
   const auto expect = [](const Vector3& seen, const Vector3& level) {
@@ -179,18 +179,18 @@ TEST(Orientation, AnEnvironmentsImage) {
   expect(seen_at(2, 1), {c, 0, s});    // beyond it
   EXPECT_GT(seen_at(3, 0).y, 0.9f);    // the top row
   EXPECT_LT(seen_at(3, 3).y, -0.9f);
-  // Its transform turns it: by a quarter around y, +z goes to +x.
+  // Its transform rotates it: by a quarter turn around y, +z goes to +x.
   expect(seen_at(3, 1, "transform: rotate(90, \"y\"),"), {c, 0, -s});
 }
 
-// Seen from inside, columns grow to the right: the image is not mirrored.
+// Seen from inside, columns run to the right: the image is not mirrored.
 TEST(Orientation, AnEnvironmentIsNotMirrored) {
   const ImageFile left("orientation.exr", 8, 4, one_texel(8, 4, 3, 1));
   const std::string camera = "PerspectiveCamera { from: [0, 0, 0], to: [0, 0.4, 1], up: [0, 1, 0], fov: 90 deg }";
   EXPECT_LT(brightest(camera, "Environment { emission: EnvironmentEmission { file: \"" + left.path + "\" } }\n").x, 4);
 }
 
-// A map around the scene sees longitude as an image's columns grow, and v upwards from straight below.
+// For a map around the scene, u is the longitude in the order of an image's columns, and v runs upwards from straight below.
 TEST(Orientation, AnEnvironmentsMap) {
   const auto seen = [](const std::string& formula, const Vector3& d) {
     const std::string camera = fmt::format(
@@ -236,7 +236,7 @@ TEST(Orientation, AProjectedImage) {
     for (int x = 0; x < 2; ++x) EXPECT_EQ(lit(x, y), (Point2{float(x), float(y)}));
 }
 
-// The way its light travels, in the object's own coordinates.
+// The axis is the direction in which the light travels, in object space.
 TEST(Orientation, TheAxisOfASpotlight) {
   const auto lit = [](const std::string& lamp, const std::string& camera) {
     return measure(

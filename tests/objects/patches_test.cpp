@@ -1,4 +1,4 @@
-// Bézier patches and NURBS surfaces: closed forms, roots that must not be missed, borders, trimming, errors.
+// Bézier patches and NURBS surfaces: closed forms, roots that are easily missed, borders, trimming, errors.
 
 #include "etendue/core/error.h"
 #include "support/geometry_support.h"
@@ -8,7 +8,7 @@ namespace {
 
 using namespace geometry_test;
 
-/// Distances of all surfaces along a ray, each left by its point's error.
+/// Distances of all hits along a ray; each is left by its point's error bound.
 std::vector<float> crossings(const SceneObject& o, Ray r) {
   std::vector<float> found;
   const Point3 start = r.origin;
@@ -73,7 +73,7 @@ TEST(NurbsSurface, TorusAgreesWithItsFormula) {
     const Ray r = ray(origin, normalize(random.in_box(1.2f) - origin));
     const std::vector<double> expected = torus_roots(r);
     const std::vector<float> found = crossings(*torus, r);
-    if (found.size() != expected.size()) {  // only rays that touch, for which steps see nothing
+    if (found.size() != expected.size()) {  // only rays that touch, whose roots the steps do not separate
       ++odd;
       continue;
     }
@@ -105,13 +105,14 @@ TEST(NurbsSurface, HoldsFromMillimetresToKilometresAndMirrored) {
       inside += found.size() % 2 == 1;
       for (size_t k = 1; k < found.size(); ++k) EXPECT_GT(found[k], found[k - 1]);
     }
-    EXPECT_LE(inside, 1);  // pairs, but for a ray that touches
+    EXPECT_LE(inside, 1);  // pairs, except for a ray that touches
     EXPECT_NEAR(double(torus->area(0)) / (scale * scale), 4 * M_PI * M_PI * major_radius * minor_radius, 1e-4);
   }
 }
 
 TEST(NurbsSurface, KnotsWithinDoNotChangeTheSurface) {
-  // z = u v on [0, 3] x [0, 2] with knots that are neither even nor repeated at the ends: control points are the blossom.
+  // z = u v on [0, 3] x [0, 2] with knots that are neither even nor repeated at the ends: the control points are values of the
+  // blossom.
   const std::vector<double> ku{-2, -1, 0, 0.7, 2, 3, 3.5, 5}, kv{-1, 0, 0.4, 0.9, 2, 4};  // degrees 2 and 1
   std::vector<double> points;
   for (int j = 0; j < 4; ++j)
@@ -185,7 +186,7 @@ TEST(NurbsSurface, TrimmedByACircle) {
       EXPECT_TRUE(keep == "inside" ? off < 1e-5f : off > -1e-5f);
       found.add(double(s.point.position.x > 0.7f));
     }
-    // The share of points where x > 0.7: a segment of the disc. 5 standard errors.
+    // The fraction of points with x > 0.7: a segment of the disc. 5 standard errors.
     const double h = 0.2 / double(radius);
     const double segment = double(radius) * double(radius) * (std::acos(h) - h * std::sqrt(1 - h * h));
     EXPECT_NEAR(found.value(), (keep == "inside" ? segment : 0.3 - segment) / area, 5 * found.error());
@@ -194,7 +195,7 @@ TEST(NurbsSurface, TrimmedByACircle) {
 
 // ---- Bézier patches -------------------------------------------------------------------------------------------------------
 
-/// z = x^3 - x / 3 over [-1, 1]^2, in one patch, of which level rays meet three sheets.
+/// z = x^3 - x / 3 over [-1, 1]^2 as one patch, which horizontal rays can hit three times.
 std::vector<Setting> wave_settings() {
   std::vector<double> points;
   const double z[4]{-2.0 / 3, 10.0 / 9, -10.0 / 9, 2.0 / 3};
@@ -206,7 +207,7 @@ std::vector<Setting> wave_settings() {
 TEST(BezierPatches, FindsAllRootsOfRaysThatGraze) {
   const Ref<SceneObject> wave = object("BezierPatches", wave_settings());
   Random random(5);
-  // Level rays meet it three times below the crest, x^3 - x / 3 = 2 / 27 at x = -1 / 3, and once above.
+  // Horizontal rays hit it three times below the crest, x^3 - x / 3 = 2 / 27 at x = -1 / 3, and once above.
   const double top = 2.0 / 27;
   for (int i = 0; i < 2000; ++i) {
     const double close = std::pow(10.0, -5 * double(random.number()));  // down to 1e-5 of the crest
@@ -223,7 +224,7 @@ TEST(BezierPatches, FindsAllRootsOfRaysThatGraze) {
 }
 
 TEST(BezierPatches, EveryRayThroughAClosedBodyLeavesIt) {
-  // An octant-wise ball (each side a triangle with one edge shrunk to a point), rational of degree 2: exact.
+  // A ball of octants (each a triangle, a patch with one edge shrunk to a point), rational of degree 2: exact.
   std::vector<double> points, weights;
   const double w = std::sqrt(0.5);
   for (int south = 0; south < 2; ++south)

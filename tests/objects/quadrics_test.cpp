@@ -67,7 +67,7 @@ TEST(Quadrics, Areas) {
   const double oblate = 2 * M_PI + M_PI * 0.04 / e * std::log((1 + e) / (1 - e));
   EXPECT_NEAR(object("Ellipsoid", {{"radii", {1, 0.2, 1}}})->area(0) / oblate, 1, 1e-6);
   EXPECT_NEAR(object("Ellipsoid", {{"radii", {3, 3, 3}}})->area(0) / (36 * M_PI), 1, 1e-6);
-  // A flat one is a disc twice over, and one of three different radii is what quadrature over the unit sphere says.
+  // A flat one has twice the area of a disc; one with three different radii is compared with quadrature over the unit sphere.
   EXPECT_NEAR(object("Ellipsoid", {{"radii", {2, 3, 1e-5}}})->area(0) / (12 * M_PI), 1, 1e-6);
   double sum = 0;
   constexpr int n = 400;
@@ -88,7 +88,7 @@ TEST(Quadrics, Areas) {
               1e-5);
 }
 
-/// Calls with every surface point on a ray and its distance from where the ray began; says how many there were.
+/// Calls a function with every surface point on a ray and its distance from the ray's origin; returns their number.
 template <class F>
 int for_all_hits(const SceneObject& o, Ray r, const F& call) {
   const Point3 start = r.origin;
@@ -138,7 +138,7 @@ TEST(Quadrics, LinesEncloseTheVolumeAndCrossInPairs) {
 }
 
 TEST(Quadrics, HitsLieOnTheSurfaceWithinTheirError) {
-  // Also of small and large objects, and for rays that come from far.
+  // Also for small and large objects, and for rays from far away.
   Random random(2);
   for (const Case& c : solids())
     for (const double size : {1e-3, 1.0, 1e5})
@@ -162,7 +162,7 @@ TEST(Quadrics, HitsLieOnTheSurfaceWithinTheirError) {
               EXPECT_LE(c.off(x, y, z) * size, double(p.error));
             }
             EXPECT_LE(double(p.error), 2e-6 * size);
-            // On the ray, up to what floats tell of its direction and of the point.
+            // The point lies on the ray, within the rounding of the ray's direction and of the point.
             const Vector3 aside = cross(p.position - r.origin, r.direction);
             EXPECT_LE(double(length(aside)), 4e-7 * (away + 3) * size);
           });
@@ -185,10 +185,10 @@ TEST(Quadrics, SpecialRays) {
   EXPECT_EQ(t(cylinder, {0, 0, 0}, {0, 0, 1}), 1);  // from inside
   EXPECT_EQ(t(cylinder, {-3, 0, 0}, {1, 0, 0}), 2);
   EXPECT_EQ(t(cylinder, {-3, 1.0001f, 0}, {1, 0, 0}), -1);
-  EXPECT_EQ(t(cylinder, {0, 0, 1.5f}, {1, 0, 0}), -1);  // within no slab
+  EXPECT_EQ(t(cylinder, {0, 0, 1.5f}, {1, 0, 0}), -1);  // outside of the slab
   EXPECT_NEAR(t(cone, {0.5f, 0, 3}, {0, 0, -1}), 2.5f, 1e-6f);
   EXPECT_EQ(t(cone, {0, 0, -1}, {0, 0, 1}), 1);
-  EXPECT_EQ(t(cone, {-1, 0, 2}, normalize(Vector3{-1, 0, 1})), -1);  // the other nappe is not there
+  EXPECT_EQ(t(cone, {-1, 0, 2}, normalize(Vector3{-1, 0, 1})), -1);  // the other nappe does not exist
   EXPECT_NEAR(t(cone, {0.5f, 0, 1}, {-std::sqrt(0.5f), 0, -std::sqrt(0.5f)}), std::sqrt(0.125f),
               1e-6f);  // parallel to the side
   EXPECT_NEAR(t(bowl, {0.5f, 0, -1}, {0, 0, 1}), 1.25f, 1e-6f);
@@ -230,8 +230,8 @@ TEST(Quadrics, LeavingRaysDoNotReturn) {
 }
 
 TEST(Quadrics, VisibleDensitiesIntegrateToOne) {
-  // Over all directions, each hit along them: the density of what sample_visible gives. From far, near, above and inside;
-  // stretched, so that solid angles are no plain multiples. 5 standard errors.
+  // Over uniform directions, summed over the hits along each: the pdf of sample_visible() integrates to 1. From afar, close,
+  // above and inside; stretched, so that pdfs are not simple multiples. 5 standard errors.
   Random random(4);
   const Transform stretched = Transform::rotate(0.7f, {1, 1, 0}) * Transform::scale({1.5f, 0.7f, 1});
   for (const Case& c : solids())
@@ -257,7 +257,7 @@ TEST(Quadrics, VisibleDensitiesIntegrateToOne) {
           EXPECT_NEAR(o->visible_pdf(from, s.direction, s.point) / s.pdf, 1, 1e-3f);
         }
       }
-      // What finds nothing is missing from the integral.
+      // Samples that fail are missing from the integral.
       EXPECT_NEAR(integral.value(), double(found) / rays, 5 * integral.error() + 0.02);
       for (int k = 0; k < 3; ++k)
         EXPECT_NEAR(sampled[k].value(), expected[k].value(), 5 * (sampled[k].error() + expected[k].error()) + 1e-3);
@@ -284,14 +284,14 @@ TEST(Quadrics, TangentsAreDerivatives) {
         SurfacePoint q;
         o->surface_point(down, hit, q);
         const float du = q.uv.x - p.uv.x, dv = q.uv.y - p.uv.y;
-        if (std::abs(du) > 0.5f || length(p.dpdu) < 0.3f) continue;  // the seam, a tip
+        if (std::abs(du) > 0.5f || length(p.dpdu) < 0.3f) continue;  // at the seam or near a tip
         const Vector3 predicted = du * p.dpdu + dv * p.dpdv;
         ++tested;
         wrong += length(predicted - (q.position - p.position)) > 0.02f * length(step) + 1e-5f;
       }
     }
     EXPECT_GT(tested, 600);
-    EXPECT_LE(wrong, 0.01 * tested);  // at a rim, where coordinates bend even within a step
+    EXPECT_LE(wrong, 0.01 * tested);  // at a rim, where coordinates bend within a step
   }
 }
 

@@ -35,7 +35,7 @@ Settings cube(Settings more = {}) {
   return more;
 }
 
-/// A square grid of n x n unit faces with heights by x.
+/// A square grid of n x n unit faces whose height is a function of x.
 template <class F>
 Settings grid(int n, F height, Settings more = {}) {
   std::vector<double> positions, faces, uvs;
@@ -65,7 +65,7 @@ SurfacePoint first_hit(const SceneObject& o, const Point3& from, const Vector3& 
 
 size_t count(const SceneObject& o) { return o.triangles()->triangles.size(); }
 
-/// The vertex that is nearest to a place, and a point of a triangle right beside it.
+/// The vertex nearest to a place, as a point of an adjacent triangle.
 SurfacePoint at_vertex(const SceneObject& o, const Point3& place) {
   const TriangleView view = *o.triangles();
   Hit nearest;
@@ -128,7 +128,7 @@ TEST(SubdivisionSurface, HeightsOfAParabolaBecomeThatParabolaAndAThird) {
       EXPECT_NEAR(p.uv.x, x / 8, 1e-4);
     }
     EXPECT_LT(most, tolerance > 0 ? tolerance : 2.5e-4);
-    EXPECT_GE(most, tolerance / 100);  // no finer than asked for
+    EXPECT_GE(most, tolerance / 100);  // no finer than requested
   }
 }
 
@@ -154,7 +154,8 @@ TEST(SubdivisionSurface, AFlatGridStaysASquareAndEdgesRoundItsCorners) {
 }
 
 TEST(SubdivisionSurface, UnequalDivisionsSeamsAndPolygonsLeaveNoGap) {
-  // A prism over a pentagon, whose surface coordinates have a seam along every edge; pieces differ from edge to edge.
+  // A prism over a pentagon, whose surface coordinates have a seam along every edge; the numbers of subdivisions differ from
+  // edge to edge.
   std::string obj = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.5 0.5\n";
   for (const double z : {0.0, 3.0})
     for (int i = 0; i < 5; ++i)
@@ -193,7 +194,7 @@ TEST(SubdivisionSurface, VerticesThatAFileSplitsAtSeamsAreWelded) {
   set(*apart, "file", Value(path));
   set(*apart, "weld", Value(false));
   prepare_tree(*apart);
-  EXPECT_NEAR(apart->area(), 24, 1e-3);  // six squares, each with corners of its own
+  EXPECT_NEAR(apart->area(), 24, 1e-3);  // six squares, each with its own vertices
 }
 
 TEST(SubdivisionSurface, BadCagesAreRefused) {
@@ -213,7 +214,7 @@ TEST(SubdivisionSurface, BadCagesAreRefused) {
 Ref<ObjectMap> formula(const std::string& text) { return test::create<ObjectMap>("FormulaMap", {{"formula", text}}); }
 
 TEST(DisplacedMesh, HeightsAreThoseOfTheMap) {
-  // A unit square about the origin, raised by sin(3 x) / 4 at its vertices.
+  // A unit square centred at the origin, displaced by sin(3 x) / 4 at its vertices.
   Random random(2);
   const auto o =
       object("DisplacedMesh", {{"levels", 7}, {"displacement", formula("sin(3 * x)")}, {"scale", 0.5}, {"midlevel", -0.5}});
@@ -228,7 +229,7 @@ TEST(DisplacedMesh, HeightsAreThoseOfTheMap) {
 }
 
 TEST(DisplacedMesh, JumpsAndSeamsLeaveNoGapAndHardEdgesStay) {
-  // Raised on one half only: the jump becomes a wall. The cube's faces have vertices of their own here.
+  // Displaced on one half only: the jump becomes a wall. The faces of this cube have their own vertices.
   std::vector<double> positions, triangles, uvs;
   for (size_t i = 0; i < 24; ++i) {
     for (size_t k = 0; k < 3; ++k) positions.push_back(cube_positions[3 * size_t(cube_faces[i]) + k]);
@@ -263,7 +264,7 @@ TEST(DisplacedMesh, OffsetsMoveAlongAxesAndTangents) {
   set(*made, "midlevel", Value(Number{0.5}));
   set(*made, "scale", Value(Number{2}));
   prepare_tree(*made);
-  // The displacement of 0 lies below the midlevel as well: -1 along z.
+  // A displacement of 0 is below the midlevel too, and moves by -1 along z.
   EXPECT_LT(distance(made->bounds().centre(), {1, 3, 4}), 1e-5);
   made->transform = Transform::rotate(pi / 2, {0, 0, 1});
   set(*made, "offset_space", Value(std::string("tangent")));
@@ -302,7 +303,7 @@ TEST(DisplacedMesh, WhatCannotBeMovedIsRefused) {
 }
 
 TEST(PolygonFiles, CornersInLineAreNotLost) {
-  // A cube whose bottom is divided in two, so that its front and its back have a corner in the middle of an edge.
+  // A cube whose bottom is divided in two, so that its front and back faces have a vertex in the middle of an edge.
   const std::string path = written("line.obj",
                                    "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
                                    "v 0 -1 -1\nv 0 1 -1\nf 1 4 10 9\nf 9 10 3 2\nf 5 6 7 8\nf 1 9 2 6 5\nf 2 3 7 6\n"

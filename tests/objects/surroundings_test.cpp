@@ -1,4 +1,5 @@
-// Surroundings: a medium, or an index, around everything. What light loses on its way, by every strategy that finds it.
+// Surroundings: a medium, or an index of refraction, around everything; the attenuation of light in it, with every strategy
+// that finds the light.
 
 #include <fmt/format.h>
 
@@ -10,8 +11,8 @@ namespace {
 
 const std::string grey_fog = "interior: HomogeneousVolume { absorption: 0.25 }";
 
-// A white disc of 1 m around the origin under a lamp from straight above, seen from straight above, from 2 m. The radius of the
-// scene is the half diagonal of the disc's box, sqrt(2) m; light comes down through twice as much.
+// A white disc of 1 m around the origin under a distant light from straight above, seen from straight above from 2 m. The
+// scene's radius is the half diagonal of the disc's box, sqrt(2) m; light passes through twice that (reach: 2).
 TEST(Surroundings, LightFromInfinityComesThroughTheirReach) {
   const std::string camera = "OrthographicCamera { from: [0, 0, 2], to: [0, 0, 0], up: [0, 1, 0], width: 0.02 }";
   const auto objects = [](const std::string& around) {
@@ -29,11 +30,11 @@ TEST(Surroundings, LightFromInfinityComesThroughTheirReach) {
     };
     const Measured m = seen("reach: 2, " + grey_fog);
     EXPECT_NEAR(m.mean.y, wanted, 4.5 * m.error + 1e-4 * wanted) << renderer;
-    EXPECT_EQ(seen(grey_fog).mean.y, 0) << renderer;  // without end nothing comes through
+    EXPECT_EQ(seen(grey_fog).mean.y, 0) << renderer;  // through an unbounded medium no light arrives
   }
 }
 
-// All light that is scattered comes out again: within a furnace fog is not seen, however far it goes.
+// All scattered light leaves the medium: in a furnace fog without absorption is invisible, however far it extends.
 TEST(Surroundings, FogThatAbsorbsNothingIsNotSeenInAFurnace) {
   const std::string objects =
       "Sphere { radius: 0.5, shader: Lambertian { color: 1 } }\nEnvironment { emission: DiffuseEmission { radiance: 1 } }\n"
@@ -47,9 +48,9 @@ TEST(Surroundings, FogThatAbsorbsNothingIsNotSeenInAFurnace) {
   }
 }
 
-// Their end is a sphere for every ray, wherever it begins: what is seen from outside of it is the same from both ends of paths.
-// And where they differ from place to place, all strategies weigh a way out to infinity alike: a bidirectional path tracer,
-// which compares them, was a third too dark when they did not.
+// The medium ends at a sphere, wherever a ray begins: seen from outside of it, paths from both ends give the same picture. In a
+// heterogeneous medium all strategies weight paths to infinity alike: with inconsistent weights a bidirectional path tracer,
+// which combines the strategies, was a third too dark.
 TEST(Surroundings, BothEndsOfPathsAgree) {
   struct Case {
     const char *objects, *camera;
@@ -75,7 +76,7 @@ TEST(Surroundings, BothEndsOfPathsAgree) {
   }
 }
 
-// Without end, a medium that shines shows emission / absorption, whichever way one looks.
+// An unbounded emissive medium has the radiance emission / absorption in all directions.
 TEST(Surroundings, EndlessLightIsEmissionOverAbsorption) {
   const Measured m =
       measure(job_text("PathTracer { samples: 64 }", "PerspectiveCamera { from: [0, -3, 0], to: [0, 0, 0], up: [0, 0, 1] }", 4,
@@ -84,7 +85,7 @@ TEST(Surroundings, EndlessLightIsEmissionOverAbsorption) {
   EXPECT_NEAR(m.mean.y, 1.5, 4.5 * m.error + 2e-3);
 }
 
-// In water, a ball with the index of water is not there; and whatever its priority a body displaces what is around.
+// In water, a ball with the index of water is invisible; and whatever its priority, a body displaces the surroundings.
 TEST(Surroundings, TheIndexOutsideOfABodyIsTheirs) {
   const auto seen = [](const std::string& ball) {
     return measure(job_text("PathTracer { samples: 512, max_depth: 8 }",

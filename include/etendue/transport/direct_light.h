@@ -1,12 +1,12 @@
 #pragma once
 // Next event estimation: a sample of the light that comes to a vertex directly from a point of a luminaire.
 //
-// The radiance scattered at the vertex is the integral over directions w of s(w) L_e(w) V(w), with s = f |cos| on a surface and
-// the phase function in a medium, and the visibility V. A luminaire is chosen with probability P and a point on it with the pdf
-// p(w) [1/sr], so the estimate is
-//     W s L_e V / (P p),
-// with the multiple importance sampling weight W of P p against the pdf p_s with which scattering samples w: W = P p / (P p +
-// p_s) for the balance heuristic (multiple_importance.h).
+// The radiance scattered at the vertex is the integral over directions `in` of s(in) L_e(in) V(in), with s = f |cos| on a
+// surface and the phase function in a medium, and the visibility V. A luminaire is chosen with probability P and a point on it
+// with the pdf p(in) [1/sr], so the estimate is
+//     w s L_e V / (P p),
+// with the multiple importance sampling weight w of P p against the pdf p_s with which scattering samples `in`:
+//     w = P p / (P p + p_s)     for the balance heuristic (multiple_importance.h).
 
 #include "etendue/light_sampler.h"
 #include "etendue/transport/multiple_importance.h"
@@ -23,7 +23,7 @@ struct DirectLight {
 };
 
 /// Samples one point on a luminaire and computes the estimate without V. `scattering(in)` returns s [1/sr] and the pdf p_s
-/// [1/sr]; a pdf of 0 means that no emitter hits are added, W = 1. `choice` selects the luminaire, `u` the point on it;
+/// [1/sr]; a pdf of 0 means that no emitter hits are added, w = 1. `choice` selects the luminaire, `u` the point on it;
 /// `leave(sample, ray)` sets the shadow ray from the vertex to the sampled point. False: the contribution is 0, and `direct` is
 /// not valid.
 // Always inlined, whatever its size: this saves a twentieth of the time of simple scenes.
