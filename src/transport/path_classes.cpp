@@ -47,18 +47,18 @@ constexpr std::array<PathClassInfo, 15> classes{{
      [](const SceneTraits& t) { return told("what the camera sees in or through ", t.specular); }},
     {area_light, "area_light", "light of luminaires with an extent on surfaces",
      [](const SceneTraits& t) { return light_on_surfaces(extended(t), t); }},
-    {delta_light, "delta_light", "light of luminaires without extent on surfaces",
+    {delta_light, "delta_light", "delta lights on surfaces",
      [](const SceneTraits& t) { return light_on_surfaces(delta(t), t); }},
-    {diffuse_light, "diffuse_light", "light that matt surfaces send on to others",
+    {diffuse_light, "diffuse_light", "light that diffuse surfaces send on to others",
      [](const SceneTraits& t) { return told("light that ", t.diffuse, verb(t.diffuse, "send") + " on to other surfaces"); }},
     {glossy_light, "glossy_light", "light that glossy surfaces send on to others",
      [](const SceneTraits& t) { return told("light that ", t.glossy, verb(t.glossy, "send") + " on to other surfaces"); }},
     {area_caustics, "area_caustics", "caustics of luminaires with an extent",
      [](const SceneTraits& t) { return caustics(extended(t), t); }},
-    {delta_caustics, "delta_caustics", "caustics of luminaires without extent",
+    {delta_caustics, "delta_caustics", "caustics of delta lights",
      [](const SceneTraits& t) { return caustics(delta(t), t); }},
     {delta_caustics_in_mirrors, "delta_caustics_in_mirrors",
-     "caustics of luminaires without extent, where they are seen in mirrors or through glass",
+     "caustics of delta lights, where they are seen in mirrors or through glass",
      [](const SceneTraits& t) {
        const Names lamps = delta(t);
        if (caustics(lamps, t).empty()) return std::string();
@@ -70,11 +70,11 @@ constexpr std::array<PathClassInfo, 15> classes{{
      [](const SceneTraits& t) {
        return told("light that ", t.emissive_media, verb(t.emissive_media, "send") + " out from within");
      }},
-    {heterogeneous_media, "uneven_media", "media that differ from place to place",
-     [](const SceneTraits& t) { return told("what is uneven in the media of ", t.heterogeneous_media); }},
+    {heterogeneous_media, "heterogeneous_media", "heterogeneous media",
+     [](const SceneTraits& t) { return told("the heterogeneity of the media of ", t.heterogeneous_media); }},
     {subsurface_light, "subsurface_light", "light scattered inside bodies",
      [](const SceneTraits& t) { return told("light scattered inside ", t.subsurface_exits); }},
-    {light_through_surfaces, "light_through_surfaces", "light that surfaces let pass straight on",
+    {light_through_surfaces, "light_through_surfaces", "light through null-scattering surfaces",
      [](const SceneTraits& t) {
        return told("light that ", t.null_scattering, verb(t.null_scattering, "let") + " pass straight on");
      }},

@@ -138,7 +138,7 @@ TEST(Set, ChecksTypesRangesAndChoices) {
             "Widget.points expects a list of rows of 3 numbers; 4 numbers are no multiple of 3");
   Transform flat = Transform::scale({1, 0, 1});
   EXPECT_EQ(error_of(w, "transform", Value(flat)), "Widget.transform is a singular transform: it cannot be undone");
-  EXPECT_EQ(w.weight, 1);  // nothing was changed by all that
+  EXPECT_EQ(w.weight, 1);  // the refused settings changed nothing
 }
 
 TEST(Set, AcceptsFlatAndNestedRows) {

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 enum class Mode { first, second };
 
-/// A class for each way of describing it.
+/// A class of its own for each describe function.
 template <auto describe_members>
 class Panel final : public Component {
  public:

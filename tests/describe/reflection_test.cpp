@@ -1,4 +1,4 @@
-// What the registry says of classes, in JSON, JSON Schema, text and Markdown.
+// The registry's descriptions of classes, in JSON, JSON Schema, text and Markdown.
 
 #include "etendue/describe/reflection.h"
 
@@ -68,7 +68,7 @@ TEST(ReflectionTest, a_class_in_json_says_what_its_description_says) {
   EXPECT_TRUE(json["members"][2]["required"]);
 
   const std::string text = class_text(info);
-  EXPECT_EQ(text.find("default"), std::string::npos) << text;  // it is abstract
+  EXPECT_EQ(text.find("default"), std::string::npos) << text;  // the class is abstract
   for (const char* word : {"MadePart", "A part.", "nobody 1999", "weight", "more than 0", "both, front", "must be given"})
     EXPECT_NE(text.find(word), std::string::npos) << word << " is not in\n" << text;
 }

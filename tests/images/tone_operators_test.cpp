@@ -330,8 +330,7 @@ TEST(AutomaticExposure, ALampInViewLeavesTheRoomAsItIs) {
   for (size_t i = 0; i < values.size(); i += 32) values[i] = 100;  // 3 % of the picture, 17 stops brighter
   const double after = median_code(map->apply(grey(values, 64)), no_lamp);
   EXPECT_NEAR(after, before, 0.08);
-  EXPECT_LT(median_code(tone_map("NormalizeToneMap {}")->apply(grey(values, 64)), no_lamp),
-            0.01);  // without it the room is black
+  EXPECT_LT(median_code(tone_map("NormalizeToneMap {}")->apply(grey(values, 64)), no_lamp), 0.01);  // else the room is black
 }
 
 TEST(AutomaticExposure, BlackAroundAThingDoesNotCount) {

@@ -51,7 +51,7 @@ TEST(DeepFiles, MitsubasPluginsThatReferToPlugins) {
   EXPECT_EQ(error_of("scene.xml", mitsuba_mixtures(50)), "");
   EXPECT_NE(error_of("scene.xml", mitsuba_mixtures(10000)).find(": plugins that refer to plugins nest more than 100 deep"),
             std::string::npos);
-  // A chain just above the limit is found at the shape that uses it.
+  // By the shape of a group, too.
   EXPECT_NE(error_of("scene.xml", mitsuba_mixtures(120)).find("nest more than"), std::string::npos);
 }
 

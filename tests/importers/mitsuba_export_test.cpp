@@ -62,7 +62,7 @@ TEST(MitsubaExport, MakesTheSamePictureWhenReadBack) {
       "0.25 } },"
       "TriangleMesh { positions: [[-3, -1, -2], [3, -1, -2], [0, 3, -2]], triangles: [0, 1, 2], shader: Lambertian { color: "
       "0.7 } }",
-      // Slides before lamps.
+      // Pictures (slides) in front of lamps.
       "Rectangle { corner: [-2, -2, 0] m, edge_u: [4, 0, 0] m, edge_v: [0, 4, 0] m, shader: Lambertian { color: 0.8 } },"
       "Point { transform: translate(0.5, 0, 4) * rotate(180 deg, \"y\"), emission: SpotEmission { radiance: "
       "illuminant(\"D65\"), edge: linear, picture: CheckerMap { first: rgb(0.9, 0.2, 0.1), second: 0.1 } } },"

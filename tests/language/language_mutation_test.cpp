@@ -193,7 +193,7 @@ TEST(LanguageMutation, MutantsLoadOrAreRejectedWithAPlace) {
     }
   }
   testing::internal::GetCapturedStderr();
-  EXPECT_GT(rejected, all / 3);  // most mistakes are mistakes
+  EXPECT_GT(rejected, all / 3);  // most mutations are errors
 }
 
 TEST(LanguageMutation, UnknownNamesAreNeverAccepted) {

@@ -1,4 +1,4 @@
-// The words of other programs: each is told what it is here, and what it is told exists.
+// Names of other programs: the message gives the name used here, and that name exists.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace etendue::language_test {
 namespace {
 
-/// What stands between single quotes.
+/// The texts between single quotes.
 std::vector<std::string> quoted(std::string_view text) {
   std::vector<std::string> found;
   for (size_t at = text.find('\''); at != std::string_view::npos; at = text.find('\'', at + 1)) {
@@ -27,7 +27,8 @@ std::vector<std::string> quoted(std::string_view text) {
 
 bool capital(const std::string& name) { return std::isupper(static_cast<unsigned char>(name.front())); }
 
-/// Checks all quoted names of an entry: classes, and members of one of them or of the class that the word is of.
+/// Checks all quoted names of an entry: they are classes, or members of one of these classes or of the class to which the
+/// foreign word belongs.
 void expect_all_there(const ForeignWord& entry) {
   std::vector<const ClassInfo*> classes;
   if (!entry.where.empty() && entry.where != "Component") {
@@ -71,7 +72,7 @@ TEST(Words, AreFoundByTheirSpellingAndStandOnce) {
       EXPECT_NE(translation(entry.word, table), "") << entry.word;
     }
   }
-  // What they are told of units and functions can be read.
+  // The suggestions for units and functions can be parsed.
   for (const ForeignWord& entry : foreign_units()) {
     const bool number = std::isdigit(static_cast<unsigned char>(entry.here.front()));
     EXPECT_NO_THROW(parse_value((number ? "" : "1 ") + std::string(entry.here))) << entry.word;
@@ -107,7 +108,7 @@ TEST(Words, OfMembers) {
   EXPECT_EQ(said("Sphere { toWorld: 1 }"), " Sphere has no member 'toWorld' (Mitsuba's word; here it is 'transform')");
   EXPECT_EQ(said("Sphere { to_world: 1 }"), " Sphere has no member 'to_world' (Mitsuba's word; here it is 'transform')");
   EXPECT_EQ(said("Sphere { radus: 1 }"), " Sphere has no member 'radus' (did you mean 'radius'?)");
-  // Names that were others once.
+  // Members that once had other names.
   EXPECT_EQ(said("Sphere { center: [0, 0, 0] }"), " Sphere has no member 'center' (here it is 'centre')");
   EXPECT_EQ(said("Metaballs { centers: [[0, 0, 0]] }"), " Metaballs has no member 'centers' (here it is 'centres')");
   EXPECT_EQ(said("Conductor { roughness_y: 0.1 }"), " Conductor has no member 'roughness_y' (here it is 'roughness_v')");
@@ -122,13 +123,13 @@ TEST(Words, OfMembers) {
   EXPECT_EQ(said("PathTracer { depth: 1 }"), " PathTracer has no member 'depth' (did you mean 'max_depth'?)");
   EXPECT_NE(job_errors(job_with("integrator: 1")).find("Job has no member 'integrator' (here it is 'renderer')"),
             std::string::npos);
-  // --set paths tell the same.
+  // Paths of --set give the same message.
   const Ref<Job> job = load_job_text(job_with("renderer: PathTracer {}"), "text");
   EXPECT_EQ(errors_of([&] { set_path(*job, "renderer.spp", "4"); }),
             "1:10: PathTracer has no member 'spp' (here it is 'samples')");
 }
 
-// Each word is told where it is of use: some member has the choice that is meant, and not the word itself.
+// Each suggestion is given where it is of use: some member has the suggested choice, and does not have the foreign word itself.
 TEST(Words, EveryChoiceTheyAreToldExists) {
   std::vector<Member> all;
   for (const ClassInfo* info : Registry::instance().all())
@@ -179,9 +180,10 @@ TEST(Words, OfChoices) {
   EXPECT_EQ(said("FeatureRenderer { feature: sh_normal }"),
             "has no choice 'sh_normal' (Mitsuba's word; here it is 'shading_normal')");
   EXPECT_EQ(said("FeatureRenderer { feature: nonsense }"), "has no choice 'nonsense'");
-  // A word of one member says nothing of another.
+  // A word suggested for one member is not suggested for another.
   EXPECT_EQ(said("NurbsSurface { keep: clamped }"), "has no choice 'clamped'");
-  // Nor where the other one has the choice that it means: 'both' of sides, 'bilinear' of ways to divide faces.
+  // Nor is it suggested where the other member has the choice that it stands for: 'both' of sides, 'bilinear' of ways to
+  // subdivide faces.
   EXPECT_EQ(said("DirectRenderer { strategy: double_sided }"), "has no choice 'double_sided'");
   EXPECT_EQ(said("ImageMap { file: \"x.png\", interpolation: simple }"), "has no choice 'simple'");
 }
@@ -223,7 +225,7 @@ TEST(Words, AClassAloneIsEnoughForSet) {
   EXPECT_EQ(errors_of([&] { set_path(*job, "renderer", "path"); }), "1:10: there is no class 'path' (here it is 'PathTracer')");
   set_path(*job, "wavelengths", "none");
   EXPECT_FALSE(job->wavelengths);
-  // In a file a component keeps its braces: there is one way to write it, and the error says it.
+  // In a file a component keeps its braces: there is one way to write it, and the error gives it.
   EXPECT_EQ(part_errors("LanguagePart { child: LanguageConstant }"),
             "1:23: 'LanguageConstant' is a class: write LanguageConstant {}");
 }

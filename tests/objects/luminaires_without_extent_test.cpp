@@ -1,4 +1,5 @@
-// Point and Distant. Statistical tests have fixed seeds and a significance of 1e-3 over all their cases together.
+// The delta lights Point and Distant. Statistical tests have fixed seeds and a significance of 1e-3 over all their cases
+// together.
 
 #include <gtest/gtest.h>
 
@@ -100,7 +101,7 @@ TEST(Distant, PowerIsIrradianceTimesTheScenesDisc) {
   const Ref<SceneObject> sun = prepared_as<SceneObject>("Distant { emission: DiffuseEmission { radiance: 2 } }");
   sun->enclose({0, 0, 0}, 3);
   EXPECT_NEAR(double(sun->emission->power(*sun, w)[0]), 2 * M_PI * 9, 1e-4);
-  // On the axis of a spotlight's profile, and where it is half.
+  // On the axis of a spot's profile, and within its edge.
   for (const double angle : {0.0, 25.0}) {
     const Ref<SceneObject> beam =
         prepared_as<SceneObject>("Distant { direction: [" + std::to_string(std::sin(angle * M_PI / 180)) + ", 0, " +

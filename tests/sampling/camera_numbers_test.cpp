@@ -1,4 +1,4 @@
-// Cameras: angles of view across each side of wide and tall pictures, focus, importance and the shutter against formulas.
+// Cameras: fields of view across each side of wide and tall pictures, focus, importance and the shutter against formulas.
 
 #include <gtest/gtest.h>
 
@@ -39,11 +39,11 @@ TEST(CameraNumbers, FieldOfViewAcrossEachSide) {
       return Vector3{d.x / d.z, d.y / d.z, 1};
     };
     EXPECT_NEAR(length(at(w / 2 + 10, h / 2) - at(w / 2, h / 2)), length(at(w / 2, h / 2 + 10) - at(w / 2, h / 2)), 1e-6f);
-    EXPECT_GT(at(w / 2, h / 2).y, at(w / 2, h / 2 + 10).y);  // rows go down
+    EXPECT_GT(at(w / 2, h / 2).y, at(w / 2, h / 2 + 10).y);  // rows run downwards
   }
 }
 
-// All rays of a film point meet in the plane of focus, at the place a pinhole would show.
+// All rays of a film point meet in the plane of focus, at the point that a pinhole camera would show.
 TEST(CameraNumbers, LensesFocusWhereTheySay) {
   for (const double focus : {0.0, 2.5}) {
     const Ref<Camera> camera = create<Camera>(
@@ -69,7 +69,7 @@ TEST(CameraNumbers, LensesFocusWhereTheySay) {
   }
 }
 
-// A small square at each place of a film sees as much importance as film: W_e integrates to 1 over lens and film.
+// The importance of parallel rays is one over the film's area: W_e integrates to 1 over lens and film.
 TEST(CameraNumbers, ImportanceOfParallelRaysIsOverTheFilmsArea) {
   const Ref<Camera> camera =
       create<Camera>("OrthographicCamera", {{"from", List{0, 0, 0}}, {"to", List{0, 0, 1}}, {"width", 3.0}});
@@ -89,7 +89,7 @@ TEST(CameraNumbers, ImportanceOfALensIntegratesToOne) {
   const Ref<Camera> camera = create<Camera>(
       "PerspectiveCamera", {{"from", List{0, 0, 0}}, {"to", List{0, 0, 2}}, {"fov", 70.0}, {"lens_radius", 0.25}});
   camera->set_film(40, 25);
-  // Over the film at one lens point: W_e cos dw = dA W_e cos^4 at distance 1; times the lens's area.
+  // Integrated over the film at one lens point: W_e cos dw = dA W_e cos^4 at distance 1; times the lens's area.
   for (const Point2 lens : {Point2{0.5f, 0.5f}, {0.8f, 0.3f}}) {
     double sum = 0;
     constexpr int steps = 50;
@@ -106,7 +106,7 @@ TEST(CameraNumbers, ImportanceOfALensIntegratesToOne) {
   }
 }
 
-// The shutter opens in 0.3 s, closes in 0.5 s, and is open for 2 s in all: its opening is a trapezium.
+// The shutter opens in 0.3 s, closes in 0.5 s, and is open for 2 s in all: its opening over time is a trapezoid.
 TEST(CameraNumbers, ShutterOpensAndClosesLinearly) {
   const struct {
     double opening, closing;

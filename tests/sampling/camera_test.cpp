@@ -1,4 +1,4 @@
-// Cameras: film points and rays back and forth, importance and densities, lens samples, handedness.
+// Cameras: film points and rays in both directions, importance and pdfs, lens samples, handedness.
 
 #include "etendue/camera.h"
 
@@ -64,8 +64,9 @@ TEST(Camera, FilmPointOfARayIsWhereItCameFrom) {
     }
 }
 
-// Directions over their part along the axis, of `perspective` of Mitsuba 3.9.1 with a film of 300 x 200 (its default is a focal
-// length of 50 mm over the diagonal of 36 x 24 mm; its offsets have the other sign; its first axis points to the left).
+// Directions divided by their component along the axis, from `perspective` of Mitsuba 3.9.1 with a film of 300 x 200 (its
+// default is a focal length of 50 mm over the diagonal of 36 x 24 mm; its offsets have the opposite sign; its first axis points
+// to the left).
 TEST(PerspectiveCamera, FocalLengthDiagonalAndPrincipalPointAreThoseOfMitsuba) {
   struct Row {
     std::vector<test::Setting> settings;
@@ -85,7 +86,7 @@ TEST(PerspectiveCamera, FocalLengthDiagonalAndPrincipalPointAreThoseOfMitsuba) {
     const Ref<Camera> camera = create<Camera>("PerspectiveCamera", settings);
     camera->set_film(300, 200);
     const Ray ray = camera->ray({row.film.x * 300, row.film.y * 200}, {0.5f, 0.5f}, 0);
-    const Vector3 right = cross(Vector3{0, 0, 1}, Vector3{0, 1, 0});  // the viewing direction times up
+    const Vector3 right = cross(Vector3{0, 0, 1}, Vector3{0, 1, 0});  // cross(viewing direction, up)
     EXPECT_NEAR(double(dot(ray.direction, right) / ray.direction.z), row.right, 2e-5);
     EXPECT_NEAR(double(-ray.direction.y / ray.direction.z), row.down, 2e-5);
   }
@@ -110,7 +111,7 @@ TEST(Camera, RaysThatMissAreEmpty) {
     ray.direction = normalize(forward + Vector3{0, 3, 0});
     EXPECT_FALSE(c.camera->film_point(ray)) << c.name;
     EXPECT_FALSE(c.camera->sample_lens(ray.origin - 2 * forward, 0, {0.5f, 0.5f})) << c.name;
-    if (c.lens) {  // past the lens
+    if (c.lens) {  // beside the lens
       ray.direction = forward;
       ray.origin = ray.origin + Vector3{0, 0.5f, 0};
       EXPECT_FALSE(c.camera->film_point(ray)) << c.name;
@@ -118,7 +119,7 @@ TEST(Camera, RaysThatMissAreEmpty) {
   }
 }
 
-// W_e cos = p_position p_direction: rays have weight 1.
+// W_e cos = p_position p_direction: camera rays have the weight 1.
 TEST(Camera, ImportanceMatchesDensities) {
   test::Random random(2);
   for (const Case& c : cameras()) {
@@ -133,7 +134,7 @@ TEST(Camera, ImportanceMatchesDensities) {
   }
 }
 
-// The direction's density integrates to 1 over the sphere at each lens point, and so importance over everything.
+// The pdf of directions integrates to 1 over the sphere at each lens point, and therefore the importance to 1 over everything.
 TEST(Camera, DensityIntegratesToOne) {
   for (const Case& c : cameras()) {
     if (c.name == "orthographic") continue;
@@ -144,7 +145,7 @@ TEST(Camera, DensityIntegratesToOne) {
     for (int i = 0; i < count; ++i) {
       Ray ray = c.camera->ray({width / 2.0f, height / 2.0f}, random.pair(), 0);  // any point of the lens
       const float lens_pdf = c.camera->pdf(ray).position;
-      // Uniform in the cone of half angle 60 degrees: it holds all of the film.
+      // Uniform in a cone of half angle 60 degrees, which contains the whole film.
       const float z = 1 - 0.5f * random(), phi = 2 * pi * random(), r = safe_sqrt(1 - z * z);
       ray.direction = Frame(Normal3(axis)).to_world({r * std::cos(phi), r * std::sin(phi), z});
       direction_sum += double(c.camera->pdf(ray).direction) * M_PI / count;
@@ -161,13 +162,13 @@ TEST(OrthographicCamera, ImportanceIsOneOverTheFilm) {
   EXPECT_NEAR(camera->importance(camera->ray({10, 20}, {}, 0)), 1 / area, 1e-6);
 }
 
-// Rays are drawn with the density that is claimed: counts over a grid of directions.
+// Rays follow the reported pdf: counts over a grid of directions.
 TEST(PerspectiveCamera, RaysFollowDensity) {
   for (const Case& c : cameras()) {
     if (c.name == "orthographic") continue;
     const Frame frame(Normal3(normalize(Vector3{-0.5f, -1, 7})));
     constexpr int grid = 20, count = 50000;
-    // Cells in the plane at distance 1: a solid angle there is cos^3 times the area.
+    // Cells in the plane at distance 1: the solid angle of a cell is cos^3 times its area.
     std::vector<double> expected(grid * grid), counts(grid * grid);
     const Point2 lens{0.3f, 0.8f};
     const Ray central = c.camera->ray({width / 2.0f, height / 2.0f}, lens, 0);
@@ -187,7 +188,7 @@ TEST(PerspectiveCamera, RaysFollowDensity) {
       const Vector3 d = frame.to_local(c.camera->ray(random_film(random), lens, 0).direction);
       ++counts[size_t((d.y / d.z + 2) / 4 * grid) * grid + size_t((d.x / d.z + 2) / 4 * grid)];
     }
-    // The film's edge cuts cells, whose quadrature is then only good to a few per cent: those are left out.
+    // Cells that the film's edge cuts are left out: their quadrature is only good to a few per cent.
     std::vector<double> whole_expected, whole_counts;
     for (size_t i = 0; i < expected.size(); ++i) {
       bool inside = expected[i] > 0;
@@ -210,7 +211,7 @@ TEST(Camera, LensSamplesAgreeWithRays) {
       const Point3 seen = ray(1 + 5 * random());
       const auto s = c.camera->sample_lens(seen, 0, random.pair());
       if (!s) {
-        EXPECT_TRUE(c.lens) << c.name;  // from another point of the lens it may be off the film
+        EXPECT_TRUE(c.lens) << c.name;  // seen from another point of the lens it may lie off the film
         continue;
       }
       EXPECT_NEAR(s->distance, distance(seen, s->lens), 1e-4f) << c.name;
@@ -227,14 +228,14 @@ TEST(Camera, LensSamplesAgreeWithRays) {
         EXPECT_EQ(s->pdf, 1);
         continue;
       }
-      // Density by lens area becomes one by solid angle: distance^2 / cos.
+      // A pdf by lens area becomes one by solid angle with the factor distance^2 / cos.
       const float cosine = dot(normalize(Vector3{-0.5f, -1, 7}), back.direction);
       EXPECT_NEAR(s->pdf, c.camera->pdf(back).position * square(s->distance) / cosine, 1e-3f * s->pdf) << c.name;
     }
 }
 
-// A small bright disc facing the camera is seen as brightly through its lens samples (importance / density) as through
-// camera rays that meet it.
+// A small bright disc facing the camera has the same brightness through its lens samples (importance / pdf) as through the
+// camera rays that hit it.
 TEST(Camera, BothDirectionsMeasureTheSame) {
   for (const Case& c : cameras()) {
     const Ray axis = c.camera->ray({width / 2.0f, height / 2.0f}, {0.5f, 0.5f}, 0);
@@ -286,7 +287,7 @@ TEST(PerspectiveCamera, FieldOfViewAndFocus) {
     const Ray edge = camera->ray(e.across_width ? Point2{0, height / 2.0f} : Point2{width / 2.0f, 0}, {}, 0);
     EXPECT_NEAR(degrees(std::acos(edge.direction.z)), 25, 1e-3f) << e.axis;
   }
-  // All rays of a film point meet where it is in focus.
+  // All rays of a film point meet at the point in focus.
   const Ref<Camera> lens = cameras()[1].camera;
   const float focus = length(Vector3{-0.5f, -1, 7});
   const Vector3 axis = normalize(Vector3{-0.5f, -1, 7});

@@ -1,4 +1,4 @@
-// LensCamera: focal lengths, sharpness and brightness of lenses against optics on paper.
+// LensCamera: focal lengths, sharpness and brightness of lenses against formulas of optics.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 using test::create;
 using List = std::vector<double>;
 
-/// An equiconvex thin lens of glass, n = 1.5, and radii of 100 mm; by the lensmaker's equation 1 / f = (n - 1) (2 / R).
+/// An equiconvex thin lens of glass, n = 1.5, with radii of 100 mm; by the lensmaker's equation 1 / f = (n - 1) (2 / R).
 List thin(double diameter) { return {100, 1e-6, 1.5, diameter, -100, 0, 1, diameter}; }
 
 // f = 1 / ((n - 1) (1 / R1 - 1 / R2 + (n - 1) d / (n R1 R2))), back focus f (1 - (n - 1) d / (n R1)).
@@ -33,18 +33,19 @@ TEST(LensSystem, FocalLengthsAreTheLensmakers) {
   }
 }
 
-// Kolb et al. 1995, table 1: of a lens of 100 mm the last surface lies 72.228 mm before the film; halved in the default lens.
+// Kolb et al. 1995, table 1: in a lens of 100 mm the last surface is 72.228 mm before the film; the default lens has half that
+// size.
 TEST(LensSystem, ADoubleGaussHasTheFocusOfItsTable) {
   const Ref<Component> camera = Registry::instance().create("LensCamera");
   const Value value = get(*camera, "surfaces");
   LensSystem lens;
   lens.set(lens_surfaces(value.as<Numbers>()->values, 1e-3));
   EXPECT_NEAR(lens.back_focus(), 36.114e-3, 0.05e-3);
-  EXPECT_NEAR(lens.focal_length(), 50e-3, 0.5e-3);  // its name, as lenses have names
+  EXPECT_NEAR(lens.focal_length(), 50e-3, 0.5e-3);  // its nominal focal length
 }
 
-// Sent out of a film point, rays of all of the lens meet again at the distance that was asked for, as far from the axis as the
-// lens magnifies: of a thin lens 1 / s + 1 / s' = 1 / f.
+// Rays from one film point through the whole lens meet at the requested focus distance, as far from the axis as the lens
+// magnifies: for a thin lens 1 / s + 1 / s' = 1 / f.
 TEST(LensCamera, IsSharpWhereItSays) {
   const double f = 0.1;  // m
   for (const double distance : {0.5, 1.0, 20.0}) {
@@ -58,15 +59,15 @@ TEST(LensCamera, IsSharpWhereItSays) {
       const Ray ray = camera->ray({300, 0}, random.pair(), 0);
       EXPECT_NEAR(double(ray.origin.z), image, 1e-5);
       const Point3 met = ray(float(distance - double(ray.origin.z)) / ray.direction.z);
-      // The right upper corner, 0.6 mm and 0.8 mm from the axis; the world's x goes to the left.
+      // The film's upper right corner, 0.6 mm and 0.8 mm from the axis; x runs to the left in the world.
       EXPECT_NEAR(double(met.x), -0.0006 * object / image, 2e-5 * distance) << distance;
       EXPECT_NEAR(double(met.y), 0.0008 * object / image, 2e-5 * distance) << distance;
     }
   }
 }
 
-// Of radiance 1 everywhere the film's irradiance is pi sin^2 in the middle, tan(theta) = lens radius / image distance, and of a
-// small thin lens cos^4 of that away from it. In radiance, the middle is 1.
+// Under a uniform radiance of 1 the film's irradiance is pi sin^2 in the middle, with tan(theta) = lens radius / image
+// distance, and for a small thin lens cos^4 of that away from the middle. In units of radiance, the middle is 1.
 TEST(LensCamera, IsAsBrightAsItsPupilIsLarge) {
   for (const char* measures : {"irradiance", "radiance"}) {
     const auto picture = [&](const std::string& renderer, double diameter) {
@@ -86,7 +87,7 @@ TEST(LensCamera, IsAsBrightAsItsPupilIsLarge) {
     for (const double diameter : {2.0, 8.0}) {
       const Image seen = picture("PathTracer { samples: 2048 }", diameter);
       const double squared = diameter * diameter * 0.25e-6, middle = radiance ? 1 : M_PI * squared / (squared + image * image);
-      // The pixel in the middle is 0.0236 m wide: the mean of cos^4 in it, and in the pixel at the corner.
+      // The middle pixel is 0.0236 m wide: the mean of cos^4 in it, and in the pixel at the corner.
       const double side = 0.1 / std::sqrt(2) / 3;
       const auto mean = [&](double x, double y) {
         double sum = 0;
@@ -106,7 +107,7 @@ TEST(LensCamera, IsAsBrightAsItsPupilIsLarge) {
   }
 }
 
-// Rays from the film and to it, of a thick lens with a stop.
+// Rays from the film and back to it, through a thick lens with a stop.
 TEST(LensCamera, RaysLeadBack) {
   for (const double stop : {0.0, 0.002}) {
     const Ref<Camera> camera =
@@ -125,13 +126,13 @@ TEST(LensCamera, RaysLeadBack) {
       ASSERT_TRUE(back);
       EXPECT_NEAR(back->x, film.x, 0.01f);
       EXPECT_NEAR(back->y, film.y, 0.01f);
-      // From its lens point the same light is found.
+      // The pdfs and the importance of this ray give the weight with which it was sampled.
       const CameraPdf d = camera->pdf(sent.ray);
       const Vector3 axis = normalize(Vector3{-0.5f, -1, 7});
       const float cosine = dot(axis, sent.ray.direction);
       EXPECT_NEAR(sent.weight.average() * d.position * d.direction / camera->importance(sent.ray), cosine, 1e-3f);
     }
-    EXPECT_GT(passed, 1200) << stop;  // most of what is aimed at the pupil passes
+    EXPECT_GT(passed, 1200) << stop;  // most rays aimed at the pupil pass
   }
 }
 

@@ -1,4 +1,5 @@
-// Samplers: pairs of neighbouring dimensions, pairs across dimensions, samples of high numbers, and wavelengths' distributions.
+// Samplers: pairs of neighbouring dimensions, pairs across dimensions, samples with high indices, and the distributions of
+// wavelengths.
 
 #include <gtest/gtest.h>
 
@@ -16,8 +17,8 @@ using test::create;
 
 const std::vector<std::string> samplers = {"SobolSampler", "IndependentSampler"};
 
-/// A chi-square test of pairs of numbers in n x n cells. Numbers that are padded together from well spread points are even in
-/// coarse cells; in fine ones their strata show, and only independent ones are held to them.
+/// A chi-square test of pairs of numbers in n x n cells. Padded dimensions of well-distributed points are uniform in coarse
+/// cells but show their strata in fine ones, so only independent numbers are tested with fine cells.
 void expect_even(const std::string& what, const std::function<Point2(int)>& pair, int count, double significance) {
   const size_t n = what.starts_with("Sobol") ? 16 : 64;
   std::vector<double> counts(n * n), expected(n * n, double(count) / double(n * n));
@@ -29,8 +30,8 @@ void expect_even(const std::string& what, const std::function<Point2(int)>& pair
   EXPECT_GT(test::chi_square(counts, expected), significance) << what;
 }
 
-// Whatever two numbers of a sample an algorithm asks for, they fill the square evenly over the samples of a pixel and over the
-// pixels: of one pair, of two dimensions side by side, of two pairs' first and second numbers, near and far apart.
+// Any two numbers of a sample fill the square evenly, over the samples of a pixel and over the pixels: the numbers of one pair,
+// of two adjacent dimensions, and the first and second numbers of two pairs, near and far apart.
 TEST(SamplerPairs, TwoNumbersOfASampleFillTheSquare) {
   constexpr int count = 32768;
   const double significance = test::each_of(2 * 2 * 60);
@@ -75,7 +76,8 @@ TEST(SamplerPairs, TwoPairsAtOnceAreThoseOneByOne) {
   }
 }
 
-// Points of high numbers are as well spread as the first, and are others: each aligned block of 2^k has one in each strip.
+// Points with high indices are as well distributed as the first ones, and differ from them: each aligned block of 2^k has one
+// point in each strip.
 TEST(SamplerPairs, HighSampleNumbers) {
   const Ref<Sampler> s = create<Sampler>("SobolSampler");
   for (const std::uint32_t begin : {0u, 1u << 16, 3u << 17, 1u << 24, 0x80000000u, 0xfffffc00u}) {
@@ -99,7 +101,7 @@ TEST(SamplerPairs, HighSampleNumbers) {
       if (HasFailure()) return;
     }
   }
-  // Of very many points as well: the second coordinate's matrix is Pascal's triangle beyond its first 16 rows.
+  // Also for very many points: the second coordinate's matrix is Pascal's triangle beyond its first 16 rows.
   for (const std::uint32_t begin : {0u, 1u << 20}) {
     constexpr size_t bits = 17, count = size_t(1) << bits;
     for (const size_t k : {size_t(1), size_t(5), size_t(9), size_t(12), size_t(16)}) {
@@ -115,7 +117,7 @@ TEST(SamplerPairs, HighSampleNumbers) {
       EXPECT_EQ(twice, 0u) << begin << " " << k;
     }
   }
-  // No point of one block is one of another, but by chance: of 4096 floats few agree.
+  // No point of one block is a point of another, except by chance: few of 4096 floats are equal.
   for (const std::string& name : samplers) {
     const Ref<Sampler> sampler = create<Sampler>(name);
     std::set<float> seen;
@@ -125,9 +127,9 @@ TEST(SamplerPairs, HighSampleNumbers) {
   }
 }
 
-// Both numbers of a pair are scrambled on their own. Of an aligned block of four, two points lie in the halves where the first
-// digits of x and y agree. Their second digits agree or do not; with scramblings that are independent (Owen 1995), whether they
-// do for both alike is a toss of a coin; with one scrambling for x and y it is the same for all pixels.
+// The two numbers of a pair are scrambled independently. Of an aligned block of four points, two lie in the halves where the
+// first digits of x and y agree. For each of these two, the second digits of x and y agree or not; with independent scramblings
+// (Owen 1995) both do the same with probability 1/2, with a common scrambling of x and y the result is the same for all pixels.
 TEST(SamplerPairs, BothNumbersAreScrambledOnTheirOwn) {
   const Ref<Sampler> s = create<Sampler>("SobolSampler");
   for (const std::uint32_t begin : {0u, 4096u})
@@ -150,7 +152,7 @@ TEST(SamplerPairs, BothNumbersAreScrambledOnTheirOwn) {
     }
 }
 
-// A number of one sample and dimension is none of another sample's, at whatever dimension.
+// Samples do not share numbers, in whatever dimensions.
 TEST(SamplerPairs, NumbersAreNotSharedBetweenSamplesAndDimensions) {
   for (const std::string& name : samplers) {
     const Ref<Sampler> s = create<Sampler>(name);
@@ -172,7 +174,7 @@ TEST(SamplerPairs, NumbersAreNotSharedBetweenSamplesAndDimensions) {
 // ---- wavelengths
 // -----------------------------------------------------------------------------------------------------------------
 
-// Radziszewski et al. 2009: p is in proportion to 1 / cosh^2(0.0072 (lambda - 538)).
+// Radziszewski et al. 2009: p is proportional to 1 / cosh^2(0.0072 (lambda - 538)).
 TEST(WavelengthNumbers, VisibleDistributionIsThePapersAlsoWhenCut) {
   const struct {
     double low, high;
@@ -190,7 +192,7 @@ TEST(WavelengthNumbers, VisibleDistributionIsThePapersAlsoWhenCut) {
         EXPECT_NEAR(double(w.pdf(k)), p, 3e-3 * p + 8e-6) << w[k];
       }
     }
-    // Drawn by what is said: u of them lies below the wavelength of u.
+    // Samples follow that pdf: the fraction u of it lies below the wavelength of u.
     for (const float u : {0.1f, 0.5f, 0.9f}) {
       const double l = double(s->sample(SampleKey(1, 2, 3, 0), u).hero());
       double below = 0;

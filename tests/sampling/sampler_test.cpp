@@ -18,7 +18,7 @@ TEST(Sampler, UniformOverDimensionsAndPixels) {
   const double significance = test::each_of(4);
   for (const char* name : names) {
     const Ref<Sampler> sampler = create<Sampler>(name);
-    // One number from each of many pixels and dimensions: independent draws for both samplers.
+    // One number from each of many pixels and dimensions: independent samples for both samplers.
     constexpr size_t bins = 16, count = 100000;
     std::vector<double> single(bins), pairs(bins * bins);
     for (size_t i = 0; i < count; ++i) {
@@ -35,7 +35,7 @@ TEST(Sampler, UniformOverDimensionsAndPixels) {
   }
 }
 
-// Two pairs of dimensions of the same samples, and the same dimensions of neighbouring pixels, must not know of each other.
+// Two pairs of dimensions of the same samples, and the same dimensions of neighbouring pixels, must be independent.
 TEST(Sampler, DimensionsAndPixelsAreIndependent) {
   const double significance = test::each_of(6);
   for (const char* name : names) {
@@ -44,7 +44,7 @@ TEST(Sampler, DimensionsAndPixelsAreIndependent) {
     std::vector<double> dimensions(bins * bins), neighbours(bins * bins), seeds(bins * bins);
     for (size_t pixel = 0; pixel < pixels; ++pixel)
       for (size_t i = 0; i < samples; ++i) {
-        // A few samples of each pixel only, or stratification itself would make counts too even.
+        // Only a few samples of each pixel: otherwise stratification would make the counts too even.
         if (mix_bits(pixel * samples + i) % 8) continue;
         const SampleKey key(1, int(pixel), 5, std::uint32_t(i)), below(1, int(pixel), 6, std::uint32_t(i)),
             other(2, int(pixel), 5, std::uint32_t(i));
@@ -62,9 +62,9 @@ TEST(Sampler, DimensionsAndPixelsAreIndependent) {
   }
 }
 
-// Within a pixel, too: the mean squared correlation of n unrelated numbers is 1 / (n - 1), 0.067 here; under truly random
-// nested permutations it is 0.099, as they are fewer than all permutations. Points that kept their order from one
-// dimension to the next would have above 0.5, whatever their scrambling.
+// Also within a pixel: the mean squared correlation of n independent numbers is 1 / (n - 1), 0.067 here; under truly random
+// nested permutations it is 0.099, as they are fewer than all permutations. Points with the same order in two dimensions would
+// have more than 0.5, whatever their scrambling.
 TEST(Sampler, SamplesOfAPixelAreShuffledBetweenDimensions) {
   constexpr int pixels = 2000, n = 16;
   for (const char* name : names) {
@@ -88,7 +88,7 @@ TEST(Sampler, SamplesOfAPixelAreShuffledBetweenDimensions) {
             covariance * covariance / ((own[0] - sums[0] * sums[0]) * (own[k + 1] - sums[k + 1] * sums[k + 1])) / pixels;
       }
     }
-    // The standard error of a mean of so many such squares is 0.002.
+    // The standard error of the mean of so many squares is 0.002.
     const double wanted = std::string(name) == "SobolSampler" ? 0.099 : 1.0 / (n - 1);
     for (const double r2 : squares) EXPECT_NEAR(r2, wanted, 0.01) << name;
   }
@@ -112,7 +112,7 @@ TEST(Sampler, SameArgumentsGiveSameNumbers) {
     EXPECT_EQ(again.next_pair(), first);
     EXPECT_EQ(again.next(), second);
     EXPECT_EQ(again.count(), 3u);
-    // Walks of other names have numbers of their own, whatever was taken before.
+    // Streams forked under other names have their own numbers, whatever was drawn before.
     NumberStream other = stream.fork("other"), same = NumberStream(*one, SampleKey(3, 10, 20, 5)).fork("other");
     const Point2 others = other.next_pair();
     EXPECT_EQ(same.next_pair(), others);
@@ -168,7 +168,7 @@ TEST(SobolSampler, OnePointInEachElementaryInterval) {
       }
 }
 
-// Stratification pays: the error of a smooth integral falls faster than with independent samples.
+// Effect of stratification: the error of a smooth integral falls faster than with independent samples.
 TEST(SobolSampler, IntegratesSmoothFunctionsBetter) {
   double errors[2] = {};
   for (int s = 0; s < 2; ++s) {
@@ -187,7 +187,7 @@ TEST(SobolSampler, IntegratesSmoothFunctionsBetter) {
 
 // ---- light samplers -------------------------------------------------------------------------------------------------
 
-/// A scene that only lists its objects.
+/// A scene that only lists its objects, without finding any hit.
 class ListScene final : public Scene {
  public:
   bool find_nearest(const Ray&, Hit&) const override { return false; }
@@ -243,7 +243,7 @@ TEST(LightSampler, ByPower) {
   const double wanted[] = {0.1, 0.6, 0.3};
   for (size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(sampler->probability(*lights.scene->luminaires()[i]), wanted[i], 1e-3);
-    // For a point, half of the choices are made regardless of power.
+    // At a surface point half of the choices are made regardless of power.
     EXPECT_NEAR(sampler->probability({}, {}, *lights.scene->luminaires()[i]), wanted[i] / 2 + 1 / 6.0, 1e-3);
   }
 }

@@ -1,4 +1,4 @@
-// SphericalCamera: solid angles of its pixels, and its pictures as environments.
+// SphericalCamera: solid angles of its pixels, and its pictures used as environments.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -37,23 +37,23 @@ TEST(SphericalCamera, FilmPointsComeBackAndDensitiesAreThoseOfPixels) {
       ASSERT_TRUE(back);
       EXPECT_NEAR(back->x, film.x, 2e-3f) << mapping << " " << film.x << " " << film.y;
       EXPECT_NEAR(back->y, film.y, 2e-3f) << mapping << " " << film.x << " " << film.y;
-      // The solid angle of a small square of film is the cross product of its edges. Across the folds of the square of equal
-      // areas they have no direction.
+      // The solid angle of a small square of film is the cross product of its edges. Squares across the folds of the equal-area
+      // square are left out, because the direction is not differentiable there.
       constexpr float step = 0.02f;
       const float a = std::abs(2 * u.x - 1), b = std::abs(2 * u.y - 1);
       if (std::min({a, b, std::abs(a + b - 1)}) < 0.02f || u.y < 0.02f || u.y > 0.98f) continue;
       const Vector3 across = camera->ray({film.x + step, film.y}, {}, 0).direction - ray.direction,
                     down = camera->ray({film.x, film.y + step}, {}, 0).direction - ray.direction;
-      const double omega = double(length(cross(across, down))) / (step * step) * width * height;  // of the whole film, if even
+      const double omega = double(length(cross(across, down))) / (step * step) * width * height;  // scaled to the whole film
       EXPECT_NEAR(double(camera->pdf(ray).direction) * omega, 1, 0.02) << mapping << " " << film.x << " " << film.y;
       EXPECT_EQ(camera->importance(ray), camera->pdf(ray).direction);
-      // The cone covers as much as the pixel.
+      // The ray's cone covers the pixel's solid angle.
       EXPECT_NEAR(ray.spread * ray.spread / (omega / (width * height)), 1, 0.02);
     }
   }
 }
 
-// +z to the middle, +y to the top, and to the right -x, which is the viewing direction times up.
+// +z is in the middle, +y at the top, and -x, the cross product of viewing direction and up, on the right.
 TEST(SphericalCamera, WhereDirectionsLie) {
   for (const char* mapping : mappings) {
     const Ref<Camera> camera = create<Camera>("SphericalCamera", {{"mapping", std::string(mapping)}});
@@ -78,7 +78,7 @@ TEST(SphericalCamera, WhereDirectionsLie) {
   }
 }
 
-// The picture of an environment is its image.
+// The picture of an environment equals the environment's image.
 TEST(SphericalCamera, SeesAnEnvironmentAsItsImage) {
   const TemporaryFolder folder;
   for (const char* mapping : mappings) {
@@ -87,7 +87,7 @@ TEST(SphericalCamera, SeesAnEnvironmentAsItsImage) {
     const int width = square ? height : 2 * height;
     std::vector<float> rgb;
     for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)  // alike on both sides of what is one edge
+      for (int x = 0; x < width; ++x)  // equal at both ends of an edge that is shared
         for (const float c :
              {0.6f + 0.3f * std::sin(2 * pi * float(x) / float(width)), 0.5f + 0.4f * std::cos(pi * float(y) / height), 0.25f})
           rgb.push_back(c);
@@ -102,7 +102,7 @@ TEST(SphericalCamera, SeesAnEnvironmentAsItsImage) {
             square ? "equal_area" : "lat_long"),
         "sky.etd");
     const Image seen = test::rendered(job)->picture();
-    // What wraps around the square's edges is not alike there.
+    // The image is not continuous where the square's edges meet.
     const int edge = square ? 2 : 0;
     for (int y = edge; y < height - edge; ++y)
       for (int x = edge; x < width - edge; ++x) {
@@ -114,8 +114,8 @@ TEST(SphericalCamera, SeesAnEnvironmentAsItsImage) {
 }
 
 // A luminous ball above the camera, seen under the half angle a. In the picture of longitude and latitude it fills the rows
-// down to a, a / pi of all; in the one of equal areas its part of the sphere, (1 - cos a) / 2. Both by rays that leave the
-// camera and by light that comes to it.
+// down to a, a / pi of all; in the equal-area picture its fraction of the sphere, (1 - cos a) / 2. Both by paths from the
+// camera and by light paths that reach it.
 TEST(SphericalCamera, ShowsABallAsLargeAsItIsByAllAlgorithms) {
   const double half = std::asin(0.5);
   for (const char* mapping : mappings)

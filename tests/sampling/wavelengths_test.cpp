@@ -1,4 +1,4 @@
-// Wavelength samplers and the estimate of XYZ from a path's few wavelengths.
+// Wavelength samplers and the estimate of XYZ from the few wavelengths of a path.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ std::vector<std::pair<const char*, Color>> light() {
           {"line", table_spectrum({505, 510, 515}, {0, 40, 0})}};
 }
 
-/// The integral the estimate aims at, by the midpoint rule at 0.1 nm.
+/// The expected value of the estimate, by the midpoint rule at 0.1 nm.
 Xyz integral(const SpectralFunction& s, double low, double high) {
   Xyz sum;
   for (double w = low + 0.05; w < high; w += 0.1)
@@ -50,8 +50,9 @@ struct Mean {
   double error() const { return std::sqrt(std::max(0.0, squares / n - mean() * mean()) / n); }
 };
 
-/// z-test of the estimate of X, Y and Z against the integral, with all wavelengths and with the hero alone. 36 comparisons
-/// for each sampler at 4.5 standard errors: a right one fails with probability 2.5e-4, once and for all, as the seed is fixed.
+/// A z-test of the estimate of X, Y and Z against the integral, with all wavelengths and with the hero alone. 36 comparisons
+/// for each sampler at 4.5 standard errors: a correct sampler fails with probability 2.5e-4, and, as the seed is fixed, always
+/// or never.
 void expect_unbiased(const WavelengthSampler& sampler, double low, double high) {
   constexpr int samples = 40000;
   for (const auto& [name, color] : light()) {
@@ -68,7 +69,7 @@ void expect_unbiased(const WavelengthSampler& sampler, double low, double high) 
         mean[2].add(c.z);
       }
       const double exact[3] = {expected.x, expected.y, expected.z};
-      // A thousandth of a percent for rounding where all samples agree.
+      // The additional thousandth of a per cent is for rounding where all samples agree.
       for (int i = 0; i < 3; ++i)
         EXPECT_NEAR(mean[i].mean(), exact[i], 4.5 * mean[i].error() + 1e-5 * exact[i])
             << name << " component " << i << " single " << single;
@@ -113,7 +114,7 @@ TEST(HeroWavelengths, SpreadsTheOthers) {
 }
 
 TEST(GridWavelengths, EstimateIsUnbiased) {
-  // Over random pixels, against the Riemann sum's limit: a fine grid, so that the sum is the integral.
+  // Over random pixels, against the limit of the Riemann sum: the grid is so fine that the sum is the integral.
   expect_unbiased(*make_sampler("GridWavelengths", {{"count", number(1880)}}), 360, 830);
 }
 
@@ -136,7 +137,7 @@ TEST(GridWavelengths, EveryPointIsUsedEqually) {
       EXPECT_EQ(int(heroes.size()), count);
       EXPECT_EQ(int(used.size()), count);
       for (const auto& [wavelength, times] : used) EXPECT_EQ(times, spectrum_size) << count;
-      // One round of samples is the Riemann sum over the cells exactly.
+      // One round of samples gives exactly the Riemann sum over the cells.
       for (const auto& [name, color] : light()) {
         Xyz expected;
         for (const auto& [w, times] : used)

@@ -1,4 +1,4 @@
-// Surfaces of several objects in the same place, and objects of which one side absorbs.
+// Coincident surfaces of several objects, and objects with one absorbing side.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace etendue::test {
 namespace {
 
-/// A box 20 wide and deep between two heights.
+/// A box 20 wide and deep, between two heights.
 std::string box(double low, double high, const std::string& members, double half = 10) {
   const auto p = [&](int x, int y, double z) {
     return "[" + std::to_string(x * half) + "," + std::to_string(y * half) + "," + std::to_string(z) + "]";
@@ -32,7 +32,7 @@ std::string glass(const std::string& ior, int priority) {
 
 const char* const structures[] = {"EmbreeScene", "BruteForceScene"};
 
-// Behind the second box there are 2 m in which a medium that was not left would absorb all.
+// Behind the second box there are 2 m, in which a medium that was not left would absorb all light.
 TEST(Coincident, BoxesOfFogThatShareAFace) {
   for (const char* structure : structures)
     for (const char* renderer : {"PathTracer", "BidirectionalPathTracer"})
@@ -59,7 +59,7 @@ TEST(Coincident, TheCameraInTheSecondOfTwoBoxes) {
   }
 }
 
-// Of plates that do not absorb, with all reflections between their surfaces, T = 1 / (1 + sum of R / (1 - R)) (Stokes 1862).
+// Plates without absorption, with all reflections between their surfaces, have T = 1 / (1 + sum of R / (1 - R)) (Stokes 1862).
 TEST(Coincident, GlassOnWater) {
   double sum = 0;
   for (const auto& [a, b] : {std::pair(1.0, 1.5), std::pair(1.5, 1.33), std::pair(1.33, 1.0)}) {
@@ -80,7 +80,7 @@ TEST(Coincident, GlassOnWater) {
       }
 }
 
-// Glass that stands on the floor has no air under it, as if it were let into the floor a little.
+// Glass that stands on the floor has no air below it, as if it were sunk into the floor a little.
 TEST(Coincident, GlassOnTheFloor) {
   const std::string rest =
       R"(Rectangle { corner: [-4,-4,0], edge_u: [8,0,0], edge_v: [0,8,0], shader: Lambertian { color: 0.8 } }
@@ -95,7 +95,7 @@ TEST(Coincident, GlassOnTheFloor) {
   EXPECT_LT(on.error, 2e-3);
 }
 
-// The same brick twice, in scenes of their own, face to face: as one of double height.
+// The same brick twice, in separate scenes, face to face: like one brick of double height.
 TEST(Coincident, OneBrickInTwoPlaces) {
   const double r = 0.04, t = std::exp(-1.0);  // with all reflections between the faces
   const std::string made_of = "shader: Dielectric { ior: 1.5 }, interior: HomogeneousVolume { absorption: 1 }";
@@ -111,7 +111,8 @@ TEST(Coincident, OneBrickInTwoPlaces) {
   }
 }
 
-// A pane is no body, and lets shadow rays through: of a slab of index 1.5 and R = 0.0459 at this angle, 1 - 2 R / (1 + R).
+// A thin pane encloses no body and lets shadow rays through: for a slab of index 1.5 and R = 0.0459 at this angle, 1 - 2 R / (1
+// + R).
 TEST(NullSurfaces, APaneBeforeALamp) {
   const auto render = [&](const std::string& pane) {
     return measure(
@@ -128,7 +129,7 @@ TEST(NullSurfaces, APaneBeforeALamp) {
   EXPECT_NEAR(behind / bare, 0.912, 0.01);
 }
 
-// Glass of which the back absorbs reflects, and lets nothing in: 4 % at normal incidence.
+// Glass whose back absorbs reflects, and transmits nothing: 4 % at normal incidence.
 TEST(OneSided, GlassLetsNothingThrough) {
   for (const char* renderer :
        {"PathTracer", "BidirectionalPathTracer", "WhittedRenderer", "DistributionRenderer", "DirectRenderer"})

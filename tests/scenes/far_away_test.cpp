@@ -1,5 +1,5 @@
-// Far from the origin, and at any scale, a picture is what it is at the origin: rendering counts from a point near to what is
-// seen (docs/decisions/020-rendering-space.md). What is closed is dark inside, whoever looks for light.
+// Far from the origin, and at any scale, a picture is the same as at the origin: rendering uses a space relative to a point
+// near the camera (docs/decisions/020-rendering-space.md). Closed objects are dark inside, with every renderer.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 const char* const structures[] = {"EmbreeScene", "BvhScene", "OctreeScene", "GridScene", "BruteForceScene"};
 
-/// A place of the world and how large things are there.
+/// A place in the world, and the scale of the objects there.
 struct Where {
   double x, y, z, scale = 1;
   std::string at(double dx, double dy, double dz) const {
@@ -26,7 +26,7 @@ struct Where {
   std::string size(double of) const { return fmt::format("{:.17g}", scale * of); }
 };
 
-/// So far off in a direction that no axis is along.
+/// A place at this distance in a direction along no axis.
 Where away(double distance, double scale = 1) { return {0.3713 * distance, 0.5571 * distance, -0.7428 * distance, scale}; }
 
 std::string job_at(const Where& w, const std::string& renderer, const std::string& structure, const std::string& objects,
@@ -46,7 +46,7 @@ double brightest(const Image& image) {
   return most;
 }
 
-/// How much of its light a picture has otherwise than another one.
+/// The sum of absolute differences of two pictures, relative to the light of the second.
 double difference(const Image& a, const Image& b) {
   double off = 0, all = 0;
   for (int y = 0; y < a.height; ++y)
@@ -61,7 +61,7 @@ double difference(const Image& a, const Image& b) {
 
 const std::string matte = "shader: Lambertian { color: 0.5 }";
 
-/// Closed bodies around the camera, their places written in the one way and in the other.
+/// Closed bodies around the camera, placed by their own members or by a transform.
 std::vector<std::pair<std::string, std::string>> rooms(const Where& w) {
   std::string corners;
   for (int z = -2; z <= 2; z += 4)
@@ -119,7 +119,7 @@ TEST(FarAway, ClosedRoomsAreDarkInAllStructures) {
   for (const Where& w : {away(100), away(1e7)})
     for (const auto& [name, room] : rooms(w))
       for (const std::string structure : structures) {
-        // One of a million connections slips through an edge of a curved mesh there, far off or not.
+        // In BruteForceScene one of a million connections slips through an edge of a curved mesh, near the origin too.
         if (structure == "BruteForceScene" && name == "cage") continue;
         expect_dark(w, with_samples("BidirectionalPathTracer", samples_asked(4)), structure, name, room);
       }
@@ -183,7 +183,7 @@ TEST(FarAway, PicturesAreThoseAtTheOriginForAllRenderers) {
 
 // ---- scenes in scenes -------------------------------------------------------------------------------------------------------
 
-// What is modelled far from its own origin and brought back, once and twice, and through two scenes.
+// Objects modelled far from their own origin and moved back, once and twice, and through two scenes.
 TEST(FarAway, NestedScenesBringBackWhatIsFarFromTheirOwnOrigin) {
   const std::string renderer = "PathTracer { samples: 32, max_depth: 6 }";
   const std::string lamp = "Sphere { centre: [0.4, 0.5, 1.4] m, radius: 0.3 m, emission: DiffuseEmission { radiance: 10 } }\n";
@@ -215,7 +215,7 @@ TEST(FarAway, NestedScenesBringBackWhatIsFarFromTheirOwnOrigin) {
             0.02);
 }
 
-// One object in two scenes counts from one point in both.
+// An object in two scenes is relative to the same point in both.
 TEST(FarAway, ScenesShareObjects) {
   const auto picture = [](double distance) {
     const Where w = away(distance);
@@ -267,7 +267,7 @@ TEST(FarAway, DescriptionsKeepTheirDoubles) {
       "TriangleMesh { positions: [[1e7, 0, 0], [10000000.001, 0, 0], [1e7, 0.001, 0]] m, triangles: [[0, 1, 2]] }\n"
       "Box { transform: keyframes(0 s, translate(10000000.7, 0, 0), 1 s, translate(10000001.9, 0, 0)) } ] } }";
   const Ref<Job> job = load_job_text(text, "far_away.etd");
-  prepare_tree(*job);  // which changes nothing of what was written
+  prepare_tree(*job);  // must not change the numbers as written
   const std::string written = write_description(*job, false, "");
   for (const char* number : {"10000000.123", "12345678.901234", "20000000.3", "10000000.001", "10000000.7", "10000001.9"})
     EXPECT_NE(written.find(number), std::string::npos) << number << " in\n" << written;
@@ -275,7 +275,7 @@ TEST(FarAway, DescriptionsKeepTheirDoubles) {
   EXPECT_EQ(write_description(*again, false, ""), written);
 }
 
-/// A pyramid of a millimetre as a file, and the same in a scene.
+/// A pyramid of a millimetre as a mesh file.
 std::string pyramid_file(const std::string& name, const std::string& type, const Where& w) {
   const std::string path = testing::TempDir() + name;
   const bool obj = name.ends_with("obj");
@@ -302,7 +302,7 @@ TEST(FarAway, FilesOfMeshesKeepTheirDoubles) {
   EXPECT_LT(difference(picture(away(1e7), pyramid_file("far.obj", "", away(1e7))), here), 0.01);
 }
 
-// Floats in a file cannot hold it there, and someone has to say so.
+// Floats in a file cannot represent the pyramid there, and a warning must say so.
 TEST(FarAway, SpoiltMeshesAreTold) {
   const Where w{1000, 0, 0};
   const std::string file = pyramid_file("spoilt.ply", "float", w);
@@ -315,7 +315,7 @@ TEST(FarAway, SpoiltMeshesAreTold) {
   EXPECT_NE(said.find("their shape is spoilt"), std::string::npos) << said;
 }
 
-// Objects of one scene are seen by two jobs, one after the other, each from its own place.
+// Two jobs render the same objects one after the other, each from its own place.
 TEST(FarAway, JobsShareObjects) {
   const Where a = away(1e6), b = away(1e6 + 3);
   const std::string renderer = "PathTracer { samples: 16, max_depth: 4 }";

@@ -1,4 +1,4 @@
-// What is closed is dark inside: no ray gets out of a closed object, at any scale and place.
+// Closed objects are dark inside: no ray leaves a closed object, at any scale and place.
 
 #include <tbb/parallel_for.h>
 
@@ -19,7 +19,7 @@ struct Place {
 };
 const Place places[] = {{1e-3f, {}}, {1, {}}, {1e5f, {}}, {1, {3000, -7000, 2000}}};
 
-// A cube of twelve large triangles; a cage of eight corners, subdivided: 1536 triangles; the same, bumpy.
+// A cube of twelve large triangles; a cage of eight corners, subdivided to 1536 triangles; the same with displacement.
 const std::string cage =
     "SubdivisionSurface { levels: 4, positions: [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], "
     "[1, 1, 1], [-1, 1, 1]] m, indices: [0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7] }";
@@ -29,7 +29,7 @@ const std::string solids[] = {
     "[2, 3, 7], [2, 7, 6], [3, 0, 4], [3, 4, 7]] }",
     cage, "DisplacedMesh { surface: " + cage + ", displacement: NoiseMap { size: 0.3 m }, scale: 0.1 m, levels: 1 }"};
 
-/// How many of the rays from within get out, of whose half are aimed at edges and corners of triangles.
+/// The numbers of rays from inside that escape; half of the rays are aimed at edges and corners of triangles.
 struct Leaks {
   long random = 0, aimed = 0;
 };
@@ -57,7 +57,7 @@ Leaks leaks(const Scene& scene, const SceneObject& solid, const Place& place, lo
   return {random_ones, aimed_ones};
 }
 
-// Ten million rays for each structure; LEAK_RAYS asks for more.
+// Ten million rays for each structure; the environment variable LEAK_RAYS sets another number.
 TEST(NoLeaks, OutOfClosedObjects) {
   const char* asked = std::getenv("LEAK_RAYS");
   const long rays = (asked ? std::atol(asked) : 10'000'000) / long(std::size(places) * std::size(solids));
@@ -68,7 +68,7 @@ TEST(NoLeaks, OutOfClosedObjects) {
       for (const std::string structure : {"EmbreeScene", "BvhScene", "OctreeScene", "GridScene", "BruteForceScene"}) {
         const bool slow = structure != "EmbreeScene" && structure != "BvhScene" && solid->triangles()->triangles.size() > 100;
         const Leaks n = leaks(*scene(structure, {solid}), *solid, place, slow ? rays / 20 : rays);
-        // Embree's own test of triangles lets a few of those through that are aimed at corners.
+        // Embree's own triangle test lets a few of the rays through that are aimed at corners.
         const long allowed = structure == "EmbreeScene" ? rays / 500 : 0;
         if (asked || n.random > 0 || n.aimed > allowed)
           std::printf("  %s, scale %g, offset %g, %ld rays: %s leaks %ld random, %ld aimed\n", solid->class_info().name.c_str(),

@@ -1,4 +1,4 @@
-// Hostile input: it ends, in bounded time and memory, and says what is wrong.
+// Hostile input: the program terminates in bounded time and memory and reports what is wrong.
 
 #include <bit>
 #include <chrono>
@@ -76,8 +76,8 @@ TEST(Robustness, GridsFromFilesHaveTheirShapeAndSayWhatIsWrongWithIt) {
 
 // ---- formulas ---------------------------------------------------------------------------------------------------------------
 
-// Bounds of a product say nothing of its factors being alike until ranges are as short as the waves, and the formula is 0
-// nowhere but on a small ball: a ray would take a million steps to know.
+// Bounds of a product do not take into account that its factors are equal, until intervals are as short as the waves; and the
+// formula is 0 only on a small ball: a ray would need a million steps.
 TEST(Robustness, FormulasThatTellNothingAreGivenUpWithAWarning) {
   const Ref<SceneObject> wild = ref_cast<SceneObject>(parse_component(
       "\nImplicitSurface {\n formula: \"min(x*x + y*y + z*z - 0.04, sin(1e6*x*y + z) * sin(1e6*x*y + z) + 1e-6)\","
@@ -101,7 +101,7 @@ TEST(Robustness, FormulasThatTellNothingAreGivenUpWithAWarning) {
 
 // ---- boundaries -----------------------------------------------------------------------------------------------------------
 
-/// A closed object that every ray meets at once, wherever it begins.
+/// A closed object that every ray hits at once, wherever it begins.
 class TestTrap final : public SceneObject {
  public:
   static void describe(Description<TestTrap>& d) { d.summary("Holds rays in place."); }
@@ -129,7 +129,7 @@ class TestTrap final : public SceneObject {
   bool closed() const override { return true; }
 };
 
-/// Only where it is asked for: whoever draws objects at random must not get one.
+/// Registered only where requested, so that tests that draw random objects do not get one.
 void register_trap() { static const Register<TestTrap> registered; }
 
 TEST(Robustness, PathsThatAreHeldInPlaceEnd) {
@@ -150,8 +150,8 @@ TEST(Robustness, PathsThatAreHeldInPlaceEnd) {
   }
 }
 
-// A solid asks its operands for one crossing after the other, and has its area from rays through it: neither may go on for
-// ever.
+// A solid intersects its operands for one crossing after the other, and estimates its area by rays through it: both must
+// terminate.
 TEST(Robustness, SolidsOfWhatHoldsRaysInPlaceComeToAnEnd) {
   register_trap();
   const Ref<SceneObject> solid =
@@ -165,7 +165,7 @@ TEST(Robustness, SolidsOfWhatHoldsRaysInPlaceComeToAnEnd) {
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 60);
 }
 
-// Fewer sheets in a row than the limit take nothing away.
+// Fewer consecutive null surfaces than the limit do not reduce the light.
 TEST(Robustness, ManySheetsInARowLetAllLightThrough) {
   std::string objects =
       "Rectangle { corner: [-9, -9, -1] m, edge_u: [18, 0, 0] m, edge_v: [0, 18, 0] m, emission: "
@@ -195,7 +195,7 @@ TEST(Robustness, TurnsThatGoTheShorterWayAreWarnedOf) {
   };
   EXPECT_EQ(said("0, rotate(0, \"z\"), 1, rotate(180, \"z\"), 2, rotate(360 deg, \"z\")"), "");
   EXPECT_EQ(said("0, rotate(-90, \"z\"), 1, rotate(170, \"x\")"), "");
-  EXPECT_EQ(said("0, translate(0, 0, 0), 1, rotate(270, \"z\")"), "");  // which says nothing of how it turned before
+  EXPECT_EQ(said("0, translate(0, 0, 0), 1, rotate(270, \"z\")"), "");  // a translation does not determine a previous rotation
   EXPECT_NE(said("0, rotate(0, \"z\"), 1, translate(1, 0, 0) * rotate(270 deg, [0, 0, 2])").find("2:"), std::string::npos);
   EXPECT_NE(said("0, rotate(0, \"z\"), 1, rotate(360, \"z\")").find("by 0"), std::string::npos);
   EXPECT_NE(said("0, rotate(100, \"y\"), 1, rotate(100, [0, -1, 0])").find("turn of -200"), std::string::npos);

@@ -1,4 +1,4 @@
-// The structures of scenes against each other: what rays meet, closed meshes that let no ray out, degenerate scenes.
+// The acceleration structures against each other: what rays hit, closed meshes without leaks, degenerate scenes.
 
 #include <unordered_map>
 
@@ -17,7 +17,7 @@ struct Mesh {
   std::vector<std::array<int, 3>> triangles;
 };
 
-/// An icosahedron, each triangle divided into 4^n, its vertices on the unit sphere.
+/// An icosahedron with each triangle divided into 4^n; its vertices lie on the unit sphere.
 Mesh icosphere(int n) {
   const float a = (1 + std::sqrt(5.0f)) / 2;
   Mesh m;
@@ -45,7 +45,7 @@ Mesh icosphere(int n) {
   return m;
 }
 
-/// The mesh moved and scaled, its vertices rounded to floats: neighbours still share them.
+/// The mesh scaled and moved, its vertices rounded to floats: neighbours still share them.
 Mesh placed(Mesh m, float scale, const Vector3& offset) {
   for (Point3& p : m.positions) p = Point3{} + (scale * (p - Point3{}) + offset);
   return m;
@@ -64,7 +64,7 @@ struct Place {
 };
 const Place places[] = {{1, {}}, {1e-3f, {}}, {1e5f, {}}, {1, {3000, -7000, 2000}}, {1e-3f, {1, 2, -3}}};
 
-/// A ray from a point to one where rounding decides: on a vertex or an edge.
+/// The direction from a point to a vertex or edge, where rounding decides.
 Vector3 towards_an_edge(Random& random, const Mesh& m, const Point3& from) {
   const auto& t = m.triangles[size_t(random.number() * float(m.triangles.size()))];
   const float along = random.number() < 0.3f ? 0 : random.number();
@@ -94,7 +94,7 @@ TEST(SceneStructures, NoRayLeavesAClosedMesh) {
 
 TEST(SceneStructures, RaysThatLeaveAConvexMeshDoNotMeetIt) {
   for (const Place& place : places) {
-    if (place.offset != Vector3{}) continue;  // rounding far away makes the mesh not convex
+    if (place.offset != Vector3{}) continue;  // rounding far away makes the mesh non-convex
     const Mesh m = placed(icosphere(3), place.scale, place.offset);
     const Ref<SceneObject> mesh = as_object(m);
     for (const char* structure : watertight_structures) {
@@ -113,7 +113,7 @@ TEST(SceneStructures, RaysThatLeaveAConvexMeshDoNotMeetIt) {
   }
 }
 
-/// Meshes, other objects, moving ones, and scenes in scenes, all sized by `scale`.
+/// Meshes, other objects, moving ones, and nested scenes, all with sizes in proportion to `scale`.
 std::vector<Ref<SceneObject>> mixture(Random& random, const std::string& structure, const Place& place, const Mesh& ball) {
   const Transform world = Transform::translate(place.offset) * Transform::scale({place.scale, place.scale, place.scale});
   const auto somewhere = [&](float low, float high) { return world * random.placement(3, low, high); };
@@ -166,8 +166,8 @@ TEST(SceneStructures, FindTheSameHits) {
         EXPECT_EQ(scenes[k]->any(r), hit2) << all_structures[k];
         const float t2 = hit2 ? found.distance : r.maximum;
         if (hit == hit2 && (!hit || std::abs(t - t2) <= 1e-5f * (t + furthest))) continue;
-        // Where the nearer one is on the edge of a triangle, rounding decides whether it is met: from 60 sizes away by a few
-        // thousandths of a triangle.
+        // If the nearer hit is at a triangle's edge, rounding decides whether the triangle is hit: from a distance of 60 sizes
+        // within a few thousandths of a triangle.
         const Hit& nearer = t < t2 ? expected : found;
         if (nearer.object->class_info().name == "TriangleMesh" &&
             std::min({nearer.u, nearer.v, 1 - nearer.u - nearer.v}) < 5e-3f)
@@ -186,7 +186,7 @@ TEST(SceneStructures, DegenerateScenes) {
     Hit hit;
     EXPECT_FALSE(scene(structure, {})->nearest(ray({0, 0, 5}, {0, 0, -1}), hit));
 
-    // Many in one place; then fewer, into the same scene.
+    // Many objects in one place; then fewer, in the same scene.
     std::vector<double> corners, indices;
     for (int i = 0; i < 5000; ++i) {
       corners.insert(corners.end(), {0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -204,7 +204,7 @@ TEST(SceneStructures, DegenerateScenes) {
     ASSERT_TRUE(crowd->nearest(ray({0.2f, 0.3f, -9}, {0, 0, 1}), hit));
     EXPECT_EQ(hit.object, same[1].get());
 
-    // One tiny part far from a huge one, and all in a plane.
+    // A tiny object far from a huge one; and all objects in one plane.
     const Ref<Scene> apart =
         scene(structure, {object("Sphere", {{"radius", 1e-3}}),
                           object("Rectangle", {}, Transform::translate({0, 0, -1e4f}) * Transform::scale({1e5f, 1e5f, 1}))});
@@ -222,8 +222,8 @@ TEST(SceneStructures, DegenerateScenes) {
   }
 }
 
-// Embree's assertions end the program for rays like these, which a camera 1e20 m away sends (tests/hostile, seed 1, number
-// 16980).
+// Embree's assertions end the program for rays like these, as a camera 1e20 m away generates them (tests/hostile, seed 1,
+// number 16980).
 TEST(SceneStructures, RaysBeyondWhatFloatsCanSquareMeetNothing) {
   for (const char* structure : all_structures) {
     SCOPED_TRACE(structure);
@@ -239,10 +239,10 @@ TEST(SceneStructures, RaysBeyondWhatFloatsCanSquareMeetNothing) {
   }
 }
 
-// Each surface once, however many cells it goes through.
+// Each surface is reported once, however many cells it crosses.
 TEST(SceneStructures, AllHitsOfAShortRay) {
   for (const char* structure : all_structures) {
-    if (structure == std::string("EmbreeScene")) continue;  // gathers hits only where there are interiors
+    if (structure == std::string("EmbreeScene")) continue;  // collects hits only where there are interiors
     std::vector<Ref<SceneObject>> objects;
     for (int i = 0; i < 3; ++i) objects.push_back(object("TriangleMesh", cube_settings()));
     objects.push_back(object("Disc", {{"radius", 20}}, Transform::translate({0, 0, 1})));
@@ -260,11 +260,11 @@ TEST(SceneStructures, AllHitsOfAShortRay) {
   }
 }
 
-// An object may stand in a scene and, in the same place, in others that this one holds: who has met one of them is told of the
-// others, whatever comes first.
+// An object may be in a scene and, at the same place, in other scenes nested in it: after a hit on one of these occurrences the
+// list also contains the others, whatever the order.
 TEST(SceneStructures, AllHitsOnOneObjectInSeveralScenes) {
   for (const char* structure : all_structures) {
-    if (structure == std::string("EmbreeScene")) continue;  // gathers hits only where there are interiors
+    if (structure == std::string("EmbreeScene")) continue;  // collects hits only where there are interiors
     const Ref<SceneObject> ball = object("Sphere", {});
     const Ref<SceneObject> nested = scene(structure, {ball});
     const Ref<SceneObject> instance = ref_cast<SceneObject>(Registry::instance().create("Instance"));
@@ -295,7 +295,7 @@ TEST(SceneStructures, AllHitsOnOneObjectInSeveralScenes) {
   }
 }
 
-/// z = 0, everywhere.
+/// The unbounded plane z = 0.
 class TestFloor final : public SceneObject {
  public:
   Bounds3 bounds() const override { return {{-endless, -endless, -endless}, {endless, endless, endless}}; }

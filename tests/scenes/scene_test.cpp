@@ -1,4 +1,4 @@
-// Scenes: all structures find the same, nesting, luminaires, what is refused.
+// Scenes: all structures find the same hits; nesting, luminaires, errors.
 
 #include "support/geometry_support.h"
 
@@ -34,7 +34,7 @@ Ref<SceneObject> soup(Random& random, int triangles, const AnimatedTransform& pl
   return object("TriangleMesh", {{"positions", corners}, {"triangles", indices}}, place);
 }
 
-/// Some of every kind of object, still, stretched and moving, without the nested scenes.
+/// Some objects of every class, still, stretched and moving, without the nested scenes.
 std::vector<Ref<SceneObject>> mixture(Random& random) {
   std::vector<Ref<SceneObject>> list;
   const auto place = [&] { return random.placement(4, 0.3f, 1.2f); };
@@ -94,7 +94,7 @@ TEST(Scene, StructuresAgree) {
     Ref<Scene> careful = ref_cast<Scene>(Registry::instance().create("EmbreeScene"));
     careful->objects = others[0]->objects;
     set(*careful, "quality", Value(std::string("high")));
-    careful->prepare();  // what is in it was prepared before
+    careful->prepare();  // its contents were prepared before
     others.push_back(careful);
     int hits = 0, nested = 0;
     std::vector<int> differ(others.size());
@@ -123,13 +123,13 @@ TEST(Scene, StructuresAgree) {
     }
     EXPECT_GT(hits, 3000);
     EXPECT_GT(nested, 300);
-    // Rays through edges: rounding decides, differently in each structure.
+    // For rays through edges rounding decides, differently in each structure.
     for (int d : differ) EXPECT_LE(d, 4) << "seed " << seed;
   }
 }
 
 TEST(Scene, NearestIsNearest) {
-  // Against every object asked on its own.
+  // Against the intersection of every object on its own.
   Random random(21);
   const std::vector<Ref<SceneObject>> objects = mixture(random);
   const Ref<Scene> s = scene("BruteForceScene", objects);
@@ -194,7 +194,7 @@ TEST(Scene, LuminairesAndInteriors) {
   };
   const Ref<SceneObject> lamp = lit(object("Sphere")), sky = lit(object("Environment")), inner_lamp = lit(object("Disc")),
                          wall = object("Rectangle");
-  // Their emission is not registered: they are prepared one by one.
+  // Their emission class is not registered, so they are prepared one by one.
   const auto prepared = [](std::vector<Ref<SceneObject>> objects) {
     Ref<Scene> s = ref_cast<Scene>(Registry::instance().create("BruteForceScene"));
     s->objects = std::move(objects);
@@ -220,12 +220,12 @@ TEST(Scene, LuminairesAndInteriors) {
   inner->prepare();
   outer->prepare();
   EXPECT_TRUE(outer->has_interiors());
-  EXPECT_EQ(prepared({inner, inner_lamp})->luminaires().size(), 2u);  // in both places
+  EXPECT_EQ(prepared({inner, inner_lamp})->luminaires().size(), 2u);  // once in each place
   EXPECT_THROW(prepared({prepared({sky})}), Error);
 }
 
-// A hidden ball, and a hidden cube of triangles in a scene that stands twice, before a wall: for rays of the camera only the
-// wall is there, for all others everything, whichever structure finds it.
+// A hidden ball, and a hidden cube of triangles in a scene that occurs twice, in front of a wall: camera rays hit only the
+// wall, all other rays hit everything, with every structure.
 TEST(Scene, RaysOfTheCameraPassByWhatItDoesNotSee) {
   for (const char* structure : {"BruteForceScene", "BvhScene", "EmbreeScene", "GridScene", "OctreeScene"}) {
     const Ref<SceneObject> ball = object("Sphere"), cube = object("TriangleMesh", cube_settings()),
@@ -255,7 +255,7 @@ TEST(Scene, RaysOfTheCameraPassByWhatItDoesNotSee) {
       HitList seen;
       all->all(r, seen);
       for (int i = 0; i < seen.size; ++i) EXPECT_EQ(seen.hits[i].object, wall.get());
-      r.maximum = 3;  // short of the wall
+      r.maximum = 3;  // does not reach the wall
       EXPECT_FALSE(all->any(r)) << structure;
       r.of_camera = false;
       EXPECT_TRUE(all->any(r)) << structure;
@@ -277,7 +277,7 @@ TEST(Scene, WhatCannotBeHiddenFromTheCameraIsRefused) {
   refused(glass, glass);
   const Ref<SceneObject> surroundings = object("Surroundings");
   refused(surroundings, surroundings);
-  // What the shader of an instance makes enterable.
+  // An object that becomes a dielectric body by the shader of its instance.
   const Ref<SceneObject> ball = object("Sphere");
   const Ref<Instance> instance = ref_cast<Instance>(Registry::instance().create("Instance"));
   instance->scene = ref_cast<Scene>(nested);

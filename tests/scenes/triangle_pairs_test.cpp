@@ -1,4 +1,4 @@
-// Triangles that BruteForceScene tests two at a time, against each of them tested alone in double.
+// Triangles that BruteForceScene tests two at a time, against each triangle tested alone in double precision.
 
 #include "support/geometry_support.h"
 
@@ -21,8 +21,8 @@ double dot(const Double3& a, const Double3& b) { return a.x * b.x + a.y * b.y + 
 
 struct Expected {
   double t = 0, u = 0, v = 0;
-  double cosine = 0;  ///< of ray and normal
-  double margin = 0;  ///< how far inside (or, negative, outside) the ray passes, as a weight
+  double cosine = 0;  ///< between ray and normal
+  double margin = 0;  ///< how far inside (negative: outside) the ray passes, as a barycentric weight
 };
 
 Expected meet(const Ray& ray, const std::array<Point3, 3>& p) {
@@ -53,9 +53,9 @@ std::array<Point3, 4> corners(Shape shape, Random& random) {
 
 class Pairs : public testing::TestWithParam<Shape> {};
 
-// Whatever the order in which triangles and their corners are given, the nearest triangle is found, with the weights of its own
-// corners. In a convex quadrilateral with its corners on a grid of eighths the pair is exactly plane and is tested as one; the
-// others, and those turned at random, as they come. The other structures find the same.
+// In whatever order triangles and their corners are given, the nearest triangle is found, with the weights of its own corners.
+// A convex quadrilateral with corners on a grid of eighths is exactly planar and is tested as one pair; other pairs, and
+// randomly oriented ones, are tested with their rounded corners. The other structures find the same hits.
 TEST_P(Pairs, AreMetAsTheirTrianglesAre) {
   Random random(11);
   for (int trial = 0; trial < 400; ++trial) {
@@ -68,7 +68,7 @@ TEST_P(Pairs, AreMetAsTheirTrianglesAre) {
         if (GetParam() != Shape::bent) p[axis] = 0.5f;
       }
     }
-    // Each triangle begins at any corner, in either direction, and either comes first.
+    // Each triangle begins with a random corner and has a random orientation; either triangle comes first.
     std::vector<std::array<Point3, 3>> triangles = {{quad[0], quad[1], quad[2]}, {quad[0], quad[2], quad[3]}};
     for (auto& t : triangles) {
       std::rotate(t.begin(), t.begin() + int(3 * random.number()), t.end());
@@ -107,7 +107,7 @@ TEST_P(Pairs, AreMetAsTheirTrianglesAre) {
           ++met;
           if (nearest < 0 || e[k].t < e[nearest].t) nearest = k;
         }
-      if (met == 2 && std::abs(e[0].t - e[1].t) < 1e-4) continue;  // folded onto each other: either will do
+      if (met == 2 && std::abs(e[0].t - e[1].t) < 1e-4) continue;  // folded onto each other: either one may be found
 
       Hit hit;
       ASSERT_EQ(scene->nearest(ray, hit), nearest >= 0) << "trial " << trial << " " << structure;
@@ -129,7 +129,7 @@ TEST_P(Pairs, AreMetAsTheirTrianglesAre) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Pairs, testing::Values(Shape::convex, Shape::concave, Shape::bent, Shape::folded));
 
-// On the edge that two triangles of a pair share, and along it from all sides, a ray meets one of them and only one.
+// On the edge that the two triangles of a pair share, from all sides, a ray hits one of them and only one.
 TEST(PairsOfTriangles, HaveNothingBetweenThem) {
   Random random(12);
   const Ref<Scene> scene = ref_cast<Scene>(Registry::instance().create("BruteForceScene"));

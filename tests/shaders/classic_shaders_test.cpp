@@ -1,4 +1,4 @@
-// The classic reflection models: values of the papers' formulas, energy, sampling against density, reciprocity.
+// The classic reflection models: values of the papers' formulas, energy, samples against their pdf, reciprocity.
 
 #include "components/shaders/tangent_frame.h"
 #include "etendue/object_map.h"
@@ -16,7 +16,7 @@ Vector3 direction(double angle, double azimuth) {
 }
 Vector3 mirrored(const Vector3& v) { return {v.x, v.y, -v.z}; }
 
-/// On a square whose u is x and whose normal is z, so that directions are local ones.
+/// A point of a square whose u is x and whose normal is z, so that world directions equal local ones.
 SurfacePoint flat_point() {
   static test::TestSquare* const square = [] {
     auto* made = new test::TestSquare;
@@ -37,7 +37,7 @@ class Bound {
   double value(const Vector3& out, const Vector3& in, Lobes which = all_lobes) const {
     return double(scatter_->evaluate(out, in, Transport::radiance, which)[0]) / std::max(double(scatter_->cosine(in)), 1e-30);
   }
-  /// The mean weight of stratified samples: what leaves towards `out` under light of radiance 1 from everywhere.
+  /// The mean weight of stratified samples: the radiance towards `out` in a uniform environment of radiance 1.
   double albedo(const Vector3& out, Lobes which = all_lobes, int steps = 48) const {
     double sum = 0;
     test::Random random(1);
@@ -247,7 +247,7 @@ TEST(OrenNayar, WhiteLosesNothing) {
       for (const double cell : test::integrate_cells(
                scatter->frame(), 40, 40, [&](const Vector3& in) { return scatter.value(out, in) * scatter->cosine(in); }))
         albedo += cell;
-      EXPECT_NEAR(albedo, 1, 3e-4) << roughness << " at " << angle;  // the kinks of f cost the quadrature 1e-4
+      EXPECT_NEAR(albedo, 1, 3e-4) << roughness << " at " << angle;  // the kinks of f make the quadrature wrong by 1e-4
       EXPECT_NEAR(scatter->albedo(out)[0], 1, 1e-6f);
     }
   }
@@ -292,7 +292,7 @@ TEST(SchlickShader, GoesFromMirrorToMatt) {
 }
 
 TEST(LafortuneShader, ScalesDownWhatWouldCreateEnergy) {
-  // cx = cy = -1, cz = 1, n = 0 is twice pi times too much for a lobe: f = 1 becomes 1 / pi.
+  // cx = cy = -1, cz = 1, n = 0 has the albedo 2 pi, twice pi times too much: f = 1 becomes 1 / pi.
   const auto flat = [](double c, double n) {
     return create<Shader>(
         "LafortuneShader",
@@ -300,7 +300,7 @@ TEST(LafortuneShader, ScalesDownWhatWouldCreateEnergy) {
   };
   const Vector3 up{0, 0, 1};
   EXPECT_NEAR(Bound(flat(1, 0)).value(up, direction(30, 0)), 1 / M_PI, 1e-4);
-  // Phong's lobe has the albedo 2 pi c^n / (n + 2) at normal incidence; below 1 it is left alone.
+  // Phong's lobe has the albedo 2 pi c^n / (n + 2) at normal incidence; if that is below 1, the lobe is unchanged.
   EXPECT_NEAR(Bound(flat(1, 20))->albedo(up)[0], 2 * M_PI / 22, 1e-4);
   EXPECT_NEAR(Bound(flat(1.1, 20)).value(up, up), 22 / (2 * M_PI), 1e-3);  // 1.1^20 2 pi / 22 = 1.92
   EXPECT_THROW(create<Shader>("LafortuneShader", {{"exponents", std::vector<double>{1, 2}}}), Error);

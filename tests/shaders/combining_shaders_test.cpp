@@ -21,7 +21,7 @@ Vector3 at_angle(const Frame& frame, double angle, double azimuth = 0.7) {
   return frame.to_world({float(std::sin(t) * std::cos(azimuth)), float(std::sin(t) * std::sin(azimuth)), float(std::cos(t))});
 }
 
-/// A grey image of 16 bits, of which a map or shader is made.
+/// A grey image of 16 bits, used for a map or a shader.
 std::string image_file(const std::string& name, int width, int height, int channels,
                        const std::function<double(int x, int y, int c)>& value) {
   const std::string path = testing::TempDir() + name;
@@ -36,7 +36,7 @@ std::string image_file(const std::string& name, int width, int height, int chann
   return path;
 }
 
-/// A square metre seen from the front, whose surface coordinates are x and y.
+/// A point of a square metre seen from the front, whose surface coordinates are x and y.
 SurfacePoint on_square(float u = 0.4f, float v = 0.6f) {
   SurfacePoint p = test::surface_point({0, 0, 1});
   p.position = p.object_position = {u, v, 0};
@@ -46,7 +46,7 @@ SurfacePoint on_square(float u = 0.4f, float v = 0.6f) {
   return p;
 }
 
-/// A Lambertian surface with a slope of 0.5 along u.
+/// Tilts a shader by a bump map with a slope of 0.5 along u.
 Ref<Shader> bumped(const Ref<Shader>& below) {
   const auto ramp = create<ObjectMap>(
       "ImageMap",
@@ -117,7 +117,7 @@ TEST(MixShader, KeepsTheAdjointOfPartsWithOtherNormals) {
     const Spectrum camera = scatter.evaluate(b, a) / std::abs(dot(p.normal, a));
     EXPECT_NEAR(light[0], camera[0], 1e-3f * camera[0] + 1e-9f);
     seen += !light.black();
-    // The weight of a sample is f |cos| / density for both.
+    // For both transport modes the weight of a sample is f |cos| / pdf.
     for (const Transport t : {Transport::radiance, Transport::importance})
       if (const auto s = scatter.sample(a, to_unit_float(std::uint32_t(i) << 23), random.pair(), t)) {
         const ScatterValue v = scatter.value_and_pdf(a, s->direction, t);
@@ -140,7 +140,7 @@ TEST(MaskShader, LetsTheRestPass) {
   EXPECT_NEAR(both.sample(out, 0, {}, Transport::radiance, null_scattering)->weight[0], 0.85f, 1e-6f);
   EXPECT_NEAR(scatter.evaluate(out, in)[0], 0.15f * inverse_pi * scatter.cosine(in), 1e-6f);
   EXPECT_EQ(scatter.lobes(), null_scattering | diffuse_reflection);
-  // Of all lobes: 70 % straight on, 15 % reflected. Both weights are constant, so the means are exact to counting.
+  // With all lobes: 70 % null scattering, 15 % reflected. Both weights are constant, so the means are exact up to counting.
   test::Random random(2);
   double straight = 0, reflected = 0;
   constexpr int count = 20000;
@@ -165,13 +165,13 @@ TEST(BumpShader, TiltsByTheSlope) {
     SurfacePoint p = on_square();
     p.footprint = footprint;
     EXPECT_LT(length(Vector3(shader->bind(p, test::wavelengths(), arena)->frame().n) - Vector3(expected)), 2e-3f);
-    // The other way round, along a u that runs backwards and is stretched: the same hill.
+    // With u reversed and stretched: the same hill.
     p.dpdu = {-2, 0, 0};
     EXPECT_LT(
         length(Vector3(shader->bind(p, test::wavelengths(), arena)->frame().n) - Vector3(normalize(Normal3(0.25f, 0, 1)))),
         2e-3f);
   }
-  // Without surface coordinates there is nothing to go by.
+  // Without surface coordinates the normal is unchanged.
   EXPECT_EQ(shader->bind(test::surface_point({0, 0, 1}), test::wavelengths(), arena)->frame().n, Normal3(0, 0, 1));
 }
 
@@ -199,7 +199,7 @@ TEST(NormalMapShader, ReadsVectors) {
 }
 
 TEST(NormalMapShader, TakesAMapThatHoldsThem) {
-  // Two texels beside each other along u: x = 0.5 and -0.5. As a file they are repeated 4 times; as a map, coordinates are.
+  // Two adjacent texels along u: x = 0.5 and -0.5. As a file they are repeated 4 times; as a map, its coordinates are.
   const std::string file = image_file("normals2.ppm", 2, 1, 3, [](int x, int, int c) {
     return c == 0 ? (x == 0 ? 0.75 : 0.25) : c == 1 ? 0.5 : 1;
   });
@@ -222,7 +222,7 @@ TEST(NormalMapShader, TakesAMapThatHoldsThem) {
       tilted = tilted || std::abs(b.x) > 0.3f;
     }
   EXPECT_TRUE(tilted);
-  // Who has no such numbers is refused, not taken for grey.
+  // Maps without such vectors are refused, instead of being taken for grey.
   EXPECT_THROW(create<Shader>("NormalMapShader", {{"shader", below}, {"map", create<ObjectMap>("CheckerMap")}}), Error);
   EXPECT_THROW(create<Shader>("NormalMapShader",
                               {{"shader", below},
@@ -250,8 +250,8 @@ TEST(ThinFilm, WithoutThicknessIsTheBareSurface) {
 }
 
 TEST(ThinFilm, QuarterWaveAndHalfWave) {
-  // A quarter of a wave thick: R = ((n0 n2 - n1^2) / (n0 n2 + n1^2))^2, Born & Wolf section 1.6.4, eq. 62; none for
-  // n1 = sqrt(n2). Half a wave: as if it were not there.
+  // A quarter of a wave thick: R = ((n0 n2 - n1^2) / (n0 n2 + n1^2))^2, Born & Wolf section 1.6.4, eq. 62; 0 for n1 = sqrt(n2).
+  // Half a wave thick: as without the film.
   for (const double n1 : {1.2247449, 1.38, 2.3}) {
     const Ref<Shader> quarter = create<Shader>("ThinFilm", {{"thickness", 500 / (4 * n1)}, {"film_ior", n1}});
     const Ref<Shader> half = create<Shader>("ThinFilm", {{"thickness", 500 / (2 * n1)}, {"film_ior", n1}});
@@ -271,10 +271,10 @@ TEST(ThinFilm, LosesNothingAndIsReciprocal) {
     if (sine >= 1) continue;
     EXPECT_NEAR(film_fractions(std::sqrt(1 - sine * sine), n2, n1, n0, d).reflected, there.reflected, 1e-3f);
   }
-  // Into a metal, what gets through is absorbed there; on the way there is no loss either.
+  // On a metal the transmitted light is absorbed by the metal; the film itself absorbs nothing.
   const FilmFractions metal = film_fractions(0.6f, 1, 1.4f, {0.8f, 3}, 0.3f);
   EXPECT_NEAR(metal.reflected + metal.transmitted, 1, 1e-5f);
-  // Light tunnels through a thin film beyond its critical angle, and hardly through a thick one.
+  // Beyond the critical angle light tunnels through a thin film, and hardly through a thick one.
   EXPECT_LT(film_fractions(0.6f, 1.5f, 1, 1.5f, 0.02f).reflected, 0.1f);
   EXPECT_GT(film_fractions(0.6f, 1.5f, 1, 1.5f, 2).reflected, 0.999f);
 }
@@ -298,14 +298,14 @@ TEST(DiffractionGrating, OrdersFollowTheGratingEquation) {
     EXPECT_EQ(sample->dispersive, std::round(order) != 0);
     EXPECT_NEAR(sample->direction.x, 0, 1e-6f);
     weight[size_t(std::lround(order) + 2)] += double(sample->weight[0]) / count;
-    // Reciprocal: back along it, the same order leads to where light came from.
+    // Reciprocity: from the sampled direction, one of the orders leads back to the original direction.
     bool found = false;
     for (int k = 0; k < 5; ++k)
       if (const auto back = s.sample(sample->direction, 0.1f + 0.2f * float(k), {}))
         found |= length(back->direction - out) < 1e-5f;
     EXPECT_TRUE(found);
   }
-  // in.y = -0.5 - 0.6 does not exist: its tenth is lost.
+  // in.y = -0.5 - 0.6 is no direction: its fraction of 0.1 is lost.
   const double expected[] = {0, 0.3, 0.2, 0.3, 0.1};
   for (size_t i = 0; i < 5; ++i) EXPECT_NEAR(weight[i], expected[i], 2e-3) << i;
   EXPECT_NEAR(s.albedo(out)[0], 0.9f, 1e-5f);

@@ -1,4 +1,4 @@
-// Dielectric: Fresnel's formulas, dispersion and media.
+// Dielectric: Fresnel's formulas, dispersion and surrounding media.
 
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
@@ -20,7 +20,7 @@ TEST(Dielectric, FresnelOfGlass) {
   EXPECT_NEAR(reflectance(scatter, 0), 0.040000, 1e-6);
   EXPECT_NEAR(reflectance(scatter, 45), 0.050240, 1e-6);
   EXPECT_NEAR(reflectance(scatter, 60), 0.089187, 1e-6);
-  // At Brewster's angle only rs is left: F = ((n^2 - 1) / (n^2 + 1))^2 / 2.
+  // At Brewster's angle only rs remains: F = ((n^2 - 1) / (n^2 + 1))^2 / 2.
   const double brewster = 56.309932;
   EXPECT_NEAR(reflectance(scatter, brewster), 0.5 * std::pow(1.25 / 3.25, 2), 1e-6);
   // From inside, total reflection begins at 41.810 degrees.
@@ -55,18 +55,18 @@ TEST(Dielectric, SamplesReflectAndRefract) {
     EXPECT_NEAR(through->pdf, 1 - f, 1e-6f);
     EXPECT_FLOAT_EQ(through->eta, eta);
     EXPECT_FALSE(through->dispersive);
-    // Snell: the tangential part of eta times the direction is continuous.
+    // Snell: the tangential component of index times direction is continuous.
     const Vector3 tangent_out = out - dot(n, out) * n, tangent_in = through->direction - dot(n, through->direction) * n;
     EXPECT_LT(length(tangent_out + eta * tangent_in), 1e-5f);
     EXPECT_LT(dot(n, out) * dot(n, through->direction), 0);
     EXPECT_NEAR(length(through->direction), 1, 1e-6f);
-    // Radiance is compressed by the square of the index, power is not.
+    // Radiance scales by the square of the index, power does not.
     EXPECT_NEAR(through->weight[0], 1 / (eta * eta), 1e-5f);
     EXPECT_NEAR(scatter.sample(out, f * 1.01f, {}, Transport::importance)->weight[0], 1, 1e-5f);
-    // Reflected and refracted parts together are everything.
+    // Reflection and refraction together have the albedo 1.
     EXPECT_NEAR(scatter.albedo(out, reflection_lobes)[0] + scatter.albedo(out, transmission_lobes)[0], 1, 1e-6f);
     EXPECT_EQ(scatter.albedo(out)[0], 1);
-    // One lobe alone has its fraction as weight.
+    // With a single lobe the weight is that lobe's fraction.
     EXPECT_NEAR(scatter.sample(out, 0.99f, {}, Transport::importance, specular_reflection)->weight[0], f, 1e-6f);
     EXPECT_NEAR(scatter.sample(out, 0, {}, Transport::importance, specular_transmission)->weight[0], 1 - f, 1e-6f);
   }
@@ -85,7 +85,8 @@ TEST(Dielectric, Disperses) {
   const Scatter& scatter = *shader->bind(p, w, arena);
   const double n_hero = 1.6 - 0.2 * (500.0 - 360) / 470;
   const double critical = std::asin(1 / n_hero) * 180 / M_PI;
-  // From inside, just below the hero's critical angle; shorter wavelengths have a higher index and are totally reflected.
+  // From inside, just below the hero's critical angle; shorter wavelengths have a higher index and undergo total internal
+  // reflection.
   const double angle = 180 - (critical - 0.05);
   const Vector3 out = at_angle(scatter.frame(), angle);
   const Spectrum reflected = scatter.albedo(out, reflection_lobes);
@@ -107,7 +108,7 @@ TEST(Dielectric, Disperses) {
   EXPECT_NEAR(through->eta, 1 / n_hero, 1e-5);
   EXPECT_TRUE(through->weight.finite());
   EXPECT_NEAR(through->weight[0], n_hero * n_hero, 1e-4);
-  // A path of one wavelength has nothing left to drop.
+  // A path with a single wavelength has no secondary wavelengths to drop.
   w.drop_secondary();
   EXPECT_FALSE(shader->bind(p, w, arena)->sample(out, one_minus_epsilon, {})->dispersive);
 }
@@ -116,7 +117,7 @@ TEST(Dielectric, TakesTheIndexOutsideFromTheMedia) {
   test::TestSquare glass, water;
   const Ref<Shader> glass_shader = create<Shader>("Dielectric", {{"ior", 1.5}}),
                     water_shader = create<Shader>("Dielectric", {{"ior", 1.33}});
-  glass.reference();  // on the stack: never to be deleted through a Ref
+  glass.reference();  // on the stack: must not be deleted through a Ref
   water.reference();
   glass.shader = glass_shader;
   water.shader = water_shader;
@@ -128,7 +129,7 @@ TEST(Dielectric, TakesTheIndexOutsideFromTheMedia) {
   Arena arena;
   const double normal = std::pow((1.5 - 1.33) / (1.5 + 1.33), 2);
   EXPECT_NEAR(reflectance(*glass_shader->bind(p, test::wavelengths(), arena), 0), normal, 1e-6);
-  // Seen from inside the glass, the stack holds the glass as well.
+  // Seen from inside the glass, the medium stack contains the glass as well.
   media.enter(glass);
   const Scatter& scatter = *glass_shader->bind(p, test::wavelengths(), arena);
   EXPECT_NEAR(reflectance(scatter, 180), normal, 1e-6);
@@ -168,7 +169,7 @@ TEST(Dielectric, TintsMultiplyEachPart) {
                     &tinted = *create<Shader>(name, {{"reflection_tint", half}, {"transmission_tint", most}})
                                    ->bind(test::surface_point(), w, arena);
       const Vector3 out = at_angle(plain.frame(), angle);
-      Spectrum means[2][2];  // plain and tinted, reflected and transmitted, of all that is drawn
+      Spectrum means[2][2];  // plain and tinted, reflected and transmitted, over all samples
       constexpr int n = 4000;
       for (int i = 0; i < n; ++i)
         for (const bool colour : {false, true})
@@ -183,7 +184,7 @@ TEST(Dielectric, TintsMultiplyEachPart) {
         }
       }
     }
-  // Rough, each direction's value is.
+  // For a rough boundary, the value of each pair of directions is multiplied.
   const Scatter &plain = *create<Shader>("Dielectric", {{"roughness", 0.4}})->bind(test::surface_point(), w, arena),
                 &tinted =
                     *create<Shader>("Dielectric", {{"roughness", 0.4}, {"reflection_tint", half}, {"transmission_tint", most}})

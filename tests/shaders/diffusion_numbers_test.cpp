@@ -1,4 +1,4 @@
-// Light in translucent bodies against the papers: the profile it leaves by, and what a boundary sends back.
+// Light in translucent bodies against the papers: the diffusion profile, and the internal reflectance of a boundary.
 
 #include <gtest/gtest.h>
 
@@ -21,19 +21,20 @@ TEST(DiffusionNumbers, ProfileOfThePaper) {
       const double expected = s * (std::exp(-s * r / l) + std::exp(-s * r / (3 * l))) / (8 * M_PI * l * r);
       EXPECT_NEAR(double(profile.by_area(float(r))), expected, 5e-4 * expected) << A << " " << r;
     }
-    // The paper's distribution function, 1 - e^-x / 4 - 3/4 e^(-x/3), is what radii are drawn by.
+    // Radii are sampled from the paper's cumulative distribution, 1 - e^-x / 4 - 3/4 e^(-x/3).
     for (const float u : {0.05f, 0.3f, 0.6f, 0.9f, 0.99f}) {
       const double x = double(profile.sample(u)) * s / l;
       const double cdf = 1 - std::exp(-x) / 4 - 0.75 * std::exp(-x / 3);
       const double narrow = 1 - std::exp(-x), wide = 1 - std::exp(-x / 3);
-      // One of both exponentials is inverted: a quarter of the numbers is the narrow one's.
+      // One of the two exponentials is inverted: the narrow one for a quarter of the random numbers.
       EXPECT_TRUE(std::abs(u < 0.25f ? narrow - u / 0.25 : wide - (u - 0.25) / 0.75) < 2e-3) << u << " " << cdf;
       EXPECT_NEAR(double(profile.within(profile.sample(u))), cdf, 5e-4);
     }
   }
 }
 
-// Under a boundary that sends back F, what is seen, A, is A0 (1 - F) / (1 - A0 F), and light makes 1 / (1 - A0 F) rounds.
+// Under a boundary with the internal reflectance F, the albedo A seen from outside is A0 (1 - F) / (1 - A0 F), and light makes
+// 1 / (1 - A0 F) rounds on average.
 TEST(DiffusionNumbers, RoundsBelowABoundary) {
   for (const double F : {0.3, 0.6})
     for (const double A0 : {0.3, 0.7, 0.9}) {
@@ -42,7 +43,8 @@ TEST(DiffusionNumbers, RoundsBelowABoundary) {
     }
 }
 
-// Light leaves a body by what its boundary lets out, normalised so that nothing is lost: (1 - F(c)) / (pi times its own mean).
+// Light leaves a body through its boundary's transmittance, normalised so that nothing is lost: (1 - F(c)) / (pi times its own
+// mean).
 TEST(DiffusionNumbers, ExitsAreNormalisedByTheirOwnMean) {
   for (const double eta : {1.3, 1.6}) {
     double mean = 0;

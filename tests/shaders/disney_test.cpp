@@ -1,4 +1,4 @@
-// DisneyPrincipled and DisneyThin, against the models they are to reproduce.
+// DisneyPrincipled and DisneyThin, against the models that they reproduce.
 
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
@@ -13,8 +13,8 @@ struct Row {
   double values[9];  // f |cos| [1/sr] for each pair of directions
 };
 
-/// Cosines of both directions, and how far [rad] the second is turned about the normal from the first, which lies 0.4 from the
-/// surface's u.
+/// The cosines of both directions, and the azimuth [rad] of the second one relative to the first, which has the azimuth 0.4
+/// from the surface's u.
 constexpr double directions[9][3] = {{0.9, 0.8, 3.14159265}, {0.5, 0.6, 3},   {0.2, 0.3, 1},
                                      {0.95, 0.4, 2},         {0.7, 0.7, 0.2}, {0.8, -0.7, 3.14159265},
                                      {0.3, -0.9, 2.5},       {-0.6, 0.8, 3},  {-0.7, -0.6, 3.1}};
@@ -36,14 +36,15 @@ void expect_rows(const char* name, const std::vector<Row>& rows) {
       const auto value = [&](double side) {
         return double(s.evaluate(direction(side * a, 0.4), direction(side * b, 0.4 + turn), Transport::importance)[0]);
       };
-      // Mitsuba's shows its back within `twosided` alone, and looks the same there; what is opaque does so here always.
+      // Mitsuba's model has a back only within `twosided`, where it looks the same; here an opaque surface always has both
+      // sides.
       const double expected = a < 0 && b < 0 && rows[r].values[i] == 0 ? value(-1) : rows[r].values[i];
       EXPECT_NEAR(value(1), expected, 1e-3 * expected) << name << " row " << r << " pair " << i;
     }
   }
 }
 
-// eval() of Mitsuba 3.9.1, scalar_rgb, carrying importance, with grey colours.
+// eval() of Mitsuba 3.9.1, scalar_rgb, in importance mode, with grey colours.
 TEST(DisneyPrincipled, IsThatOfMitsuba) {
   expect_rows(
       "DisneyPrincipled",
@@ -80,7 +81,7 @@ TEST(DisneyThin, IsThatOfMitsuba) {
               });
 }
 
-// A tint is the colour over its luminance: sheen alone, on black, has none, and of a colour one of luminance 1.
+// A tint is the colour over its luminance: sheen alone, on black, has no tint, and sheen on a colour has a tint of luminance 1.
 TEST(DisneyPrincipled, TintsHaveTheLuminanceOfGrey) {
   const Color red = rgb_color("srgb", 0.6, 0.2, 0.1);
   Arena arena;
@@ -89,8 +90,8 @@ TEST(DisneyPrincipled, TintsHaveTheLuminanceOfGrey) {
         "DisneyPrincipled", {{"base_color", red}, Setting{"spec_tint", tint}, {"roughness", 0.6}, {"metallic", 0.0}});
     return shader->bind(surface_point({0, 0, 1}), w, arena)->evaluate(direction(0.9999, 0), direction(0.999, M_PI));
   };
-  // The tinted part along the normal: (F0 D G / 4 cos) times the tint, whose mean luminance under daylight is 1; what is
-  // diffuse is the same in both.
+  // The tinted part along the normal: (F0 D G / 4 cos) times the tint, whose mean luminance under daylight is 1; the diffuse
+  // part is the same in both.
   double with = 0, without = 0;
   const Color daylight = illuminant_spectrum("D65");
   for (int lambda = 380; lambda <= 780; lambda += 5) {
@@ -120,7 +121,7 @@ double sent_away(const char* name, const std::vector<Setting>& settings, const V
   return sum;
 }
 
-// Everything bright at once sends away no more than arrives, from any side.
+// With all members at their brightest, no more light is reflected and transmitted than arrives, from any side.
 TEST(DisneyPrincipled, SendsAwayNoMoreThanArrives) {
   for (const char* name : {"DisneyPrincipled", "DisneyThin"})
     for (const double roughness : {0.05, 0.4, 1.0})
@@ -136,8 +137,8 @@ TEST(DisneyPrincipled, SendsAwayNoMoreThanArrives) {
       }
 }
 
-// As layers a white one, half of it glass, sends away all that arrives, from outside and from inside: of a Mitsuba scene in an
-// even light of 1 it is 1, where the added lobes return 0.74.
+// With energy: kept, whose lobes are layers, a white material, half of it glass, scatters all light that arrives, from outside
+// and inside: in a uniform environment of 1 it has the radiance 1, where Mitsuba's added lobes give 0.74.
 TEST(DisneyPrincipled, KeepsAllLightWhereThatIsAskedFor) {
   for (const double glass : {0.0, 0.5, 1.0})
     for (const double roughness : {0.1, 0.3, 0.8})
@@ -151,8 +152,8 @@ TEST(DisneyPrincipled, KeepsAllLightWhereThatIsAskedFor) {
       }
 }
 
-// Nor towards a lower index, where all is reflected beyond the critical angle, by the metal's share and the coat's too; nor
-// along grooves.
+// Nor is there more light towards a lower index, where beyond the critical angle everything is reflected, in addition to the
+// metal's and the coat's reflection; nor with anisotropic roughness.
 TEST(DisneyPrincipled, SendsAwayNoMoreThanArrivesTowardsLowerIndices) {
   for (const double ior : {0.25, 0.5, 0.78, 0.95})
     for (const double roughness : {0.1, 0.5, 1.0})
@@ -186,13 +187,13 @@ TEST(DisneyThin, SendsAwayNoMoreThanArrivesAlongGrooves) {
             << turn << " " << roughness << " " << cosine;
 }
 
-// Where reflection is not asked for there is none, beyond the critical angle neither.
+// Without reflection among the requested lobes there is none, not even beyond the critical angle.
 TEST(DisneyPrincipled, ReflectsOnlyWhereThatIsAskedFor) {
   Arena arena;
   const Scatter& s = *create<Shader>("DisneyPrincipled", {{"spec_trans", 0.8}, {"ior", 0.5}, {"roughness", 0.3}})
                           ->bind(surface_point({0, 0, 1}), wavelengths(), arena);
   Random random(3);
-  // The diffuse lobe has a density where a reflection would lead, which would let it pass.
+  // The diffuse lobe has a nonzero pdf in the direction of a reflection, which could let the reflection be accepted.
   constexpr Lobes which = diffuse_reflection | glossy_transmission;
   int refracted = 0;
   for (int i = 0; i < 2000; ++i)

@@ -1,5 +1,5 @@
-// Models of facets against their papers' formulas, computed here in double precision, with all members away from their
-// defaults: alphas that differ along and across a tangent that is rotated, both sides of the surface.
+// Microfacet models against their papers' formulas, computed here in double precision, with all members away from their
+// defaults: anisotropic alphas along a tangent that is rotated, both sides of the surface.
 
 #include <complex>
 
@@ -34,7 +34,7 @@ struct Facets {
   }
 };
 
-/// Of amplitudes, for any complex index: |r|^2 averaged over both polarisations.
+/// Fresnel's amplitudes for any complex index: |r|^2 averaged over both polarisations.
 double fresnel(double cosine, std::complex<double> n) {
   const std::complex<double> inside = std::sqrt(n * n - (1 - cosine * cosine));
   const double s = std::norm((cosine - inside) / (cosine + inside)),
@@ -67,7 +67,7 @@ TEST(ShaderFormulas, RoughConductor) {
       });
     }
 
-    // Light scattered more than once has a lobe of its own (Kulla & Conty 2017), whose colour is a series of the mean.
+    // Multiple scattering has a lobe of its own (Kulla & Conty 2017), whose colour is a series in the mean reflectance.
     const MultipleReflection more({ggx ? MicrofacetDistribution::ggx : MicrofacetDistribution::beckmann, 0.45f, 0.2f});
     expect_formula(
         "all", create<Shader>("Conductor", settings), 0.1,
@@ -124,7 +124,7 @@ TEST(ShaderFormulas, RoughDielectric) {
             expected = std::abs(om * im / (o.z * t.z)) * ni * ni * (1 - fresnel(std::abs(om), ni / no)) * facets.D(m) /
                        facets.hidden(o, t, apart_through) / pow2(no * om + ni * im);
         }
-        // That is what a beam's power does. Radiance grows by the square of the index on the side it leaves on.
+        // The formula is that of power (importance). Radiance scales by the square of the index on the side on which it leaves.
         const double tolerance = 1e-3 * expected + 2e-6;
         EXPECT_NEAR(double(importance[k]), expected, tolerance) << ggx << " " << i << " " << k;
         EXPECT_NEAR(double(radiance[k]), expected * no * no / (ni * ni), tolerance * 3) << ggx << " " << i << " " << k;
@@ -136,8 +136,8 @@ TEST(ShaderFormulas, RoughDielectric) {
   }
 }
 
-// Of light scattered more than once at an isotropic boundary: at each angle, whatever single scattering loses leaves, so that
-// both together reflect and let through all, and reciprocity holds between the sides.
+// Multiple scattering at an isotropic boundary: for each angle it adds what single scattering loses, so that both together
+// reflect and transmit everything, and are reciprocal between the sides.
 TEST(ShaderFormulas, RoughDielectricLosesNothing) {
   for (const double alpha : {0.3, 0.8}) {
     const Ref<Shader> shader = create<Shader>("Dielectric", {{"roughness", alpha}, {"ior", flat_spectrum(1.5f)}});
@@ -188,7 +188,7 @@ TEST(ShaderFormulas, Plastic) {
       }
 }
 
-/// The mean over half vectors of what a coat reflects, in the test's own quadrature.
+/// A rough coat's transmittance against one minus its reflectance, by the test's own quadrature over directions.
 TEST(ShaderFormulas, RoughCoatLetsThroughWhatItDoesNotReflect) {
   for (const double alpha : {0.2, 0.6}) {
     const Facets facets{true, alpha, alpha};

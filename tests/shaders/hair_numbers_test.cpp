@@ -1,4 +1,4 @@
-// Hair against the papers: what a fibre absorbs and how wide its lobes are, and the pigments of hair.
+// Hair against the papers: the absorption in a fibre, the widths of its lobes, and the pigments of hair.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace etendue {
 namespace {
 
-// What a fibre absorbs: rays followed through a cylinder of radius 1 in three dimensions, by Snell's law with vectors.
+// Absorption in a fibre: rays traced through a cylinder of radius 1 in three dimensions, by the vector form of Snell's law.
 TEST(HairNumbers, AttenuationIsThatOfRaysThroughACylinder) {
   constexpr float eta = 1.55f;
   const HairFibre fibre(0.3f, 0.3f, 0, eta);
@@ -20,12 +20,12 @@ TEST(HairNumbers, AttenuationIsThatOfRaysThroughACylinder) {
     for (const double h : {-0.8, 0.0, 0.35, 0.95}) {
       const float sigma = 0.4f;
       const auto s = fibre.section(float(std::sin(theta)), float(std::cos(theta)), float(h), Spectrum(sigma));
-      // The ray comes along d and meets the cylinder about x where the offset is h.
+      // The ray travels along d and hits the cylinder about x at the offset h.
       const double n[3] = {0, h, std::sqrt(1 - h * h)}, d[3] = {-std::sin(theta), 0, -std::cos(theta)};
       const double c = -(d[1] * n[1] + d[2] * n[2]), b = std::sqrt(1 - (1 - c * c) / double(eta * eta));
       double t[3];
       for (int i = 0; i < 3; ++i) t[i] = d[i] / double(eta) + (c / double(eta) - b) * n[i];
-      // Until it meets the cylinder again: |n + l t| = 1 across the axis.
+      // Until the ray hits the cylinder again: |n + l t| = 1 perpendicular to the axis.
       const double a = t[1] * t[1] + t[2] * t[2], length = -2 * (n[1] * t[1] + n[2] * t[2]) / a;
       const double T = std::exp(-double(sigma) * length), F = double(fresnel_dielectric(float(c), eta));
       EXPECT_NEAR(double(s.attenuation[0][0]), F, 1e-5);
@@ -37,8 +37,8 @@ TEST(HairNumbers, AttenuationIsThatOfRaysThroughACylinder) {
     }
 }
 
-// Chiang et al. 2016, equations 7 and 8: variances of the longitudinal lobes, which M spreads sin(theta) by, and the scale of
-// the azimuthal ones. M: d'Eon et al. 2011, here without logarithms and with the integral form of I0.
+// Chiang et al. 2016, equations 7 and 8: the variances of the longitudinal lobes, whose M broadens sin(theta), and the scale of
+// the azimuthal lobes. M: d'Eon et al. 2011, here without logarithms and with the integral form of I0.
 TEST(HairNumbers, LobesHaveTheWidthsOfThePaper) {
   for (const double beta : {0.3, 0.6, 0.9})
     for (const double tilt : {0.0, 0.05}) {
@@ -57,7 +57,7 @@ TEST(HairNumbers, LobesHaveTheWidthsOfThePaper) {
                         M, 1e-3 * M + 1e-6)
                 << beta << " " << p << " " << out << " " << in;
           }
-      // N falls off as a logistic density of scale s; at its middle it is 1 / (4 s) over its mass within half a turn.
+      // N falls off like a logistic distribution of scale s; at its middle it is 1 / (4 s) over its mass within half a turn.
       const double s = std::sqrt(M_PI / 8) * (0.265 * beta + 1.194 * beta * beta + 5.372 * std::pow(beta, 22));
       const auto section = fibre.section(0, 1, 0, Spectrum());
       const double mass = std::tanh(M_PI / (2 * s));
@@ -80,9 +80,9 @@ TEST(HairNumbers, AbsorptionOfAColor) {
   }
 }
 
-// d'Eon et al. 2011 (as pbrt has it): eumelanin absorbs (0.419, 0.697, 1.37) and pheomelanin (0.187, 0.4, 1.05) of red, green
-// and blue. The spectra are power laws, which meet green exactly and the others within 3 %. Read back from the light that goes
-// straight through the middle of a wide flat lobe: A1 / A1 without pigment is exp(-2 sigma).
+// d'Eon et al. 2011 (as used in pbrt): eumelanin absorbs (0.419, 0.697, 1.37) and pheomelanin (0.187, 0.4, 1.05) of red, green
+// and blue. The spectra are power laws that match green exactly and the others within 3 %. The absorption is computed back from
+// the light transmitted straight through the middle of a fibre with narrow lobes: A1 / A1 without pigment is exp(-2 sigma).
 TEST(HairNumbers, Melanin) {
   const auto absorbed = [](double black, double red, float wavelength) {
     const auto through = [&](double e, double p) {

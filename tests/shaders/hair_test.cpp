@@ -1,4 +1,4 @@
-// HairShader: its lobes' normalization, energy, sampling, absorption, and values of another implementation.
+// HairShader: normalization, energy, sampling, absorption of its lobes, and values of another implementation.
 
 #include "components/shaders/hair/hair.h"
 #include "etendue/describe/color.h"
@@ -11,7 +11,7 @@ namespace {
 using test::create;
 using test::Setting;
 
-/// A point on a ribbon whose fibre runs along x, with a place v across it.
+/// A point on a ribbon whose fibre runs along x, at the position v across the fibre.
 SurfacePoint on_ribbon(float v) {
   SurfacePoint p = test::surface_point({0, 0, 1});
   p.dpdu = {1, 0, 0};
@@ -63,7 +63,7 @@ TEST(Hair, AzimuthalLobesAreDensities) {
 }
 
 TEST(Hair, WithoutAbsorptionNothingIsLost) {
-  // In the lobes' fractions exactly, and in the integral of f cos over the sphere.
+  // Both for the exact sum of the lobes' fractions and for the integral of f cos over the sphere.
   for (const Fibre& f : fibres)
     for (const float h : {-1.0f, -0.7f, 0.0f, 0.3f, 0.99f}) {
       const HairFibre fibre(f.along, f.around, f.tilt, f.eta);
@@ -161,7 +161,7 @@ TEST(Hair, ColorIsThatOfTheFit) {
 }
 
 TEST(Hair, MatchesAnotherImplementation) {
-  // f cos and density of Mitsuba 3.9.1's `hair`, which is the same model with h taken from the direction.
+  // f cos and pdf of Mitsuba 3.9.1's `hair`, which is the same model with h taken from the direction.
   struct Row {
     float along, around, tilt, eta, h, absorption;
     Vector3 out, in;

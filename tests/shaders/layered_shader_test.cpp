@@ -1,4 +1,4 @@
-// LayeredShader against closed forms, and its stochastic values against its samples.
+// LayeredShader against closed forms, and its stochastic evaluations against its samples.
 
 #include "components/shaders/fresnel.h"
 #include "etendue/core/warp.h"
@@ -27,7 +27,7 @@ Ref<VolumeShader> fog(double absorption, double scattering, double g) {
   return create<VolumeShader>("HomogeneousVolume", {{"absorption", absorption}, {"scattering", scattering}, {"anisotropy", g}});
 }
 
-/// Mean and standard error of something random.
+/// Mean and standard error of a random variable.
 class Mean {
  public:
   void add(double x) {
@@ -42,10 +42,10 @@ class Mean {
  private:
   double count_ = 0, mean_ = 0, squares_ = 0;
 };
-/// Five standard errors and rounding: wrong in one of a million tests.
+/// Five standard errors and rounding: exceeded by chance in one of a million tests.
 #define EXPECT_MEAN(m, expected) EXPECT_NEAR((m).mean(), expected, 5 * (m).error() + 2e-5)
 
-/// Asks a shader at points that differ only in the random numbers they stand for.
+/// Calls `ask` with a shader bound to points that differ only in the random numbers that depend on the position.
 template <class F>
 void at_many_points(const Shader& shader, int count, const F& ask, const Normal3& shading_normal = {0, 0, 1}) {
   SurfacePoint p = test::surface_point({0, 0, 1}, shading_normal);
@@ -78,18 +78,18 @@ TEST(LayeredShader, OverBlackOnlyTheCoatReflects) {
   Arena arena;
   const Scatter& s = *shader->bind(test::surface_point({0, 0, 1}), test::wavelengths(), arena);
   EXPECT_EQ(s.lobes(), specular_reflection);
-  for (const double angle : {0.0, 45.0, 80.0, 110.0}) {  // the last from behind, where there is a coat as well
+  for (const double angle : {0.0, 45.0, 80.0, 110.0}) {  // the last from behind, where the coat reflects as well
     const float f = fresnel_dielectric(float(std::abs(std::cos(angle * M_PI / 180))), 1.5f);
     EXPECT_NEAR(s.albedo(at_angle(frame, angle))[0], f, 1e-5f);
     const auto sample = s.sample(at_angle(frame, angle), 0.01f, {});
     ASSERT_TRUE(sample);
-    EXPECT_NEAR(sample->weight[0], f, 1e-5f);  // nothing else to choose
+    EXPECT_NEAR(sample->weight[0], f, 1e-5f);  // it is the only lobe
   }
 }
 
 TEST(LayeredShader, SmoothPlastic) {
-  // f = rho / pi (1 - F(out)) (1 - F(in)) / (n^2 (1 - rho 0.596346)): what gets in is diffuse ever after, and the mean
-  // internal reflectance of n = 1.5 says how much stays each time.
+  // f = rho / pi (1 - F(out)) (1 - F(in)) / (n^2 (1 - rho 0.596346)): light inside is always diffuse, and each time the mean
+  // internal reflectance for n = 1.5 is reflected back.
   for (const double rho : {0.3, 0.9}) {
     const Ref<Shader> shader = layered(glass(), diffuse(rho));
     for (const double angle : {10.0, 60.0, 85.0}) {
@@ -113,7 +113,7 @@ TEST(LayeredShader, SmoothPlastic) {
 }
 
 TEST(LayeredShader, SlabOfGlass) {
-  // All internal reflections: T = (1 - R) / (1 + R), the rest is reflected. Below the slab is air again.
+  // With all internal reflections: T = (1 - R) / (1 + R), the rest is reflected. Below the slab there is air again.
   const Ref<Shader> shader = layered(glass(1.5), glass(1));
   for (const double angle : {0.0, 60.0, 180.0}) {
     const double r = double(fresnel_dielectric(float(std::abs(std::cos(angle * M_PI / 180))), 1.5f)), t = (1 - r) / (1 + r);
@@ -139,7 +139,7 @@ TEST(LayeredShader, SlabOfGlass) {
 }
 
 TEST(LayeredShader, AbsorbsOnTheWay) {
-  // Straight through an absorbing sheet without faces: Beer's law, by a medium between two boundaries that do nothing.
+  // Straight through an absorbing sheet without interfaces: Beer's law, by a medium between two null boundaries.
   const Ref<Shader> none = create<Shader>("PassThrough");
   const Ref<Shader> shader = layered(none, none, {{"medium", fog(300, 0, 0)}, {"thickness", 0.002}});
   Arena arena;
@@ -154,8 +154,8 @@ TEST(LayeredShader, AbsorbsOnTheWay) {
 }
 
 TEST(LayeredShader, SlabsOfFog) {
-  // Scattering alike in all directions, between boundaries that do nothing, light along the normal: the fluxes and radiances
-  // of the slab of thickness 1, and of a half space (Chandrasekhar 1950, Radiative transfer; his H function for the latter).
+  // Isotropic scattering between two null boundaries, light along the normal: the fluxes and radiances of the slab of thickness
+  // 1, and of a half space (Chandrasekhar 1950, Radiative transfer; his H function for the latter).
   const Ref<Shader> none = create<Shader>("PassThrough");
   struct Slab {
     double absorption, scattering, reflected, transmitted, back, on;
@@ -182,8 +182,8 @@ TEST(LayeredShader, SlabsOfFog) {
   }
 }
 
-/// What albedo() may be off, as it is an estimate: of all that leaves, and of what is reflected (greatest of all directions,
-/// found with a hundred thousand samples each). 0: what it is made of is exact there.
+/// The error that albedo() may have, as it is an estimate: of all scattered light, and of the reflected light (the greatest
+/// over all directions, found with a hundred thousand samples each). 0: the albedo is exact.
 struct Estimate {
   double all, reflected;
 };
@@ -194,8 +194,8 @@ struct Case {
   bool lossless = false;
 };
 
-/// Every kind of path: connected through smooth and specular faces, from the face that light goes in by, after scattering,
-/// and by way of mirrors.
+/// Every kind of path: connected through smooth-lobe and delta interfaces, from the interface where light enters, after
+/// scattering, and by way of specular chains.
 std::vector<Case> cases() {
   const Ref<Shader> shiny = create<Shader>("PhongShader", {{"exponent", 30.0}, {"color", 0.1}, {"specular", 0.8}});
   const Ref<Shader> mirror = create<Shader>("PerfectSpecular", {{"color", 0.9}});
@@ -218,12 +218,12 @@ std::vector<Case> cases() {
           {"plastic under glass", layered(glass(1.2), plastic), {0.006, 0.006}}};
 }
 
-/// A smooth function of direction, different in all of them.
+/// A smooth function of direction, with different values in all directions.
 double probe(const Vector3& v) { return std::pow(0.5 + 0.5 * double(v.x), 3) + (v.z > 0 ? 0.4 * double(v.z) : 0.2); }
 
 TEST(LayeredShader, ValuesAreThoseOfSamples) {
-  // The integral of f |cos| times a function, by samples; by values in directions drawn evenly; and by both together, weighed
-  // by the densities they are given with: equal, whatever those are.
+  // The integral of f |cos| times a function: by samples; by evaluation in uniform directions; and by both, weighted with the
+  // pdfs that are reported with them. All are equal, whatever the pdfs.
   for (const Case& c : cases())
     for (const double angle : {35.0, 140.0})
       for (const Transport t : {Transport::radiance, Transport::importance}) {
@@ -261,7 +261,7 @@ TEST(LayeredShader, ImportanceIsTheAdjoint) {
       Mean difference;
       double total = 0;
       at_many_points(
-          *c.shader, 20000,  // importance has heavy tails where light runs along the surface
+          *c.shader, 20000,  // importance has heavy tails at grazing angles
           [&](const Scatter& s, test::Random&) {
             const double light = double(s.evaluate(a, b, Transport::importance)[0] / std::abs(b.z));
             const double camera = double(s.evaluate(b, a)[0] / std::abs(a.z));
@@ -298,10 +298,11 @@ TEST(LayeredShader, KeepsEnergyAndEstimatesIt) {
     }
 }
 
-// A mirror under tinted glass, all rounds between them: F + (1 - F)^2 a^2 m / (1 - F a^2 m), with a left of one passage.
+// A mirror under tinted glass, with all reflections between them: F + (1 - F)^2 a^2 m / (1 - F a^2 m), where a is the
+// transmittance of one passage.
 TEST(LayeredShader, AlbedoOfAMirrorUnderTintedGlass) {
   const Ref<Shader> mirror = create<Shader>("PerfectSpecular", {{"color", 0.9}});
-  const Ref<Shader> shader = layered(glass(), mirror, {{"medium", fog(300, 0, 0)}});  // 1 mm, by default
+  const Ref<Shader> shader = layered(glass(), mirror, {{"medium", fog(300, 0, 0)}});  // 1 mm by default
   Arena arena;
   const Scatter& s = *shader->bind(test::surface_point({0, 0, 1}), test::wavelengths(), arena);
   for (const double angle : {0.0, 45.0, 75.0}) {
@@ -312,9 +313,9 @@ TEST(LayeredShader, AlbedoOfAMirrorUnderTintedGlass) {
   }
 }
 
-// Much fog between two faces that do nothing: the two-stream model (Kubelka & Munk 1931) with K = 2 absorption and S = 3/4
-// scattering, R = sinh(b) / (a sinh(b) + a' cosh(b)), T = a' / (...), a = (K + S) / S, a' = sqrt(a^2 - 1), b = a' S; and what
-// is left of light that was not scattered, exp(-extinction).
+// Dense fog between two null boundaries: the two-stream model (Kubelka & Munk 1931) with K = 2 absorption and S = 3/4
+// scattering, R = sinh(b) / (a sinh(b) + a' cosh(b)), T = a' / (...), a = (K + S) / S, a' = sqrt(a^2 - 1), b = a' S; and the
+// unscattered light, exp(-extinction).
 TEST(LayeredShader, AlbedoOfFogIsThatOfTwoStreams) {
   const Ref<Shader> none = create<Shader>("PassThrough");
   for (const double absorption : {0.05, 1.0, 4.0})
@@ -333,7 +334,8 @@ TEST(LayeredShader, AlbedoOfFogIsThatOfTwoStreams) {
 }
 
 TEST(LayeredShader, DispersesEachWavelengthItsOwnWay) {
-  // Values hold for all wavelengths of a path, each refracted by its own index: the closed form for plastic, per wavelength.
+  // Evaluations hold for all wavelengths of a path, each refracted with its own index: the closed form for plastic, per
+  // wavelength.
   const Color index = table_spectrum({360, 830}, {1.8f, 1.3f});
   const Ref<Shader> shader = layered(create<Shader>("Dielectric", {{"ior", index}}), diffuse(0.5));
   const Vector3 out = at_angle(frame, 30), in = at_angle(frame, 55, 3);

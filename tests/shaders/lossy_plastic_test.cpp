@@ -1,4 +1,4 @@
-// LossyPlastic, against the model it is to reproduce.
+// LossyPlastic, against the model that it reproduces.
 
 #include "etendue/object_map.h"
 #include "etendue/shader.h"
@@ -13,7 +13,7 @@ TEST(LossyPlastic, IsThatOfMitsuba) {
     const char* distribution;
     double roughness;
     bool nonlinear;
-    double color, tint, cosine_out, cosine_in, turn;  // turn [rad] of one around the normal from the other
+    double color, tint, cosine_out, cosine_in, turn;  // turn [rad]: azimuth between the two directions
     double value;                                     // f |cos| [1/sr]
   };
   // eval() of roughplastic and, without roughness, of plastic (its diffuse part) of Mitsuba 3.9.1, scalar_rgb, with the default
@@ -74,13 +74,15 @@ TEST(LossyPlastic, IsThatOfMitsuba) {
     const Scatter& s = *shader->bind(surface_point(), wavelengths(), arena);
     const Vector3 out = at_angle(s.frame(), std::acos(row.cosine_out) * 180 / M_PI, 0),
                   in = at_angle(s.frame(), std::acos(row.cosine_in) * 180 / M_PI, row.turn);
-    // Of what a smooth coat throws back Mitsuba has a fit, of which the diffuse part here differs by 1.2e-3.
+    // For the internal diffuse reflectance of a smooth coat Mitsuba uses a fit, from which the diffuse part here differs by
+    // 1.2e-3.
     EXPECT_NEAR(double(s.evaluate(out, in)[0]), row.value, (row.roughness > 0 ? 1e-3 : 1.5e-3) * row.value)
         << row.distribution << " " << row.roughness << " at " << row.cosine_out << " " << row.cosine_in;
   }
 }
 
-// With a white body, under diffuse light: by 10^6 samples of Mitsuba 3.9.1 (standard error 1e-4); of a smooth coat all is left.
+// With a white body, under diffuse light: from 10^6 samples of Mitsuba 3.9.1 (standard error 1e-4); a smooth coat loses
+// nothing.
 TEST(LossyPlastic, LosesWhatMeetsMoreThanOneFacet) {
   struct Row {
     double roughness, albedo;

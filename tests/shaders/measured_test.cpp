@@ -1,4 +1,4 @@
-// Measured materials: MERL and RGL files, sound and hostile.
+// Measured materials: MERL and RGL files, valid and hostile.
 
 #include <cstring>
 #include <functional>
@@ -29,7 +29,7 @@ double ggx(const Vector3& a, const Vector3& b, double f0, double rough = 0.4) {
 
 // ---- files ----------------------------------------------------------------------------------------------------------
 
-/// A MERL file of a given number of cells; what lies below the horizon is marked as not measured.
+/// A MERL file with the given numbers of cells; directions below the horizon are marked as not measured.
 std::string merl_file(int halves, int differences, int azimuths) {
   const double scales[3] = {1.0 / 1500, 1.15 / 1500, 1.66 / 1500}, f0[3] = {0.9, 0.6, 0.3};
   std::string file;
@@ -76,7 +76,7 @@ std::string tensor_file(const std::vector<Field>& fields) {
   return file + body;
 }
 
-/// Numbers between 1 and 2 without order, a function of their place alone.
+/// Irregular numbers between 1 and 2 that depend only on their index.
 std::vector<float> pattern(int seed, size_t count) {
   std::vector<float> v;
   for (size_t i = 0; i < count; ++i) v.push_back(1 + float((i * 37 + size_t(seed)) % 11) / 10);
@@ -88,7 +88,7 @@ Tables pattern_tables(bool anisotropic) {
   const std::vector<float> phi = anisotropic ? std::vector<float>{-pi, -0.75f * pi, -0.5f * pi} : std::vector<float>{0};
   const std::uint64_t n = phi.size();
   std::vector<float> sigma = pattern(2, 9), spectra = pattern(5, n * 144);
-  if (!anisotropic)  // alike at all azimuths
+  if (!anisotropic)  // the same at all azimuths
     for (size_t i = 3; i < 9; ++i) sigma[i] = sigma[i - 3];
   for (float& s : spectra) s *= 0.25f;
   return {{"description", 1, {7}, "pattern"},
@@ -103,7 +103,7 @@ Tables pattern_tables(bool anisotropic) {
           floats("spectra", {n, 3, 3, 4, 4}, spectra)};
 }
 
-/// The same with half vectors as a wide distribution has them: without the peak at the pole that any other table makes.
+/// The same with the half vectors of a wide distribution: without the peak at the pole that any other table makes.
 Tables wide_tables(bool anisotropic) {
   Tables tables = pattern_tables(anisotropic);
   const std::uint64_t n = anisotropic ? 3 : 1;
@@ -132,7 +132,7 @@ class Measured : public testing::Test {
     return create<Shader>("MerlShader", {{"file", folder.write("material.binary", merl_file(45, 45, 60))}});
   }
 
-  /// What a file is refused for; empty when it is not.
+  /// The error with which a file is refused; "" if it is accepted.
   std::string refused(const std::string& shader, const std::string& bytes) {
     const std::string path = folder.write("hostile", bytes);
     try {
@@ -151,8 +151,8 @@ class Measured : public testing::Test {
 
 // ---- values ---------------------------------------------------------------------------------------------------------
 
-// f cos(in) at four wavelengths and the density, by the `measured` plugin of Mitsuba 3.9.1 from the same bytes. One direction
-// in ten is drawn with density cos / pi here.
+// f cos(in) at four wavelengths and the pdf, from the `measured` plugin of Mitsuba 3.9.1 with the same bytes. Here one
+// direction in ten is sampled with the pdf cos / pi.
 TEST_F(Measured, RglAgreesWithMitsuba) {
   const Vector3 pairs[4][2] = {{{0.3f, -0.2f, 0.8f}, {-0.5f, 0.4f, 0.7f}},
                                {{-0.6f, 0.5f, 0.5f}, {0.1f, 0.7f, 0.6f}},
@@ -186,10 +186,10 @@ TEST_F(Measured, RglAgreesWithMitsuba) {
   }
 }
 
-// The same of tables with a peak, at angles all around: f cos(in) at 450, 520, 600 and 700 nm and the density (0: not compared,
-// as it is lost in a singular point there).
+// The same for the tables of a wide distribution, at angles all around: f cos(in) at 450, 520, 600 and 700 nm and the pdf (0:
+// not compared, because in Mitsuba it is lost at a singularity).
 TEST_F(Measured, RglOfAWideDistributionAgreesWithMitsuba) {
-  // Degrees from the normal and around it, out and in.
+  // Angles [deg] from the normal and around it, out and in.
   const double pairs[6][4] = {{20, 10, 30, 120}, {50, 200, 15, -40}, {70, -80, 60, 95},
                               {5, 12, 75, 45},   {40, -170, 40, 10}, {60, 135, 65, -60}};
   const float expected[2][6][5] = {{{0.10491686f, 0.10020037f, 0.09481011f, 0.09604055f, 0.10723011f},
@@ -248,7 +248,7 @@ TEST_F(Measured, MerlReproducesItsModel) {
   test::Random random(2);
   double sum = 0, worst = 0;
   int count = 0;
-  // At the ends of the spectrum a smooth one of this colour goes beyond what its red and blue are.
+  // At the ends of the spectrum, the smooth spectrum of this colour exceeds the range between its red and its blue.
   for (int i = 0; i < 3000; ++i) {
     Vector3 a = random.direction(), b = random.direction();
     a.z = std::abs(a.z);
@@ -340,7 +340,7 @@ TEST_F(Measured, HostileRglFiles) {
   for (size_t size = 0; size < good.size(); size += size < 700 ? 13 : 499)
     EXPECT_NE(refused("RglShader", good.substr(0, size)), "") << size;
 
-  // Any byte of the header changed: refused or read, never worse.
+  // With any byte of the header changed the file is refused or read, without any other failure.
   test::Random random(3);
   for (int i = 0; i < 150; ++i) {
     std::string bad = good;
@@ -368,7 +368,7 @@ TEST_F(Measured, HostileRglFiles) {
   EXPECT_NE(broken(5, 0).find("'sigma'"), std::string::npos);
   EXPECT_NE(broken(3, -2).find("'theta_i'"), std::string::npos);
   EXPECT_NE(broken(8, 900).find("do not increase"), std::string::npos);
-  EXPECT_EQ(broken(9, -0.01f), "");  // noise
+  EXPECT_EQ(broken(9, -0.01f), "");  // noise is accepted
 }
 
 }  // namespace

@@ -35,8 +35,8 @@ std::string name_of(const Distribution& d) {
   return (d.kind == Distribution::ggx ? "ggx " : "beckmann ") + std::to_string(d.alpha_x) + " " + std::to_string(d.alpha_y);
 }
 
-/// The mean of g over facets of a distribution, by area: the integral of D(m) m.z g(m) over normals. In steps of the slope's
-/// length over alpha, tan(q pi / 2), and of its azimuth.
+/// The mean of g over the microfacets of a distribution, by area: the integral of D(m) m.z g(m) over normals. In steps of the
+/// slope's length over alpha, tan(q pi / 2), and of its azimuth.
 template <class G>
 double mean_over_facets(const Distribution& d, int steps, G&& g) {
   double sum = 0;
@@ -46,7 +46,7 @@ double mean_over_facets(const Distribution& d, int steps, G&& g) {
       const double x = double(d.alpha_x) * r * std::cos(phi), y = double(d.alpha_y) * r * std::sin(phi);
       const double z = 1 / std::sqrt(1 + x * x + y * y);
       const Vector3 m{float(x * z), float(y * z), float(z)};
-      // Slopes' area over normals' solid angle is 1 / z^3.
+      // The area of slopes per solid angle of normals is 1 / z^3.
       const double area =
           double(d.alpha_x * d.alpha_y) * r / square(float(std::cos(q))) * (M_PI / 2 / steps) * (2 * M_PI / steps);
       sum += area * z * z * z * double(d.D(m)) * z * g(m);
@@ -59,7 +59,8 @@ TEST(Microfacet, FacetsCoverTheSurfaceAndWhatIsSeenOfThem) {
     EXPECT_NEAR(mean_over_facets(d, 300, [](const Vector3&) { return 1.0; }), 1, 2e-4) << name_of(d);
     for (const double angle : {0.0, 30.0, 60.0, 80.0, 87.0}) {
       const Vector3 v = at_angle(angle);
-      // The visible area across v is that of the surface (Heitz 2014, eq. 14), and their density integrates to 1.
+      // The visible projected area equals that of the surface (Heitz 2014, eq. 14), and the pdf of visible normals integrates
+      // to 1.
       const double seen = mean_over_facets(
           d, 300, [&](const Vector3& m) { return double(d.G1(v, m) * std::max(dot(v, m), 0.0f) / (m.z * v.z)); });
       EXPECT_NEAR(seen, 1, 1e-3) << name_of(d) << " at " << angle;
@@ -97,7 +98,7 @@ TEST(Microfacet, BeckmannMasking) {
   }
 }
 
-// Rows 23 to 27 of the table of closed-form truths.
+// Rows 23 to 27 of the validation data's table of closed-form values (analytic.md).
 TEST(Microfacet, AlbedoOfSingleScatteringIsTheKnownOne) {
   const double alphas[] = {0.1, 0.25, 0.5, 1}, normal[] = {0.98830, 0.91581, 0.68785, 0.30685},
                mean[] = {0.97209, 0.88234, 0.70024, 0.40914};
@@ -115,7 +116,7 @@ TEST(Microfacet, AlbedoOfSingleScatteringIsTheKnownOne) {
   }
 }
 
-// Rows 28 to 31.
+// Rows 28 to 31 of the validation data's table of closed-form values.
 TEST(Fresnel, KnownValues) {
   EXPECT_NEAR(fresnel_dielectric(1, 1.5f), 0.040000, 1e-6);
   EXPECT_NEAR(fresnel_dielectric(std::cos(radians(45)), 1.5f), 0.050240, 1e-6);
@@ -128,11 +129,11 @@ TEST(Fresnel, KnownValues) {
   EXPECT_NEAR(mean_fresnel_dielectric(1 / 1.5f), 0.596346, 1e-6);
   EXPECT_NEAR(mean_fresnel_dielectric(1.00009f), mean_fresnel_dielectric(1.00011f), 1e-5);
   EXPECT_NEAR(fresnel_conductor(1, 0.789f, 6.15f), 0.923068, 1e-6);
-  // Without absorption a conductor is a dielectric; total reflection included.
+  // Without absorption a conductor reflects like a dielectric, with total internal reflection.
   for (const float eta : {1.5f, 0.5f})
     for (const float c : {0.02f, 0.3f, 0.8f, 1.0f})
       EXPECT_NEAR(fresnel_conductor(c, eta, 0), fresnel_dielectric(c, eta), 2e-6f) << eta << " " << c;
-  // The rule for the mean, against many steps.
+  // The quadrature rule for the mean, against many steps.
   for (const auto& [n, k] : {std::pair{0.2f, 3.0f}, {1.3f, 7.1f}, {3.1f, 3.3f}}) {
     double sum = 0;
     for (int i = 0; i < 5000; ++i) sum += double(fresnel_conductor((float(i) + 0.5f) / 5000, n, k)) * 2 * (i + 0.5) / 5e3 / 5e3;
@@ -179,8 +180,8 @@ TEST(Conductor, SmoothIsAMirrorOfTheMetalsColour) {
   EXPECT_THROW(create<Shader>("Conductor", {{"roughness", 1.5}}), Error);
 }
 
-// Copper as renderers of three channels have it (Bitterli's scenes): what it reflects has, under its white, the red, green and
-// blue that Fresnel's equations give for each.
+// Copper as three-channel renderers define it (Bitterli's scenes): the reflected light has, under its white, the red, green and
+// blue that Fresnel's equations give for each channel.
 TEST(Conductor, OfThreeChannelsReflectsTheirColourAtEachAngle) {
   const std::vector<double> n{0.200438, 0.924033, 1.10221}, k{3.91295, 2.45285, 2.14219};
   const Ref<Shader> shader = create<Shader>("Conductor", {{"index", "rgb"}, {"rgb_n", n}, {"rgb_k", k}, {"roughness", 0.0}});
@@ -198,7 +199,7 @@ TEST(Conductor, OfThreeChannelsReflectsTheirColourAtEachAngle) {
       sum = {sum.x + reflected * o.x, sum.y + reflected * o.y, sum.z + reflected * o.z};
     }
     for (size_t c = 0; c < 3; ++c) {
-      // Born & Wolf, by complex numbers and not as the shader has it.
+      // Born & Wolf, by complex numbers, unlike the shader's own form.
       const std::complex<double> m(n[c], k[c]), cosine = std::cos(angle * M_PI / 180),
                                                 inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (m * m));
       const double wanted = (std::norm((cosine - m * inside) / (cosine + m * inside)) +
@@ -212,7 +213,7 @@ TEST(Conductor, OfThreeChannelsReflectsTheirColourAtEachAngle) {
   EXPECT_THROW(create<Shader>("Conductor", {{"index", "rgb"}, {"rgb_k", std::vector<double>{1, -1, 1}}}), Error);
 }
 
-// What is tabulated by angles against the same found for each of them, which the test before holds to the equations.
+// The table over angles against the exact computation for each angle, which the previous test compares with the equations.
 TEST(Conductor, OfThreeChannelsIsTabulatedWithinItsBound) {
   test::Random random(6);
   const RgbSpace& space = rgb_space("srgb");
@@ -222,7 +223,7 @@ TEST(Conductor, OfThreeChannelsIsTabulatedWithinItsBound) {
                              std::pair{Vector3{0.05f, 3, 1}, Vector3{9, 0, 0.1f}}}) {
     const RgbReflectance table(space, n, k);
     for (int i = 0; i < 4000; ++i) {
-      const float u = random(), cosine = i % 2 ? u : u * u * u;  // more of them near grazing angles
+      const float u = random(), cosine = i % 2 ? u : u * u * u;  // half of them concentrated near grazing angles
       const Wavelengths w = test::wavelengths(380 + 400 * random());
       const Spectrum wanted = table.spectrum_of(fresnel_conductor(cosine, table.n(), table.k())).evaluate(w),
                      found = table.reflectance(cosine, w);
@@ -231,7 +232,7 @@ TEST(Conductor, OfThreeChannelsIsTabulatedWithinItsBound) {
     EXPECT_EQ(table.reflectance(1, test::wavelengths())[0],
               table.spectrum_of(fresnel_conductor(1, table.n(), table.k())).evaluate(test::wavelengths())[0]);
   }
-  EXPECT_LE(worst, 2 * RgbReflectance::tolerance);  // the bound is held in the middle of cells
+  EXPECT_LE(worst, 2 * RgbReflectance::tolerance);  // the tolerance holds at the middle of cells
 }
 
 TEST(Dielectric, RoughAndCompensatedLosesNothing) {
@@ -264,7 +265,7 @@ TEST(Dielectric, RoughIsReciprocalAndKeepsAllWavelengths) {
     through += dot(s.frame().n, a) * dot(s.frame().n, b) < 0 && !from_light.black();
   }
   EXPECT_GT(through, 100);
-  // Each wavelength on its own: the mean of weights is its albedo, and no weight exceeds 4 by much.
+  // Each wavelength for itself: no weight exceeds 4 by much.
   const Vector3 out = at_angle(s.frame(), 30);
   for (int i = 0; i < 2000; ++i) {
     const float choice = random();
@@ -273,8 +274,8 @@ TEST(Dielectric, RoughIsReciprocalAndKeepsAllWavelengths) {
       EXPECT_LT(sample->weight.maximum(), 4.5f);
     }
   }
-  // Their albedo, by quadrature over all directions: what is scattered more than once is known for the hero alone, and is off
-  // at the others by the difference of the indices times the few hundredths of light that are scattered so.
+  // The albedo of all wavelengths, by quadrature over all directions: multiple scattering is known for the hero alone, and at
+  // the other wavelengths it is off by the difference of the indices times the few hundredths of light that it scatters.
   Spectrum albedo;
   constexpr int steps = 300;
   for (int i = 0; i < steps; ++i)
@@ -286,7 +287,7 @@ TEST(Dielectric, RoughIsReciprocalAndKeepsAllWavelengths) {
   for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(albedo[k], 1, 0.006) << k;
 }
 
-// Row 32.
+// Row 32 of the validation data's table of closed-form values.
 TEST(ThinDielectric, AllReflectionsInside) {
   Arena arena;
   const Ref<Shader> shader = create<Shader>("ThinDielectric");
@@ -298,7 +299,7 @@ TEST(ThinDielectric, AllReflectionsInside) {
   for (const double angle : {20.0, 56.3, 80.0, 130.0}) {
     const Vector3 out = at_angle(s.frame(), angle);
     EXPECT_NEAR(s.albedo(out)[0], 1, 1e-6);
-    // Against the sum of ten passages, each polarization for itself.
+    // Against the sum of ten passages, for each polarization separately.
     float behind = 0;
     const PolarizedReflectance r = fresnel_dielectric_polarized(std::abs(s.cosine(out)), 1.5f, behind);
     double transmitted = 0;
@@ -310,7 +311,7 @@ TEST(ThinDielectric, AllReflectionsInside) {
     EXPECT_LT(length(straight->direction + out), 1e-6f);
     EXPECT_EQ(straight->eta, 1);
   }
-  // Half is absorbed on one passage: T' = (1 - R)^2 a / (1 - a^2 R^2).
+  // Half of the light is absorbed in one passage: T' = (1 - R)^2 a / (1 - a^2 R^2).
   const Scatter& grey =
       *create<Shader>("ThinDielectric", {{"color", 0.5}})->bind(test::surface_point(), test::wavelengths(), arena);
   EXPECT_NEAR(grey.albedo(normal, null_scattering)[0], 0.96 * 0.96 * 0.5 / (1 - 0.25 * 0.04 * 0.04), 1e-6);

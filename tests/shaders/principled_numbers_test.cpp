@@ -1,5 +1,5 @@
-// Principled, layer by layer, against the equations of OpenPBR Surface 1.1 written down here: roughening, anisotropy, tints,
-// darkening, thin walls. What other tests hold together by energy is held to its numbers here.
+// Principled, layer by layer, against the equations of OpenPBR Surface 1.1 written out here: roughening, anisotropy, tints,
+// darkening, thin walls. Other tests check the whole by its energy; this one checks the numbers.
 
 #include "components/shaders/microfacet/microfacet.h"
 #include "etendue/describe/color.h"
@@ -40,7 +40,7 @@ double fresnel(double c, double eta) {
   return (pow2((c - eta * b) / (c + eta * b)) + pow2((eta * c - b) / (eta * c + b))) / 2;
 }
 
-/// GGX's reflection over F, D G2 / (4 cos cos).
+/// GGX's reflection without F: D G2 / (4 cos cos).
 double ggx(double ax, double ay, const Vector3& out, const Vector3& in) {
   const Vector3 m = normalize(out + in);
   const auto lambda = [&](const Vector3& v) {
@@ -50,7 +50,7 @@ double ggx(double ax, double ay, const Vector3& out, const Vector3& in) {
   return D / (1 + lambda(out) + lambda(in)) / (4 * double(out.z) * double(in.z));
 }
 
-/// What metal facets scatter more than once (Kulla & Conty 2017) for the mean reflectance of a flat colour without tint.
+/// The multiple scattering of metal microfacets (Kulla & Conty 2017) with the mean reflectance of a flat colour without tint.
 double more(double ax, double ay, double color, const Vector3& out, const Vector3& in) {
   const MultipleReflection m({MicrofacetDistribution::ggx, float(ax), float(ay)});
   const double mean = color + (1 - color) / 21, lost = double(m.mean_missing());
@@ -92,8 +92,8 @@ TEST(PrincipledNumbers, AnisotropyKeepsTheMeanSquareOfAlphas) {
   }
 }
 
-// Section "Roughening": r' = (r^4 + 2 r_coat^4)^(1/4), mixed by the coat's weight. A coat of index 1 does nothing but that and
-// tint. Section "Coat": light passes it twice, coat_color^((1 / cos + 1 / cos') / 2) with the angles inside.
+// Section "Roughening": r' = (r^4 + 2 r_coat^4)^(1/4), mixed by the coat's weight. A coat of index 1 only roughens and tints.
+// Section "Coat": light passes it twice, coat_color^((1 / cos + 1 / cos') / 2) with the angles inside.
 TEST(PrincipledNumbers, CoatsRoughenAndTint) {
   for (const double weight : {1.0, 0.4}) {
     const double base = 0.4, coat = 0.5, tint = 0.3;
@@ -113,7 +113,7 @@ TEST(PrincipledNumbers, CoatsRoughenAndTint) {
       EXPECT_NEAR(value(metal, p.out, p.in), expected, 4e-3 * expected) << weight;
     }
   }
-  // With an index the angles inside are steeper: seen through a polished coat, light that is tinted over light that is not.
+  // With an index above 1 the angles inside are steeper: through a polished coat, the ratio of tinted to untinted light.
   const auto seen = [](double tint, const Pair& p) {
     return value(principled({{"base_metalness", 1.0},
                              {"specular_roughness", 0.5},
@@ -130,9 +130,9 @@ TEST(PrincipledNumbers, CoatsRoughenAndTint) {
   }
 }
 
-// Section "Darkening": Delta = (1 - K) / (1 - E_b K), mixed by amount and weight. For a matt body under a coat K is what the
-// coat's inside sends back of diffuse light, 1 - (1 - F) / eta^2 with the mean F from outside, and E_b the albedo of base and
-// its surface.
+// Section "Darkening": Delta = (1 - K) / (1 - E_b K), mixed by amount and weight. For a diffuse body under a coat, K is the
+// coat's internal reflectance of diffuse light, 1 - (1 - F) / eta^2 with the mean F from outside, and E_b is the albedo of the
+// base with its surface.
 TEST(PrincipledNumbers, CoatsDarkenMattBodies) {
   const auto diffuse = [](double color, double amount, double weight) {
     return value(principled({{"base_color", color},
@@ -146,7 +146,7 @@ TEST(PrincipledNumbers, CoatsDarkenMattBodies) {
   for (int i = 0; i < 20000; ++i) outside += 2 * (i + 0.5) / 2e4 / 2e4 * fresnel((i + 0.5) / 2e4, 1.6);
   const double K = 1 - (1 - outside) / pow2(1.6);
   for (const double color : {0.2, 0.8}) {
-    // The base's index 1.5 counts against the coat's: its reflectance is that of 1.6 / 1.5.
+    // The base's index 1.5 is relative to the coat's: its reflectance is that of 1.6 / 1.5.
     const double gloss = pow2((1.6 / 1.5 - 1) / (1.6 / 1.5 + 1)), E = gloss + color * (1 - gloss);
     for (const auto& [amount, weight] : {std::pair{1.0, 1.0}, {0.5, 1.0}}) {
       const double expected = 1 - amount + amount * (1 - K) / (1 - E * K);
@@ -200,7 +200,7 @@ TEST(PrincipledNumbers, SpecularWeightScalesTheReflectance) {
   }
 }
 
-// A pane: both faces and what is between, with transmission_color^(1 / cos inside) on each way.
+// A thin pane: both faces and the reflections between them, with transmission_color^(1 / cos inside) on each passage.
 TEST(PrincipledNumbers, ThinWallsArePanes) {
   const Ref<Shader> pane = principled(
       {{"transmission_weight", 1.0}, {"transmission_color", 0.5}, {"specular_roughness", 0.0}, {"specular_ior", 1.6}}, true);
@@ -219,7 +219,7 @@ TEST(PrincipledNumbers, ThinWallsArePanes) {
   }
 }
 
-// A leaf: of subsurface_color (1 - g) / 2 stays on its side and (1 + g) / 2 goes to the other.
+// A leaf: (1 - g) / 2 of subsurface_color is scattered to its own side and (1 + g) / 2 to the other.
 TEST(PrincipledNumbers, ThinWallsScatterToBothSides) {
   const Vector3 out = direction(30, 0.5), in = direction(50, 2), beyond{in.x, in.y, -in.z};
   const auto leaf = [&](double g, double weight) {
@@ -238,7 +238,7 @@ TEST(PrincipledNumbers, ThinWallsScatterToBothSides) {
     }
 }
 
-// Cauchy's law through n at 587.6 nm with Abbe's number from 486.1 and 656.3 nm: the index that glass refracts by.
+// Cauchy's law through n at 587.6 nm with Abbe's number from 486.1 and 656.3 nm: the index by which the glass refracts.
 TEST(PrincipledNumbers, DispersionIsThatOfTheAbbeNumber) {
   const Ref<Shader> glass = principled({{"transmission_weight", 1.0},
                                         {"specular_roughness", 0.0},

@@ -1,4 +1,4 @@
-// Principled and SheenShader: furnaces, closed forms of single layers, what each member does, sampling, reciprocity.
+// Principled and SheenShader: furnaces, closed forms of single layers, the effect of each member, sampling, reciprocity.
 
 #include "components/shaders/fresnel.h"
 #include "components/shaders/microfacet/film_interference.h"
@@ -19,7 +19,7 @@ Setting thin_walled() {
   return s;
 }
 
-/// Towards the front of a frame, by polar angle [deg] and azimuth [rad].
+/// A direction on the front of a frame, by polar angle [deg] and azimuth [rad].
 Vector3 at_angle(const Frame& frame, double angle, double azimuth = 0.7) {
   const double t = angle * M_PI / 180;
   return frame.to_world({float(std::sin(t) * std::cos(azimuth)), float(std::sin(t) * std::sin(azimuth)), float(std::cos(t))});
@@ -31,7 +31,7 @@ struct Bound {
       : shader(create<Shader>(shader_class, settings)),
         scatter(shader->bind(test::surface_point(), test::wavelengths(), arena)) {}
   Vector3 at(double angle, double azimuth = 0.7) const { return at_angle(scatter->frame(), angle, azimuth); }
-  /// The fraction of light, at wavelength i, that leaves the surface when it comes from a direction.
+  /// The fraction of light at wavelength i, arriving from a direction, that is scattered.
   double albedo(double angle, int i = 0, Lobes which = all_lobes) const {
     const Vector3 out = at(angle);
     double sum = 0;
@@ -118,7 +118,7 @@ TEST(Principled, MetalHasItsColorStraightOnAndItsTintAtTheEdge) {
 }
 
 TEST(Principled, SmoothSurfacesFollowFresnel) {
-  // Glass; a coat over black; a pane of which both faces reflect, (2 R) / (1 + R); a pane with absorption.
+  // Glass; a coat over black; a pane with two reflecting faces, (2 R) / (1 + R); a pane with absorption.
   const double cosine = std::cos(50 * M_PI / 180), r = double(fresnel_dielectric(float(cosine), 1.5f));
   const auto specular = [](const Bound& b, Lobe lobe) {
     const auto s = b.scatter->sample(b.at(50), 0.5f, {0.5f, 0.5f}, Transport::importance, lobe);
@@ -284,7 +284,7 @@ TEST(Principled, RefusesWhatIsNoFraction) {
 }
 
 TEST(SheenShader, WhatFibresDoNotReflectComesToTheBase) {
-  // Over a mirror exactly; over white no more than that.
+  // Over a mirror all light is returned, over white no more than that.
   for (const double angle : {0.0, 50.0, 80.0}) {
     const Bound alone({{"color", 1.0}}, "SheenShader");
     const double fibres = alone.albedo(angle);
@@ -304,7 +304,7 @@ TEST(SheenShader, BrightAtTheEdge) {
   EXPECT_GT(blunt.albedo(0), 4 * sharp.albedo(0));
 }
 
-// r01 = -r12 = 1 there: 0 / 0 for the whole film, and a limit beside it.
+// r01 = -r12 = 1 at this angle: 0 / 0 for the whole film, with a finite limit beside it.
 TEST(FilmInterference, IsFiniteWhereLightCreepsAlongTheFilm) {
   float cosine = std::sqrt(0.75f) - 40 * 0x1p-24f;
   const float beside = film_fractions(cosine - 1e-3f, 1, 0.5f, 0.6f, 0.2f).reflected;

@@ -1,5 +1,5 @@
-// Numbers of materials that others have published, typed from where they stand: metals, glasses, paints. Tables are held to
-// some of their rows, as in published_numbers_test.cpp.
+// Published numbers of materials, typed from their sources: metals, glasses, paints. Tables are checked against some of their
+// rows, as in published_numbers_test.cpp.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ TEST(PublishedNumbers, RowsOfMetals) {
     EXPECT_NEAR(double(metal->imaginary()->at(float(r.wavelength), ColorUse::coefficient)), r.k, 2e-4 * r.k)
         << r.name << r.wavelength;
   }
-  // Curves of metals are smooth: no row departs far from its neighbours' mean. Semiconductors have edges.
+  // Curves of metals are smooth: no row departs far from the mean of its neighbours. Semiconductors have edges.
   const std::set<std::string> with_edges = {"Si", "Ge", "GaAs", "Se", "Se-e", "AlSb", "SnTe"};
   for (const std::string& name : metal_names()) {
     if (with_edges.contains(name)) continue;
@@ -47,8 +47,8 @@ TEST(PublishedNumbers, RowsOfMetals) {
   }
 }
 
-// Other people's numbers: the reflectance of mirrors straight on, as handbooks give them (CRC Handbook, section 12, at about
-// 550 and 650 nm; rounded, and of films of several makes).
+// Numbers by others: the reflectance of mirrors at normal incidence, from handbooks (CRC Handbook, section 12, at about 550 and
+// 650 nm; rounded, and of films of several makes).
 TEST(PublishedNumbers, ReflectancesOfMetals) {
   const struct {
     const char* name;
@@ -64,7 +64,7 @@ TEST(PublishedNumbers, ReflectancesOfMetals) {
   }
 }
 
-// Indices at g, F, e, d, C and r of the makers' data sheets, and of the papers the formulas are from.
+// Indices at g, F, e, d, C and r from the makers' data sheets, and from the papers that published the formulas.
 TEST(PublishedNumbers, IndicesOfGlasses) {
   const struct {
     const char* name;
@@ -132,7 +132,7 @@ TEST(PublishedNumbers, PaintsUnderThreeLights) {
                   {18.069, 19.128, 20.868, 20.773, 19.073, 6.829, 18.308, 19.116, 15.827}}};
   std::vector<float> wavelengths;
   for (int l = 380; l <= 730; l += 10) wavelengths.push_back(float(l));
-  // The numbers' white is that of the measured range alone.
+  // The published white (Y = 100) covers the measured range alone, 380 to 730 nm.
   const Color white = table_spectrum({380, 730}, {1, 1});
   for (const auto& patch : patches) {
     const Color paint = table_spectrum(wavelengths, patch.reflectance);

@@ -1,4 +1,5 @@
-// What a rough dielectric loses to single scattering, which its tables give back: against quadrature in double precision.
+// The light that single scattering of a rough dielectric loses, which the multiple-scattering tables add: against quadrature in
+// double precision.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +26,8 @@ double fresnel(double c, double eta, double& behind) {
   return (s * s + p * p) / 2;
 }
 
-/// 1 - E(v), v = (sin, 0, cos): the mean over slopes (x, y) of facets, whose lengths r have P(> r) = q^2, of what leaves.
+/// 1 - E(v), v = (sin, 0, cos): one minus the mean, over the slopes (x, y) of microfacets, of the light that leaves; the
+/// slopes' lengths r have P(> r) = q^2.
 double lost(Kind kind, double alpha, double eta, double angle) {
   const double vx = std::sin(angle), vz = std::cos(angle);
   const auto lambda = [&](double x, double y, double z) {
@@ -53,8 +55,8 @@ double lost(Kind kind, double alpha, double eta, double angle) {
   return 1 - sum;
 }
 
-// Tables that interpolate too coarsely, or whose own quadrature is coarse, make up light at grazing angles: then a reflected
-// and refracted whole of up to 1.017 was seen.
+// Tables that interpolate too coarsely, or whose own quadrature is coarse, create light at grazing angles: a total of up to
+// 1.017 was once observed.
 TEST(MultipleRefraction, GivesBackWhatIsLost) {
   for (const Kind kind : {Kind::ggx, Kind::beckmann})
     for (const double eta : {1.5, 1 / 1.5, 1 / 1.33, 1 / 1.1})
@@ -69,7 +71,7 @@ TEST(MultipleRefraction, GivesBackWhatIsLost) {
       }
 }
 
-// What surfaces of F = 1 scatter more than once has the albedo that scattering once lacks, however they are grooved.
+// The multiple scattering of surfaces with F = 1 has the albedo that single scattering lacks, for any anisotropy.
 TEST(MultipleReflection, GivesBackWhatIsLost) {
   for (const Kind kind : {Kind::ggx, Kind::beckmann})
     for (const auto& [x, y] : {std::pair{0.4f, 0.4f}, {0.5f, 0.1f}, {0.4f, 0.8f}, {0.9f, 0.6f}}) {
@@ -78,7 +80,7 @@ TEST(MultipleReflection, GivesBackWhatIsLost) {
       double albedo = 0;
       constexpr int heights = 200, azimuths = 96;
       for (int i = 0; i < heights; ++i)
-        for (int k = 0; k < azimuths; ++k) {  // points of a disc are directions as cosines weight them
+        for (int k = 0; k < azimuths; ++k) {  // uniform points of the disc are cosine-weighted directions
           const float r = std::sqrt((float(i) + 0.5f) / heights), phi = 2 * pi * (float(k) + 0.5f) / azimuths;
           const Vector3 in{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};
           albedo += double(more.value(out, in)) * M_PI / (heights * azimuths);

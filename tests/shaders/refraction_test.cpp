@@ -1,5 +1,5 @@
-// Where light goes that is bent by glass, in walks from the camera and from luminaires. Each sample is replayed; those that
-// met the surfaces in the wanted way tell the direction in which they left the last of them.
+// The directions of light refracted by glass, in subpaths from the camera and from luminaires. Each sample is replayed; samples
+// that hit the surfaces in the requested way give the direction in which they left the last of them.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ void PrintTo(const Walk& w, std::ostream* out) { *out << w.renderer << (w.from_c
 
 class Refraction : public testing::TestWithParam<Walk> {
  protected:
-  /// Directions of the walks that begin at `begin` towards `heading` (a unit vector in the plane z = 0, or along z) and are
-  /// then transmitted (t) and reflected (r) as `turns` says, one after the other.
+  /// Directions of the subpaths that begin at `begin` towards `heading` (a unit vector in the plane z = 0, or along z) and are
+  /// then transmitted (t) and reflected (r) in the order of `turns`.
   static std::vector<Vector3> leaving(const std::string& turns, const std::string& objects, const std::array<double, 3>& begin,
                                       const std::array<double, 3>& heading, double width, int samples,
                                       const std::string& wavelengths = "") {
@@ -28,7 +28,7 @@ class Refraction : public testing::TestWithParam<Walk> {
     const auto& [dx, dy, dz] = heading;
     const Walk& walk = GetParam();
     const bool along_z = dz != 0;
-    // A lamp whose front faces the heading: the cross product of its edges.
+    // A lamp whose front faces the heading: the front is the cross product of its edges.
     const std::array<double, 3> u = along_z ? std::array{0.0, width, 0.0} : std::array{-dy * width, dx * width, 0.0},
                                 v = along_z ? std::array{-dz * width, 0.0, 0.0} : std::array{0.0, 0.0, width};
     const std::string lamp = fmt::format(
@@ -82,7 +82,7 @@ TEST_P(Refraction, R33_PrismAtMinimumDeviation) {  // 2 asin(n/2) - 60 degrees a
   }
 }
 
-// Light that was reflected once inside a drop comes back at all angles up to 42.078 degrees, and most of it close to that.
+// Light that is reflected once inside a drop leaves at all angles up to 42.078 degrees, most of it close to that.
 TEST_P(Refraction, R34_Rainbow) {
   const std::vector<Vector3> back =
       leaving("trt", "Sphere { radius: 1, shader: Dielectric { ior: 1.333 } }\n", {0, 0, 40}, {0, 0, -1}, 2, 60000);

@@ -1,4 +1,4 @@
-// Matt, classic and mixed models against their papers' formulas, computed here in double precision and in another form where
+// Diffuse, classic and mixed models against their papers' formulas, computed here in double precision, and in another form if
 // there is one, at random pairs of directions, with all members away from their defaults: colours that differ between
 // wavelengths, tangents that are rotated, both sides of the surface.
 
@@ -10,7 +10,7 @@ namespace {
 
 // ---- matt ------------------------------------------------------------------------------------------------------------------
 
-// Portsmouth, Kutz & Hill 2025. Its albedo E by quadrature of the single-scattering part.
+// Portsmouth, Kutz & Hill 2025. Its albedo E is found by quadrature of the single-scattering part.
 TEST(ShaderFormulas, OrenNayar) {
   const Slope rho{0.3, 0.95};
   for (const double r : {0.35, 1.0}) {
@@ -140,7 +140,8 @@ TEST(ShaderFormulas, Lafortune) {
     };
     return kd(l) / M_PI + first(l) * lobe(-0.9, -0.7, 0.8, 9) + second(l) * lobe(0.5, 0.6, 0.6, 3);
   });
-  // Where all together would reflect more than arrives, all are scaled down alike: the base keeps its part.
+  // If base and lobes together would reflect more than arrives, all are scaled down by the same factor: the base keeps its
+  // share.
   const Ref<Shader> strong =
       create<Shader>("LafortuneShader",
                      {{"color", 0.6}, {"coefficients", std::vector<double>{-1, -1, 1}}, {"exponents", std::vector<double>{4}}});
@@ -171,7 +172,7 @@ TEST(ShaderFormulas, CoupledMatteSpecular) {
       EXPECT_NEAR(double(mirrored->weight[k]), R(c, double(w[k])), 1e-5);
       EXPECT_NEAR(double(s.albedo(out, diffuse_lobes)[k]), rm(double(w[k])) * (1 - R(c, double(w[k]))), 1e-5);
     }
-    // Both lobes asked: samples of the base weigh value times cosine over density.
+    // With both lobes requested: samples of the base have the weight value times cosine over pdf.
     test::Random random(8);
     for (int i = 0; i < 40; ++i) {
       const auto sample = s.sample(out, random(), random.pair());
@@ -185,14 +186,15 @@ TEST(ShaderFormulas, CoupledMatteSpecular) {
 
 TEST(ShaderFormulas, Schlick) {
   const Slope top{0.05, 0.4}, base{0.9, 0.3};
-  const double r = 0.3, p = 0.4, q = 0.7;  // the base layer: between gloss and matt, isotropic
+  const double r = 0.3, p = 0.4, q = 0.7;  // the base layer: between specular and diffuse, isotropic
   const Ref<Shader> shader = create<Shader>("SchlickShader", {{"color", top.color()},
                                                               {"roughness", r},
                                                               {"isotropy", p},
                                                               {"base_color", base.color()},
                                                               {"base_roughness", q},
                                                               {"rotation", 0.05}});
-  // Directions where the bound of albedos does not bite: r is above 1/4 and q as well, so that D is the paper's own.
+  // Parameters for which the bound on the base's albedo has no effect: r is above 1/4 and q as well, so that D is the paper's
+  // own.
   const auto S = [](double c, double u) { return c + (1 - c) * pow5(1 - u); };
   const auto D = [](double rough, double iso, const V& out, const V& in) {
     const V h = unit(sum(out, in));
@@ -206,7 +208,7 @@ TEST(ShaderFormulas, Schlick) {
     const double m = (std::sqrt(1 + v) - std::sqrt(1 - v)) / 2;
     return (1 - c) * (1 - pow5(1 - m));
   };
-  const auto bound = [&](double v) {  // of the top layer's lobe: see the shader; here by the mean over azimuths
+  const auto bound = [&](double v) {  // of the top layer's lobe (see the shader), by the mean over azimuths
     double mean = 0;
     constexpr int steps = 4000;
     for (int i = 0; i < steps; ++i) {

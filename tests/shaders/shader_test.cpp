@@ -1,4 +1,4 @@
-// Shaders: sampling against density, energy, reciprocity, and the corrections of Scatter's public calls.
+// Shaders: samples against their pdf, energy, reciprocity, and the corrections in Scatter's public functions.
 
 #include "etendue/shader.h"
 
@@ -133,8 +133,8 @@ TEST(Shader, Reciprocity) {
   EXPECT_GT(seen, 300);
 }
 
-// Veach 1997, eq. 5.17 and 5.18: with measures by the geometric normal the adjoint is the same function with its
-// arguments exchanged.
+// Veach 1997, eq. 5.17 and 5.18: with measures by the geometric normal, the adjoint is the same function with exchanged
+// arguments.
 TEST(Shader, ImportanceIsTheAdjointUnderShadingNormals) {
   test::Random random(5);
   const SurfacePoint p = test::surface_point({0, 0, 1}, {0.4f, -0.2f, 0.9f});
@@ -191,7 +191,7 @@ TEST(Shader, LobesAreMasked) {
   EXPECT_TRUE(scatter->evaluate(a, b, Transport::radiance, transmission_lobes).black());
   EXPECT_EQ(scatter->pdf(a, b, Transport::radiance, specular_lobes), 0);
   EXPECT_FALSE(scatter->sample(a, 0.5f, {0.5f, 0.5f}, Transport::radiance, specular_lobes));
-  // A black lobe is not there.
+  // A black lobe does not exist.
   EXPECT_EQ(create<Shader>("PhongShader", {{"color", 0.0}})->bind(test::surface_point(), test::wavelengths(), arena)->lobes(),
             glossy_reflection);
   EXPECT_EQ(create<Shader>("Lambertian", {{"color", 0.0}})->bind(test::surface_point(), test::wavelengths(), arena), nullptr);

@@ -1,5 +1,5 @@
-// What `sides` means: matter scatters on the sides that are named and absorbs on the other; what is not matter (holes, bounds
-// of media) and what goes straight on is there from both sides. By every renderer, and by shadow rays and light paths.
+// The meaning of `sides`: a surface scatters on the named sides and absorbs on the other; holes, boundaries of media and null
+// scattering are the same from both sides. Tested with every renderer, and so with shadow rays and light paths.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 const std::string sky = "Environment { emission: EnvironmentEmission { radiance: 1 } }\n";
 
-/// Even light of radiance 1 from all around, on a plate in the plane z = 0 whose front looks along +z.
+/// The radiance of a plate in the plane z = 0, whose front faces +z, in a uniform environment of radiance 1.
 double in_furnace(const std::string& renderer, bool from_front, const std::string& plate, double* error) {
   const Measured m = measure(job_text(
       renderer,
@@ -64,7 +64,7 @@ TEST(Sides, NothingIsRefractedOrLetThroughDiffusely) {
   expect("sides: front, shader: DiffuseTransmitter { reflectance: 0.3, transmittance: 0.7 }", 0.3, 0);
 }
 
-// A one-sided bound of a medium bounds it.
+// A one-sided boundary bounds its medium from both sides.
 TEST(Sides, BoundsOfMedia) {
   for (const char* sides : {"front", "back", "both"})
     for (const char* r : {"PathTracer { samples: 64 }", "BidirectionalPathTracer { samples: 64, max_depth: 8 }"}) {
@@ -77,8 +77,8 @@ TEST(Sides, BoundsOfMedia) {
     }
 }
 
-// A sun behind a screen with holes lights a plate: half of it, whichever side of the screen it is on. Shadow rays, light paths
-// and their connections.
+// A sun behind a screen with holes lights a plate with half of its light, whichever side of the screen scatters: by shadow
+// rays, light paths and connections.
 TEST(Sides, LightThroughHoles) {
   for (const char* sides : {"front", "back", "both"})
     for (const char* r : {"PathTracer { samples: 64 }", "BidirectionalPathTracer { samples: 256, max_depth: 8 }",

@@ -1,4 +1,4 @@
-// Bodies that scatter light inside: the profile, albedo inversion, energy, and where light leaves.
+// Bodies with subsurface scattering: the profile, albedo inversion, energy, and the exit points.
 
 #include "components/shaders/fresnel.h"
 #include "components/shaders/subsurface/albedo_inversion.h"
@@ -15,7 +15,7 @@ namespace {
 
 using test::create;
 
-/// A scene of one object with a Subsurface shader, and the point where a ray from above first meets it.
+/// A scene of one object with a Subsurface shader, and the point where a ray from above first hits it.
 class Body {
  public:
   Body(const std::string& object, const std::string& members)
@@ -94,8 +94,8 @@ TEST(Subsurface, RadiiFollowTheProfile) {
 
 // ---- albedo inversion -----------------------------------------------------------------------------------------------
 
-// Isotropic scattering, no boundary: 1 - sqrt(1 - w) 2 int H mu dmu of diffuse light is returned, where H is Chandrasekhar's
-// (1950, chapter 5), 1 / H(mu) = sqrt(1 - w) + w / 2 int H(m) m / (mu + m) dm.
+// Isotropic scattering without a boundary: the fraction 1 - sqrt(1 - w) 2 int H mu dmu of diffuse light is returned, where H is
+// Chandrasekhar's (1950, chapter 5), 1 / H(mu) = sqrt(1 - w) + w / 2 int H(m) m / (mu + m) dm.
 TEST(Subsurface, InversionAgreesWithChandrasekhar) {
   const AlbedoInversion inversion(0, 1);
   for (const double w : {0.2, 0.5, 0.9, 0.99, 0.999}) {
@@ -145,7 +145,7 @@ TEST(Subsurface, WhiteBodiesReturnAllLight) {
     ASSERT_TRUE(e);
     EXPECT_NEAR(e->weight.minimum(), 1, 1e-3f);
   }
-  // Coefficients that differ between wavelengths: single walks have any weights, of which the sum stays.
+  // Coefficients that differ between wavelengths: single walks have any weights, but their mean is preserved.
   Body colored(sphere, "color: 1, mean_free_path: rgb(0.2, 0.1, 0.05), anisotropy: 0.5, method: random_walk");
   const Spectrum mean = colored.mean(6000, error);
   EXPECT_NEAR(mean.average(), 1, 1e-3f);
@@ -213,11 +213,11 @@ TEST(Subsurface, ExitsOnAPlaneFollowTheProfile) {
   EXPECT_GT(test::chi_square(counts, expected), 1e-3);
 }
 
-// The balance heuristic over the lines leaves the integral of A R over the body, whatever its shape.
+// With the balance heuristic over the probe lines, the mean is the integral of A R over the body's surface, whatever its shape.
 TEST(Subsurface, ExitsOnASphereIntegrateTheProfile) {
   Body body(sphere, "color: 0.9, mean_free_path: 0.3, ior: 1");
   const DiffusionProfile profile(DiffusionProfile::scale(0.9f, 0.3f));
-  // By the distance r of the exit, the area of a sphere of radius 1 is 2 pi r dr for r up to 2.
+  // In terms of the distance r from the entry, the area of a sphere of radius 1 is 2 pi r dr for r up to 2.
   const double expected = 0.9 * double(profile.within(2));
   double error = 0;
   const Spectrum mean = body.mean(20000, error);
@@ -229,7 +229,7 @@ TEST(Subsurface, ExitsOnASphereIntegrateTheProfile) {
   EXPECT_NEAR(sum / 20000, 0.9 * double(profile.within(0.5f)), 3.3 * 0.45 / std::sqrt(20000.0) + error);
 }
 
-// The profile was fitted to walks without a boundary, and is widened where one reflects: both ways spread light alike.
+// The profile was fitted to walks without a boundary, and is widened for one that reflects: both methods spread light alike.
 TEST(Subsurface, WalkAndProfileSpreadAlike) {
   for (const std::string ior : {"1", "1.5"}) {
     const std::string members = "color: 0.6, mean_free_path: 0.002, ior: " + ior;

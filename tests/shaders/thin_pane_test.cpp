@@ -1,5 +1,5 @@
-// What has no density, at all angles: thin panes that absorb, films by another derivation, glass, gratings, and what masks and
-// mixtures let straight on.
+// Delta scattering at all angles: thin panes that absorb, films by another derivation, glass, gratings, and the null scattering
+// of masks and mixtures.
 
 #include <complex>
 
@@ -24,7 +24,7 @@ Vector3 direction(double angle, double azimuth = 0.4) {
   return {float(std::sin(t) * std::cos(azimuth)), float(std::sin(t) * std::sin(azimuth)), float(std::cos(t))};
 }
 
-// pbrt and Mitsuba take R for the mean of both polarizations before they add up the passages: 2 R / (1 + R).
+// pbrt and Mitsuba average R over both polarizations before they sum up the passages: 2 R / (1 + R).
 TEST(ThinPane, AveragedPolarizations) {
   const Ref<Shader> shader = create<Shader>("ThinDielectric", {{"ior", 1.5}, {"polarizations", std::string("averaged")}});
   Arena arena;
@@ -40,7 +40,7 @@ TEST(ThinPane, AveragedPolarizations) {
   }
 }
 
-// A pane's passages, one by one: light meets the faces in turn, absorbed by color^(1 / cos inside) on each way.
+// A pane's passages, one by one: light meets the faces in turn, with the transmittance color^(1 / cos inside) on each passage.
 TEST(ThinPane, AbsorbsAlongEachPassageAtAllAngles) {
   const Color ior = table_spectrum({360, 830}, {1.7f, 1.4f}), tint = table_spectrum({360, 830}, {0.9f, 0.4f});
   const Ref<Shader> shader = create<Shader>("ThinDielectric", {{"ior", ior}, {"color", tint}});
@@ -72,7 +72,7 @@ TEST(ThinPane, AbsorbsAlongEachPassageAtAllAngles) {
       EXPECT_NEAR(double(through->weight[i]), transmitted, 2e-5) << angle << " at " << w[i] << " nm";
       EXPECT_NEAR(double(back->weight[i]), reflected, 2e-5) << angle << " at " << w[i] << " nm";
       EXPECT_NEAR(double(s.albedo(out)[i]), reflected + transmitted, 3e-5);
-      // With both asked for, the mean of what is drawn is both.
+      // With both lobes requested, the sample means give both parts.
       double mean[2] = {};
       for (int k = 0; k < 1000; ++k)
         if (const auto sample = s.sample(out, (float(k) + 0.5f) / 1000, {}))
@@ -85,8 +85,8 @@ TEST(ThinPane, AbsorbsAlongEachPassageAtAllAngles) {
 
 // ---- films ------------------------------------------------------------------------------------------------------------------
 
-/// Characteristic matrices (Abeles 1950; Born & Wolf 1999, section 1.6.2), in which there are no Fresnel amplitudes: M of the
-/// film relates the tangential fields at both its faces, and the boundary conditions with waves outside give R.
+/// Characteristic matrices (Abeles 1950; Born & Wolf 1999, section 1.6.2), which contain no Fresnel amplitudes: M of the film
+/// relates the tangential fields at both its faces, and the boundary conditions with the waves outside give R.
 double film_reflectance(double c0, double n0, double n1, Complex n2, double d) {
   const double s2 = n0 * n0 * (1 - c0 * c0);
   const auto normal = [&](Complex n) {
@@ -121,7 +121,7 @@ TEST(ThinFilmSlabs, AgreeWithCharacteristicMatrices) {
         "ThinFilm", {{"film_ior", flat_spectrum(float(f.film))}, {"base_ior", base}, {"thickness", f.thickness}});
     Arena arena;
     const Scatter& s = *shader->bind(flat_point(), w, arena);
-    // From inside (beyond 90 degrees) light may tunnel through a film in which it could not travel.
+    // From inside (beyond 90 degrees) light may tunnel through a film in which it cannot propagate.
     for (const double angle : {0.0, 30.0, 60.0, 80.0, 88.0, 180.0, 150.0, 141.0, 120.0}) {
       if (angle > 90 && f.base.imag() > 0) continue;
       const Vector3 out = direction(angle);
@@ -137,8 +137,8 @@ TEST(ThinFilmSlabs, AgreeWithCharacteristicMatrices) {
   }
 }
 
-// Between two glasses light tunnels through a gap in which it could not travel: all of it through none, hardly any through one
-// of a wavelength.
+// Between two glasses light tunnels through a gap in which it cannot propagate: all of it through a gap of zero width, hardly
+// any through one of a wavelength.
 TEST(ThinFilmSlabs, LightTunnelsThroughGaps) {
   for (const double angle : {10.0, 41.0, 45.0, 60.0, 80.0})
     for (const double gap : {0.0, 0.02, 0.1, 0.3, 1.0})
@@ -182,13 +182,13 @@ TEST(ThinPane, GlassSplitsPowerByFresnelOnBothSidesAndWavelengths) {
       EXPECT_NEAR(double(radiance->weight[0]), (1 - hero) / (eta * eta), 3e-5);
       EXPECT_NEAR(double(power->eta), eta, 1e-5);
       EXPECT_EQ(power->dispersive, varies);
-      // Snell's law, vectors: the part along the surface shrinks by the index.
+      // Snell's law in vector form: the tangential component shrinks by the index.
       EXPECT_NEAR(double(power->direction.x), -double(out.x) / eta, 1e-5);
       EXPECT_NEAR(double(power->direction.y), -double(out.y) / eta, 1e-5);
       EXPECT_LT(power->direction.z * out.z, 0);
       if (!varies)
         for (int i = 0; i < spectrum_size; ++i) EXPECT_NEAR(double(power->weight[i]), 1 - hero, 2e-5);
-      // Both asked: the hero's weight is 1 whichever is drawn.
+      // With both lobes requested: the hero's weight is 1, whichever is sampled.
       for (const float choice : {0.0f, 0.9999f}) {
         const auto any = s.sample(out, choice, {}, Transport::importance);
         ASSERT_TRUE(any);
@@ -200,7 +200,8 @@ TEST(ThinPane, GlassSplitsPowerByFresnelOnBothSidesAndWavelengths) {
 
 // ---- gratings ---------------------------------------------------------------------------------------------------------------
 
-// Orders leave where the grating equation says: what lies across the grooves changes by m lambda / d, along them nothing does.
+// Orders leave according to the grating equation: the component across the grooves changes by m lambda / d, the one along them
+// does not change.
 TEST(GratingNumbers, OrdersLeaveAcrossTheGroovesAndEfficienciesAddUp) {
   const Ref<Shader> shader = create<Shader>("DiffractionGrating", {{"lines", 400.0},
                                                                    {"efficiency", std::vector<double>{0.4, 0.2, 0.05}},
@@ -210,7 +211,7 @@ TEST(GratingNumbers, OrdersLeaveAcrossTheGroovesAndEfficienciesAddUp) {
   Arena arena;
   const Scatter& s = *shader->bind(flat_point(), w, arena);
   const double step = 560e-6 * 400, color = 0.5 + 0.5 * 200 / 470;
-  // Grooves along u turned by 45 degrees: across them lies (-1, 1) / sqrt 2.
+  // Grooves along u rotated by 45 degrees: the direction across them is (-1, 1) / sqrt 2.
   const double along[2] = {M_SQRT1_2, M_SQRT1_2}, across[2] = {-M_SQRT1_2, M_SQRT1_2};
   const Vector3 out = direction(25, 1.1);
   double probability[5] = {}, weight[5] = {};

@@ -1,6 +1,6 @@
-// Normals that are not the surface's: interpolated, bumped, or read from an image. What scatters all light under its own normal
-// scatters all of it under any, so in a furnace nothing is seen of it; the truth is 1 by the definition of a furnace. Light
-// is not lost, and no renderer sees it otherwise than another.
+// Shading normals that differ from the surface's: interpolated, bumped, or read from an image. A material that scatters all
+// light with its own normal scatters all of it with any normal, so it is invisible in a furnace: the expected value is 1 by the
+// definition of a furnace. No light is lost, and all renderers give the same result.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using test::job_text;
 using test::measure;
 using test::Measured;
 
-/// A ball of `rows` x 2 `rows` squares, less the triangles that vanish at the poles: 4 rows (rows - 1) triangles.
+/// A ball of `rows` x 2 `rows` squares, without the triangles that degenerate at the poles: 4 rows (rows - 1) triangles.
 std::string smooth_ball(int rows, const std::string& more) {
   std::string positions, normals, triangles;
   const auto vertex = [&](double theta, double phi) {
@@ -72,7 +72,7 @@ constexpr const char* traced = "PathTracer { max_depth: 200, samples: 64 }";
 class TiltedNormals : public ::testing::TestWithParam<White> {};
 
 TEST_P(TiltedNormals, LoseNothingInAFurnace) {
-  // Normals across the map turn up to 52 degrees to all sides.
+  // Normals across the map are tilted by up to 52 degrees to all sides.
   std::vector<float> rgb;
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) {
@@ -91,12 +91,12 @@ TEST_P(TiltedNormals, LoseNothingInAFurnace) {
       {"bumps", "Sphere { shader: BumpShader { shader: " + shader + ", height: NoiseMap { size: 0.2 m }, scale: 0.1 } }"},
       {"image",
        "Sphere { shader: NormalMapShader { shader: " + shader + ", file: \"" + normals.path + "\", repeat: [4, 4] } }"}};
-  // The same wavelengths see the furnace alone, so that the colour of their sum is not noise.
+  // The furnace alone, measured with the same wavelengths, so that the colour noise of their sum cancels.
   const double alone = measure(furnace(traced, "")).mean.y;
   for (const Surface& surface : surfaces) {
     const Measured m = measure(furnace(traced, surface.object));
     EXPECT_EQ(m.bad, 0u) << surface.name;
-    // Less than a thousandth is lost; rough lobes are drawn with weights of their own: four standard errors more.
+    // Less than a thousandth is lost; sampled rough lobes have varying weights: four standard errors more.
     EXPECT_NEAR(m.mean.y / alone, 1, 1e-3 + (GetParam().noisy ? 4 * m.error : 0)) << surface.name;
     EXPECT_LT(m.error, 4e-3) << surface.name;
   }
@@ -111,10 +111,10 @@ TEST(TiltedNormals, LoseWhatWouldCrossTheSurfaceWhenAsked) {
   EXPECT_GT(m.mean.y, 0.9);
 }
 
-// For any two functions g and h of directions, light carried from b to a is the same seen from either end:
+// For any two functions g and h of directions, the light carried from b to a is the same when computed from either end:
 //     integral of g(a) R(a, b) |a . ng| h(b) da db = integral of h(b) I(b, a) |b . ng| g(a) db da,
-// R as samples of radiance have it and I as those of importance (Veach 1997, eq. 5.14). Mirrors and glass have no values to
-// compare; samples they have.
+// with R from samples of radiance and I from samples of importance (Veach 1997, eq. 5.14). Samples are used because mirrors and
+// glass, being delta, cannot be evaluated.
 TEST_P(TiltedNormals, CarryTheSameFromBothEnds) {
   const Ref<Shader> shader = ref_cast<Shader>(parse_component(GetParam().text));
   prepare_tree(*shader);
@@ -155,7 +155,7 @@ TEST_P(TiltedNormals, CarryTheSameFromBothEnds) {
   }
 }
 
-// The picture of a lamp's light on tilted normals, by paths from both ends: importance is the adjoint of what is seen.
+// A picture of a lamp's light on tilted normals, by paths from both ends: the importance is the adjoint of the radiance.
 TEST(TiltedNormals, LookTheSameToAllRenderers) {
   const std::string lamp = "Sphere { centre: [0.5, 3, 2.5], radius: 0.7, emission: DiffuseEmission { radiance: 20 } }";
   struct Way {

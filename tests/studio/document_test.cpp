@@ -1,4 +1,4 @@
-// A document: its render follows its text, and undoing leads back to the first byte.
+// A document: its render follows its text, and undo leads back to the first byte.
 
 #include "studio/document/document.h"
 
@@ -59,12 +59,12 @@ Job {
 }
 )";
 
-/// What a text describes, in one spelling.
+/// The description of a text in a normal form.
 std::string meaning(const std::string& text, const std::string& folder) {
   return write_description(*load_job_text(text, "fresh", folder));
 }
 
-/// One random edit, as a person would make it: of a member, or of what holds what.
+/// One random edit as a user would make it: of a member, or of the structure of parts.
 void edit_at_random(Document& document, const conform::Fixtures& fixtures, std::mt19937_64& random) {
   const auto below = [&](size_t n) { return size_t(random() % n); };
   TextEditor editor(document);
@@ -73,7 +73,7 @@ void edit_at_random(Document& document, const conform::Fixtures& fixtures, std::
   const ClassInfo& info = part->class_info();
   if (info.members.empty()) return;
   const Member& member = info.members[below(info.members.size())];
-  // A picture of 65536 pixels in a row is valid, and no help here.
+  // A picture 65536 pixels wide is valid, but useless here.
   if (info.name == "ImageBuffer" || info.name == "Job" || member.kind == Kind::file) {
     editor.rename(editor.name_of(parts[below(parts.size())]), "name_" + std::to_string(random() % 1000));
   } else if (const size_t what = below(8); what == 0) {
@@ -100,7 +100,7 @@ TEST_F(StudioDocument, UndoOf500RandomEditsReturnsToTheFirstBytes) {
     const std::string before = d.text();
     try {
       edit_at_random(d, fixtures_, random);
-    } catch (const std::exception&) {  // Error and Errors: what is drawn need not be valid
+    } catch (const std::exception&) {  // Error and Errors: a random value need not be valid
       ASSERT_EQ(d.text(), before) << "a refused edit changes nothing";
       ASSERT_LT(++refused, 20000);
     }
@@ -243,7 +243,7 @@ TEST_F(StudioDocument, OpensWhatIsWrongAsADraft) {
 
 // ---- every class ------------------------------------------------------------------------------------------------------------
 
-/// A description in which a part of a class stands, within parts that may hold it; empty when none is found.
+/// A description that contains a part of a class within parts that may hold it; "" if none is found.
 std::string host(const ClassInfo& info, const std::string& text, const conform::Fixtures& fixtures, int depth) {
   const auto takes = [&](const Member& member) {
     const ClassInfo* wanted = member.kind == Kind::component ? Registry::instance().find(member.component_class) : nullptr;
@@ -278,7 +278,7 @@ std::string host(const ClassInfo& info, const std::string& text, const conform::
       try {
         Render tried(load_job_text(whole, "host"), {.threads = 1});
         return whole;
-      } catch (const std::exception&) {  // of another class, then
+      } catch (const std::exception&) {  // another holder is tried
       }
     }
   }
@@ -294,14 +294,14 @@ TEST_F(StudioDocument, EveryMemberOfEveryClassIsEditedSavedAndReloadedEqual) {
   for (const ClassInfo* info : Registry::instance().all()) {
     if (info->abstract() || !info->provider.empty()) continue;
     const auto is_a = [&](const char* interface) { return info->is_a(*Registry::instance().find(interface)); };
-    if (is_a("Importer") || is_a("Exporter")) continue;  // no scene holds one
+    if (is_a("Importer") || is_a("Exporter")) continue;  // scenes cannot contain one
     const conform::Drawn drawn = conform::default_part(*info, fixtures_, random);
     std::string text =
         drawn.part ? text_of(Value(drawn.part), *Registry::instance().find("Job")->find("scene")) : info->name + " {}";
-    if (!text.starts_with(info->name)) text = info->name + " {}";  // a plain value would stand for it
+    if (!text.starts_with(info->name)) text = info->name + " {}";  // instead of the plain value that stands for it
     const std::string whole = info->name == "Job" ? std::string(scene) : host(*info, text, fixtures_, 3);
     if (whole.empty()) {
-      // Other tests of this program register classes that nothing holds.
+      // Other tests in this program register classes that no part can hold.
       if (!of_tests.contains(info->name)) homeless.push_back(info->name);
       continue;
     }
@@ -332,7 +332,7 @@ TEST_F(StudioDocument, EveryMemberOfEveryClassIsEditedSavedAndReloadedEqual) {
       }
       refused += !made;
       ASSERT_EQ(write_description(d.job()), meaning(d.text(), folder_)) << member.name;
-      // The part keeps its number through all edits of its members.
+      // The part keeps its id through all edits of its members.
       ASSERT_NO_THROW(d.component(id)) << member.name;
     }
     d.save(folder_ + "/saved.etd");

@@ -1,4 +1,4 @@
-// A render's thread: whatever is said to it, and however soon after something else, it comes to what was said last.
+// A render's thread: whatever commands it gets, however soon after each other, it reaches the state of the last one.
 
 #include "studio/pixels/runner.h"
 
@@ -18,7 +18,7 @@ constexpr const char* scene = R"(Job {
     scene: BvhScene { objects: [ Sphere { radius: 1, emission: DiffuseEmission { radiance: 3 } } ] }
 })";
 
-/// Whether it gets there within ten seconds.
+/// Whether the runner reaches a state within ten seconds.
 bool comes_to(const Runner& runner, Runner::State state) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
   while (runner.status().state != state) {
@@ -39,7 +39,7 @@ TEST_F(StudioRunner, APauseThatOvertakesTheBeginningIsSaid) {
   runner_.set(render_);
   runner_.start();
   ASSERT_TRUE(comes_to(runner_, Runner::State::finished));
-  // It has more to do from now on, and its thread may not have woken before it is told to wait.
+  // From here on the render has more to do, and its thread may not have woken before it gets the command to pause.
   for (int i = 0; i < 300; ++i) {
     render_->edit(*render_->job().renderer, "samples", Value(Number{1e9}));
     runner_.follow(render_);

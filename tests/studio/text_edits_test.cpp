@@ -1,4 +1,4 @@
-// Edits of a description's text: what is not edited stays byte for byte, comments and layout among it.
+// Edits of a description's text: everything that is not edited stays the same byte for byte, including comments and layout.
 
 #include "studio/text/text_edits.h"
 
@@ -9,7 +9,7 @@
 namespace etendue::studio {
 namespace {
 
-/// The one definition of a text.
+/// The value of the one definition in a text.
 const language::Node& value_of(const Outline& outline, const std::string& name = "x") {
   return outline.definition(name)->value;
 }

@@ -1,5 +1,5 @@
-// Files of NanoVDB. Those beside this test were written by OpenVDB and its nanovdb_convert (make_grids.py), so what is in them
-// is known without our reader.
+// NanoVDB files. Those in this folder were written by OpenVDB and its nanovdb_convert (make_grids.py), so their contents are
+// known independently of our reader.
 
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -43,7 +43,7 @@ std::string refusal(const std::string& path, const std::string& name = {}) {
   return "it was read";
 }
 
-/// What make_grids.py wrote.
+/// The value that make_grids.py wrote.
 float written(int i, int j, int k) {
   if (i >= -3 && i < 12 && j >= 5 && j < 9 && k >= 0 && k < 3) return 100 + 0.25f * float(i) + float(j) + 16 * float(k);
   return i >= 16 && i < 24 && j >= 0 && j < 8 && k >= 0 && k < 8 ? 7.5f : 0.0f;
@@ -55,7 +55,7 @@ void expect_written(const VolumeGrid& grid, float tolerance) {
   for (int k = 0; k < 8; ++k)
     for (int j = 0; j < 9; ++j)
       for (int i = -3; i < 24; ++i) ASSERT_NEAR(grid.values[n++], written(i, j, k), tolerance) << i << " " << j << " " << k;
-  // Cells of half a metre around the places of indices, which are i / 2 + (1, 2, 3).
+  // Cells of half a metre centred at the positions of indices, which are i / 2 + (1, 2, 3).
   EXPECT_LT(distance(grid.low, Point3{-0.75f, 1.75f, 2.75f}), 1e-6f);
   EXPECT_LT(distance(grid.high, Point3{12.75f, 6.25f, 6.75f}), 1e-6f);
 }
@@ -71,7 +71,7 @@ TEST(NanoVdb, HoldsWhatOpenVdbWrote) {
   EXPECT_EQ(color.values, (std::vector<float>{0.25f, 0.5f, 0.75f, 1, 2, 3}));
 }
 
-// Values of a leaf are between 0 and 143; a rounded one is off by half a step.
+// Values in a leaf are between 0 and 143; rounding changes a value by half a step.
 TEST(NanoVdb, ReadsRoundedValues) {
   expect_written(read_nanovdb(beside("rounded_fp16.nvdb"), "density"), 0.51f * 143 / 65535);
   expect_written(read_nanovdb(beside("rounded_fp8.nvdb"), "density"), 0.51f * 143 / 255);
@@ -93,12 +93,12 @@ TEST(NanoVdb, IsADensityWhereItsFileSaysIt) {
   const Ref<VolumeShader> v =
       prepared_as<VolumeShader>("GridVolume { file: \"" + beside("three_grids.nvdb") +
                                 "\", grid_name: \"density\", file_box: true, outside: empty, extinction: 2 }");
-  // Halfway between the places of indices (4, 6, 1) and (5, 6, 1).
+  // Half way between the positions of the indices (4, 6, 1) and (5, 6, 1).
   const Point3 p{1 + 4.5f / 2, 2 + 6 / 2.0f, 3 + 1 / 2.0f};
   EXPECT_NEAR(v->coefficients(p, 0, wavelengths()).extinction()[0], written(4, 6, 1) + written(5, 6, 1), 1e-3f);
 }
 
-/// The bytes of a grid, unpacked.
+/// The uncompressed bytes of a grid.
 std::vector<unsigned char> unpacked(const std::string& path) {
   const std::vector<unsigned char> file = contents(path);
   const auto size = size_t(number_at<std::uint64_t>(file, 16)), name = size_t(number_at<std::uint32_t>(file, 16 + 136));
@@ -109,7 +109,7 @@ std::vector<unsigned char> unpacked(const std::string& path) {
   return bytes;
 }
 
-// Damaged grids are read or refused, and nothing else happens; under a sanitizer this finds what is read beyond the end.
+// Damaged grids are read or refused, without any other failure; a sanitizer would find reads beyond the end.
 TEST(NanoVdb, BelievesNoOffset) {
   const std::vector<unsigned char> good = unpacked(beside("rounded_fp8.nvdb"));
   expect_written(dense_grid(good), 0.51f * 143 / 255);
@@ -129,7 +129,7 @@ TEST(NanoVdb, BelievesNoOffset) {
     EXPECT_NE(refused(bad), "it was read");
     bad = good;
     put(bad, root + 64 + 8, offset);
-    if (offset != -1) EXPECT_NE(refused(bad), "it was read") << offset;  // a node may be anywhere within
+    if (offset != -1) EXPECT_NE(refused(bad), "it was read") << offset;  // any position within the bytes may hold a node
   }
   std::vector<unsigned char> bad = good;
   put(bad, root + 24, std::uint32_t(-1));
@@ -141,7 +141,7 @@ TEST(NanoVdb, BelievesNoOffset) {
   bad = good;
   put(bad, 384 + 8, 0.1);
   EXPECT_NE(refused(bad).find("turned"), std::string::npos);
-  // Anywhere in the headers, the root and the entries in use, and cut off anywhere.
+  // Changes anywhere in the headers, the root and the entries in use, and truncation anywhere.
   std::mt19937 random(3);
   std::vector<size_t> used;
   for (size_t i = 0; i < good.size(); ++i)
@@ -149,7 +149,7 @@ TEST(NanoVdb, BelievesNoOffset) {
   for (int trial = 0; trial < 400; ++trial) {
     bad = good;
     for (int change = 0; change < 3; ++change) bad[used[random() % used.size()]] = (unsigned char)random();
-    for (int k = 0; k < 6; ++k) bad[root + 4 * size_t(k) + 1] = good[root + 4 * size_t(k) + 1];  // boxes of any size take time
+    for (int k = 0; k < 6; ++k) bad[root + 4 * size_t(k) + 1] = good[root + 4 * size_t(k) + 1];  // large boxes would take time
     for (int k = 0; k < 6; ++k) bad[root + 4 * size_t(k) + 2] = good[root + 4 * size_t(k) + 2];
     for (int k = 0; k < 6; ++k) bad[root + 4 * size_t(k) + 3] = good[root + 4 * size_t(k) + 3];
     if (trial % 4 == 0) bad.resize(random() % bad.size());

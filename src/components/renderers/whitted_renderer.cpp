@@ -22,7 +22,7 @@ class WhittedRenderer final : public Renderer {
 
  public:
   static void describe(Description<WhittedRenderer>& d) {
-    d.summary("Classical ray tracing: shadow rays to luminaires without extent, perfect mirrors and refraction.",
+    d.summary("Classical ray tracing: shadow rays to delta lights, perfect mirrors and refraction.",
               "Whitted 1980, An improved illumination model for shaded display");
     d.without("light_sampler", "each luminaire is asked at every surface, and none chosen");
     d.group("Paths");

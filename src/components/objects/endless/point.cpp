@@ -17,7 +17,7 @@ class Point final : public SceneObject {
  public:
   static void describe(Description<Point>& d) {
     d.summary(
-         "A luminaire without extent, which rays never meet. Its emission's radiance, times 1 m^2, is its intensity "
+         "A delta light at a point, which rays never hit. Its emission's radiance, times 1 m^2, is its intensity "
          "[W/sr per nm]: a DiffuseEmission sends the same into all directions, a SpotEmission into a cone. Its transform moves "
          "and turns it; a stretch changes only where it is, not how strong it is.")
         .group("Shape")
