@@ -106,7 +106,9 @@ class SceneObject : public Component {
     Hit hit;
     if (intersect(ray, hit)) list.add(hit);
   }
-  /// Fills the surface point of a hit that `intersect` found, except for the tangents.
+  /// Fills these members of the surface point of a hit that `intersect` found, in the coordinates of the containing scene:
+  /// position, error, normal, shading_normal, uv, object_position, object_normal, time, object, primitive, u, v. Scene::locate
+  /// then transforms the point outwards and sets the footprint and ray_direction; walks set media.
   virtual void surface_point(const Ray&, const Hit&, SurfacePoint&) const = 0;
   /// Fills dpdu and dpdv of a point on this object.
   virtual void tangents(SurfacePoint&) const = 0;

@@ -33,7 +33,8 @@ class VolumeShader : public Component {
   /// Whether the medium emits light.
   virtual bool emits() const { return false; }
   /// An upper bound of the extinction [1/m] over the whole medium, per wavelength; the tighter, the faster is delta tracking.
-  /// If the extinction exceeds it somewhere the image is wrong, so `etendue conform` searches for such points.
+  /// Where the extinction exceeds it, null collisions have a negative coefficient that counts as 0: the medium is too thin
+  /// there. `etendue conform` searches for such points.
   virtual Spectrum majorant(const Wavelengths&) const = 0;
   /// The phase function [1/sr] for the scattering of light from the direction of travel -out into in; it integrates to 1.
   virtual float phase(const Point3&, const Vector3& out, const Vector3& in) const = 0;

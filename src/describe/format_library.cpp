@@ -23,7 +23,8 @@ bool load_format_library() {
   }
   // Never closed: components of its classes may exist until the program ends.
   if (!dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL))
-    throw Error(fmt::format("the library for files of other programs cannot be loaded: {}", dlerror()));
+    throw Error(
+        fmt::format("the library for files of other programs cannot be loaded ('./etendue build' builds it): {}", dlerror()));
   return loaded = true;
 }
 

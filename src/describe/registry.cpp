@@ -85,6 +85,17 @@ struct Registry::State {
   std::map<std::string, void*> plugins;
   std::map<std::string, std::string> refused;  // rejected plugins and why: reopened, they would not enlist again
   std::string provider;                        // of the classes being adopted
+
+  /// The loaded classes that can be created by name, and their bases: not those that are bases in tests only.
+  std::vector<const ClassInfo*> creatable() const {
+    std::set<const ClassInfo*> wanted;
+    for (const auto& [name, info] : by_name)
+      for (const ClassInfo* at = info->abstract() ? nullptr : info.get(); at; at = at->parent) wanted.insert(at);
+    std::vector<const ClassInfo*> list;
+    for (const auto& [name, info] : by_name)
+      if (wanted.contains(info.get())) list.push_back(info.get());
+    return list;
+  }
 };
 
 Registry::Registry() : s(new State) {}
@@ -213,19 +224,19 @@ std::vector<const ClassInfo*> Registry::all() const {
   const std::lock_guard lock(s->mutex);
   load_format_library();
   const_cast<Registry*>(this)->adopt();
-  // Omits classes without a subclass that can be created by name, such as base classes used only in tests.
-  std::set<const ClassInfo*> wanted;
-  for (const auto& [name, info] : s->by_name)
-    for (const ClassInfo* at = info->abstract() ? nullptr : info.get(); at; at = at->parent) wanted.insert(at);
-  std::vector<const ClassInfo*> list;
-  for (const auto& [name, info] : s->by_name)
-    if (wanted.contains(info.get())) list.push_back(info.get());
-  return list;
+  return s->creatable();
 }
 
 std::vector<const ClassInfo*> Registry::subclasses(const ClassInfo& of) const {
-  std::vector<const ClassInfo*> list = all();
-  std::erase_if(list, [&](const ClassInfo* c) { return c->abstract() || !c->is_a(of); });
+  const_cast<Registry*>(this)->adopt();
+  const std::lock_guard lock(s->mutex);
+  std::vector<const ClassInfo*> list = s->creatable();
+  const auto unrelated = [&](const ClassInfo* c) { return c->abstract() || !c->is_a(of); };
+  std::erase_if(list, unrelated);
+  if (!list.empty() || !load_format_library()) return list;
+  const_cast<Registry*>(this)->adopt();  // none of the interface's classes was loaded
+  list = s->creatable();
+  std::erase_if(list, unrelated);
   return list;
 }
 

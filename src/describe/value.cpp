@@ -7,6 +7,23 @@
 
 namespace etendue {
 
+Value::Value() = default;
+Value::Value(const Value&) = default;
+Value::Value(Value&&) noexcept = default;
+Value& Value::operator=(const Value&) = default;
+Value& Value::operator=(Value&&) noexcept = default;
+Value::~Value() = default;
+template Value::Value(bool, Location);
+template Value::Value(Number, Location);
+template Value::Value(std::string, Location);
+template Value::Value(Numbers, Location);
+template Value::Value(FilePath, Location);
+template Value::Value(Color, Location);
+template Value::Value(Transform, Location);
+template Value::Value(AnimatedTransform, Location);
+template Value::Value(Ref<Component>, Location);
+template Value::Value(Value::List, Location);
+
 const std::vector<Unit>& units() {
   static const std::vector<Unit> all = {
       {"m", Dimension::length, 1},         {"cm", Dimension::length, 1e-2},

@@ -17,7 +17,9 @@ namespace {
 std::vector<Ref<Exporter>> all_exporters() {
   std::vector<Ref<Exporter>> all;
   const Registry& registry = Registry::instance();
-  for (const ClassInfo* c : registry.subclasses(*registry.find("Exporter"))) all.push_back(ref_cast<Exporter>(c->create()));
+  const ClassInfo& interface = *registry.find("Exporter");
+  for (const ClassInfo* c : registry.all())  // not `subclasses`: it loads the library of formats even if a plugin has exporters
+    if (!c->abstract() && c->is_a(interface)) all.push_back(ref_cast<Exporter>(c->create()));
   return all;
 }
 

@@ -21,7 +21,9 @@ namespace {
 std::vector<Ref<Importer>> all_importers() {
   std::vector<Ref<Importer>> all;
   const Registry& registry = Registry::instance();
-  for (const ClassInfo* c : registry.subclasses(*registry.find("Importer"))) all.push_back(ref_cast<Importer>(c->create()));
+  const ClassInfo& interface = *registry.find("Importer");
+  for (const ClassInfo* c : registry.all())  // not `subclasses`: it loads the library of formats even if a plugin has importers
+    if (!c->abstract() && c->is_a(interface)) all.push_back(ref_cast<Importer>(c->create()));
   return all;
 }
 

@@ -49,7 +49,7 @@ void BidirectionalSubpaths::from_luminaire(float time, const SubpathLimits& limi
   EmittedLight emitted;
   generate_light_subpath(context_.scene, lights_, time, {limits.longest, limits.roulette_depth, directions_}, light, light_,
                          emitted);
-  if (light_.size() > 1) y0_pdf_next_event_ = pdf_next_event(lights_, light_[1], light_[0], light_[1].out);
+  if (light_.size() > 1) y0_next_event_point_pdf_ = next_event_point_pdf(lights_, light_[1], light_[0], light_[1].out);
 }
 
 bool BidirectionalSubpaths::has_specular_prefix(int t) const {
@@ -93,7 +93,7 @@ void BidirectionalSubpaths::add_emitter_hit(const SubpathVertex& z, const Surfac
     x0.point = point;
     ConnectedPath path{nullptr, 0, camera_.data(), t, 0, 0, 0, 0, 0, 0, true, weights_.merging};
     path.pdf_emission_origin = path.camera_last_from_light = pdf_emission_origin(lights_, x1, x0, -z.out);
-    path.pdf_next_event = pdf_next_event(lights_, x1, x0, -z.out);
+    path.next_event_point_pdf = next_event_point_pdf(lights_, x1, x0, -z.out);
     path.camera_before_from_light =
         vertex_pdf(x0.infinite ? 1 : point.object->emission->pdf(point, z.out), x0, x1, z.out, z.mean_transmittance, front_);
     if (path.pdf_emission_origin > 0) found.weight = bidirectional_weight(path, weights_.heuristic);
@@ -111,12 +111,13 @@ std::optional<PathContribution> BidirectionalSubpaths::next_event(int t) const {
     const SubpathVertex& x0 = c->luminaire;
     ConnectedPath path{&x0, 1, camera_.data(), t, 0, 0, 0, 0, 0, 0, !c->delta, weights_.merging};
     path.pdf_emission_origin = pdf_emission_origin(lights_, z, x0, c->direction);
-    path.pdf_next_event = pdf_next_event(lights_, z, x0, c->direction);
+    path.next_event_point_pdf = next_event_point_pdf(lights_, z, x0, c->direction);
     const float at_z = camera_pdf(directions_, z, z.out, c->direction, c->pdf_at_z);
     path.light_last_from_camera = vertex_pdf(at_z, z, x0, c->direction, c->mean_transmittance, front_);
     path.camera_last_from_light = vertex_pdf(c->pdf_at_luminaire, x0, z, -c->direction, c->mean_transmittance, front_);
     path.camera_before_from_light = before_from(camera_, t, c->direction, Transport::importance);
-    if (path.pdf_emission_origin > 0 && path.pdf_next_event > 0) found.weight = bidirectional_weight(path, weights_.heuristic);
+    if (path.pdf_emission_origin > 0 && path.next_event_point_pdf > 0)
+      found.weight = bidirectional_weight(path, weights_.heuristic);
   }
   return found;
 }
@@ -136,7 +137,7 @@ std::optional<PathContribution> BidirectionalSubpaths::connect(int s, int t) con
                        0,
                        0,
                        0,
-                       y0_pdf_next_event_,
+                       y0_next_event_point_pdf_,
                        light_[0].pdf_forward,
                        emitter_can_be_hit(light_[0]),
                        weights_.merging};
@@ -158,9 +159,18 @@ std::optional<PathContribution> BidirectionalSubpaths::connect_to_lens(int s) co
   PathContribution found{s, 1, false, c->light, light_[0].point.object, 1, c->lens.film};
   if (weights_.weighted) {
     const Vector3& direction = c->lens.direction;
-    ConnectedPath path{
-        light_.data(),   s, &c->camera, 1, 0, 0, 0, 0, y0_pdf_next_event_, light_[0].pdf_forward, emitter_can_be_hit(light_[0]),
-        weights_.merging};
+    ConnectedPath path{light_.data(),
+                       s,
+                       &c->camera,
+                       1,
+                       0,
+                       0,
+                       0,
+                       0,
+                       y0_next_event_point_pdf_,
+                       light_[0].pdf_forward,
+                       emitter_can_be_hit(light_[0]),
+                       weights_.merging};
     path.light_last_from_camera = vertex_pdf(c->pdf_at_lens, c->camera, y, -direction, c->mean_transmittance, front_);
     path.light_before_from_camera = before_from(light_, s, direction, Transport::radiance);
     found.weight = bidirectional_weight(path, weights_.heuristic);

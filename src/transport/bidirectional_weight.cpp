@@ -12,7 +12,7 @@ class Strategies {
 
   double raised(double ratio) const { return heuristic_ == Heuristic::balance ? ratio : ratio * ratio; }
   /// The factor of p_j that replaces L_0 by D_0, for j = 1.
-  double first(int j) const { return j == 1 ? double(path_.pdf_next_event) / path_.pdf_emission_origin : 1.0; }
+  double first(int j) const { return j == 1 ? double(path_.next_event_point_pdf) / path_.pdf_emission_origin : 1.0; }
 
   /// The sum of (p_j / p_s)^beta over the strategies with more vertices from the luminaire than s, connecting and merging.
   /// `ratio` is prod_{i<s} L_i prod_{i>=s} E_i over p_s: 1, or L_0 / D_0 if s = 1.

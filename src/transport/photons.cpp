@@ -66,15 +66,15 @@ void PhotonMap::build(std::vector<Photon>&& photons) {
 namespace {
 
 /// The part of the weight of merging with vertex i that depends on the light subpath.
-PhotonWeight weight_of(const std::vector<SubpathVertex>& walk, size_t i, float pdf_next_event, const StrategyWeights& against,
-                       const EmissionPlane& front) {
+PhotonWeight weight_of(const std::vector<SubpathVertex>& walk, size_t i, float next_event_point_pdf,
+                       const StrategyWeights& against, const EmissionPlane& front) {
   const SubpathVertex &photon = walk[i], &luminaire = walk[0];
   ConnectedPath path;
   path.light = walk.data();
   path.s = int(i);
   path.t = 2;  // at least: the merged vertex is not an end of the path
   path.light_last_from_camera = vertex_pdf(1, photon, walk[i - 1], photon.out, photon.mean_transmittance, front);
-  path.pdf_next_event = pdf_next_event;
+  path.next_event_point_pdf = next_event_point_pdf;
   path.pdf_emission_origin = luminaire.pdf_forward;
   path.emitter_can_be_hit = !luminaire.point.object->delta();
   path.merging = against.merging;
@@ -95,7 +95,7 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
     SampleContext sample{w, walk_samples, arena, {.abort = abort}};
     if (!generate_light_subpath(context.scene, lights, time, limits, sample, walk, light, targets)) continue;
     if (sample.aborted()) return;
-    const float luminaire_pdf = walk.size() > 1 && against ? pdf_next_event(lights, walk[1], walk[0], walk[1].out) : 0;
+    const float luminaire_pdf = walk.size() > 1 && against ? next_event_point_pdf(lights, walk[1], walk[0], walk[1].out) : 0;
     bool specular = true;  // whether all vertices since the luminaire are specular
     for (size_t i = 1; i < walk.size(); ++i) {
       const SubpathVertex& v = walk[i];

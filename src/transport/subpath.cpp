@@ -162,8 +162,8 @@ float pdf_emission_origin(const LightSampler& lights, const SubpathVertex& x1, c
                                       : object.area_pdf(luminaire.point));
 }
 
-float pdf_next_event(const LightSampler& lights, const SubpathVertex& x1, const SubpathVertex& luminaire,
-                     const Vector3& direction) {
+float next_event_point_pdf(const LightSampler& lights, const SubpathVertex& x1, const SubpathVertex& luminaire,
+                           const Vector3& direction) {
   const SceneObject& object = *luminaire.point.object;
   const float choice = lights.probability(x1.point.position, x1.normal(), object);
   if (object.delta() || !(choice > 0)) return choice;

@@ -34,8 +34,9 @@ class FaultyGuidedTracer final : public Renderer {
     CameraWalk<false> walk(context.scene, sample, ray, max_depth);
     const auto met = [&](const SurfacePoint& luminaire) {
       if (walk.specular) return 1.0f;
-      return heuristic_weight(Heuristic::power, walk.direction_pdf,
-                              next_event_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire));
+      return heuristic_weight(
+          Heuristic::power, walk.direction_pdf,
+          next_event_direction_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire));
     };
     while (walk.next_vertex(met) && !walk.at_end()) {
       const NumberStream::Bounce u = walk.numbers.next_bounce();

@@ -68,8 +68,9 @@ class FaultyPathTracer final : public Renderer {
     const SurfacePoint& p = walk.vertex.point;
     const Spectrum light = walk.throughput * p.object->emission->radiance(p, -walk.ray.direction, walk.sample.wavelengths);
     if (walk.specular || light.black() || fault == Fault::luminaire_twice) return light;
-    const float weight = heuristic_weight(Heuristic::power, walk.direction_pdf,
-                                          next_event_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, p));
+    const float weight =
+        heuristic_weight(Heuristic::power, walk.direction_pdf,
+                         next_event_direction_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, p));
     return light * (fault == Fault::wrong_mis_weight ? std::sqrt(weight) : weight);
   }
 

@@ -23,7 +23,8 @@ class ScaledPathTracer final : public Renderer {
     CameraWalk walk(context.scene, sample, ray, max_depth);
     const auto weight = [&](const SurfacePoint& luminaire) {
       if (walk.specular) return 1.0f;
-      const float sampled = next_event_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire);
+      const float sampled =
+          next_event_direction_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire);
       return walk.direction_pdf / (walk.direction_pdf + sampled);
     };
     while (walk.next_vertex(weight) && !walk.at_end()) {

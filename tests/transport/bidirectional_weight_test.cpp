@@ -16,7 +16,7 @@ struct MadeUp {
   int last;
   std::vector<float> from_light, from_camera;
   std::vector<bool> specular;  ///< whether scattering at x_i is specular
-  float pdf_next_event;
+  float next_event_point_pdf;
   double merging;
 
   MadeUp(std::mt19937& random, int length, double merged, double mirrors) : last(length), merging(merged) {
@@ -27,14 +27,16 @@ struct MadeUp {
       from_camera.push_back(u(random));
       specular.push_back(i > 0 && i < last && mirror(random));
     }
-    pdf_next_event = u(random);
+    next_event_point_pdf = u(random);
   }
 
   /// The product of the pdfs of strategy j. `of_walk`: x_0 has the pdf of emission in strategy 1, too.
   double pdf(int j, bool of_walk = false) const {
     double p = 1;
     for (int i = 0; i <= last; ++i)
-      p *= double(i >= j ? from_camera[size_t(i)] : (i == 0 && j == 1 && !of_walk) ? pdf_next_event : from_light[size_t(i)]);
+      p *= double(i >= j                           ? from_camera[size_t(i)]
+                  : (i == 0 && j == 1 && !of_walk) ? next_event_point_pdf
+                                                   : from_light[size_t(i)]);
     return p;
   }
   double merged_pdf(int i) const { return pdf(i, true) * merging * double(from_light[size_t(i)]); }
@@ -66,7 +68,7 @@ struct MadeUp {
                        at(from_camera, s - 2),
                        at(from_light, s),
                        at(from_light, s + 1),
-                       pdf_next_event,
+                       next_event_point_pdf,
                        from_light[0],
                        true,
                        {merging, 0}};
@@ -78,7 +80,7 @@ struct MadeUp {
     path.light_before_from_camera = -1;
     const PhotonWeight photon = photon_weight(path, path.camera_last_from_light, heuristic);
     path.light = nullptr;
-    path.light_last_from_camera = path.pdf_next_event = path.pdf_emission_origin = -1;
+    path.light_last_from_camera = path.next_event_point_pdf = path.pdf_emission_origin = -1;
     return merging_weight(path, photon, back, heuristic);
   }
   SubpathVertex vertex(int i, float pdf_forward, float pdf_reverse) const {

@@ -42,7 +42,8 @@ struct Hit {
   explicit operator bool() const { return object != nullptr; }
 };
 
-/// A point on a surface (SurfaceInteraction in pbrt and Mitsuba), in the coordinates of the outermost scene.
+/// A point on a surface (SurfaceInteraction in pbrt and Mitsuba), in the coordinates of the outermost scene; an object fills
+/// it in those of the scene that contains it.
 struct SurfacePoint {
   Point3 position;
   float error = 0;             ///< upper bound of the distance of `position` from the true surface [m]
@@ -57,7 +58,7 @@ struct SurfacePoint {
   float time = 0;              ///< [s]
   const SceneObject* object = nullptr;
   std::uint32_t primitive = 0;
-  float u = 0, v = 0;                  ///< of the Hit
+  float u = 0, v = 0;                  ///< copied from the Hit: coordinates on the primitive
   const MediumStack* media = nullptr;  ///< the media that contain the ray that hit the point; null: vacuum
   Vector3 ray_direction;               ///< of the ray that hit the point: the footprint is longer along it; zero: unknown
 

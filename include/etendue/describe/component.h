@@ -46,6 +46,10 @@ class Component {
   /// The locations where a component and its members were written, and the component's name there. Null for components made in
   /// code.
   struct Origin {
+    Origin();
+    Origin(const Origin&);
+    ~Origin();
+
     Location location;
     std::string name;
     std::vector<std::pair<std::string, Location>> members;
@@ -58,7 +62,7 @@ class Component {
   [[noreturn]] void fail(std::string_view member, const std::string& message) const;
 
  protected:
-  Component() = default;
+  Component();
 
  private:
   mutable std::atomic<int> count_{0};

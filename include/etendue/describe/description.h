@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,24 @@
 #include "etendue/describe/registry.h"
 
 namespace etendue {
+
+namespace detail {
+std::vector<std::string> name_list(std::initializer_list<std::string_view>);
+
+/// A value that a condition wants; it refers to texts and does not own them.
+struct Wanted {
+  enum class Kind : std::uint8_t { boolean, number, text } kind;
+  double number = 0;  ///< or the boolean
+  std::string_view text = {};
+  Wanted(bool v) : kind(Kind::boolean), number(v) {}
+  Wanted(double v) : kind(Kind::number), number(v) {}
+  Wanted(float v) : kind(Kind::number), number(double(v)) {}
+  Wanted(int v) : kind(Kind::number), number(v) {}
+  Wanted(const char* v) : kind(Kind::text), text(v) {}
+  Wanted(const std::string& v) : kind(Kind::text), text(v) {}
+};
+Condition condition(std::string_view member, std::initializer_list<Wanted> values, bool unless);
+}  // namespace detail
 
 // ---- options of a member ------------------------------------------------------------------------------------------
 
@@ -24,8 +43,8 @@ inline constexpr Required required{};
 /// The names of an enum's values, in order: choices("both", "front") for values 0 and 1. For a string, or the strings of a
 /// list, all allowed values.
 template <class... S>
-std::vector<std::string> choices(S... names) {
-  return {std::string(names)...};
+std::vector<std::string> choices(const S&... names) {
+  return detail::name_list({std::string_view(names)...});
 }
 
 /// The ends of a slider: soft(0.01, 10). They lie within the range, and give the usual values, not the allowed ones.
@@ -33,30 +52,19 @@ inline SoftRange soft(double low, double high) { return {low, high}; }
 /// Gives a number a logarithmic slider, as for a distance or an exponent.
 struct Logarithmic {};
 inline constexpr Logarithmic logarithmic{};
-namespace detail {
-template <class V>
-Condition::Wanted wanted(V value) {
-  if constexpr (std::is_same_v<V, bool>)
-    return value;
-  else if constexpr (std::is_arithmetic_v<V>)
-    return double(value);
-  else
-    return std::string(value);
-}
-}  // namespace detail
 
 /// A condition: the member has an effect only if another member has one of these values: when("pigment", "color"), when("sun",
 /// true). Without values, when("file"): if the other member is not empty (not false, 0, "", [], none, or a map that is 0
 /// everywhere). All conditions of a member must hold. The user is warned if a scene sets a member that has no effect, so the
 /// conditions must be correct for every value of all other members.
 template <class... V>
-Condition when(std::string member, V... values) {
-  return {std::move(member), {detail::wanted(values)...}, false};
+Condition when(std::string_view member, const V&... values) {
+  return detail::condition(member, {detail::Wanted(values)...}, false);
 }
 /// The negated condition: unless("file"), if no file is given.
 template <class... V>
-Condition unless(std::string member, V... values) {
-  return {std::move(member), {detail::wanted(values)...}, true};
+Condition unless(std::string_view member, const V&... values) {
+  return detail::condition(member, {detail::Wanted(values)...}, true);
 }
 
 // ---- conversion between C++ types and values ----------------------------------------------------------------------
@@ -292,31 +300,62 @@ struct PointerTo<P> {
 
 // ---- the description itself ---------------------------------------------------------------------------------------
 
+/// The facts about a member that follow from its C++ type.
+struct MemberType {
+  Kind kind;
+  bool list, in_double;
+  Value (*get)(const Component&, const Member&);
+  void (*store)(Component&, const Member&, const Value&);
+};
+
+/// The part of a description that does not depend on the class; it is compiled once.
+class AnyDescription {
+ public:
+  /// Throws Error for a group without members; called at the end of the description.
+  void finish() const;
+
+ protected:
+  explicit AnyDescription(ClassInfo& info) : info_(info) {}
+  void set_summary(std::string_view text, std::string_view source);
+  void open_group(std::string_view name);
+  Member& add_member(std::string_view name, std::string_view unit, std::string_view text, const MemberType&,
+                     std::string component_class);
+  void remove_member(std::string_view name, std::string_view why);
+  void set_literal(std::string_view member);
+
+  static void option(Member& m, Range r) { m.range = r; }
+  static void option(Member& m, Effect e) { m.effect = e; }
+  static void option(Member& m, Required) { m.required = true; }
+  static void option(Member& m, std::vector<std::string> names);
+  static void option(Member& m, SoftRange r) { m.soft = r; }
+  static void option(Member& m, Logarithmic) { m.logarithmic = true; }
+  static void option(Member& m, Meaning meaning) { m.meaning = meaning; }
+  static void option(Member& m, Condition c);
+
+ private:
+  struct Opened {
+    std::string name;
+    size_t members = 0;  ///< number of members described before the group
+  };
+  ClassInfo& info_;
+  std::optional<Opened> opened_;
+};
+
 /// The description of a component class, filled by its function `static void describe(Description<T>&)`.
 template <class T>
-class Description {
+class Description : public AnyDescription {
  public:
-  explicit Description(ClassInfo& info) : info_(info) {}
+  explicit Description(ClassInfo& info) : AnyDescription(info) {}
 
   /// A sentence that says what the class is, and its source (a paper, a standard), if any.
-  Description& summary(std::string text, std::string source = {}) {
-    info_.summary = std::move(text);
-    info_.source = std::move(source);
+  Description& summary(std::string_view text, std::string_view source = {}) {
+    set_summary(text, source);
     return *this;
   }
 
-  /// Throws Error for a group without members; called at the end of the description.
-  void finish() const {
-    if (opened_ && opened_->members == info_.members.size()) throw Error("group '" + opened_->name + "' has no members");
-  }
-
   /// Starts a group: the following members, up to the next group, are shown together in a panel under this name.
-  Description& group(std::string name) {
-    finish();
-    if (name.empty()) throw Error("a group has no name");
-    for (const Member& m : info_.members)
-      if (m.owner == &info_ && m.group == name) throw Error("group '" + name + "' is opened twice");
-    opened_ = {std::move(name), info_.members.size()};
+  Description& group(std::string_view name) {
+    open_group(name);
     return *this;
   }
 
@@ -324,61 +363,30 @@ class Description {
   /// any of range(), at_least(), more_than(), soft(), logarithmic, choices(), when(), unless(), required, Effect, Meaning. The
   /// C++ member stores its value in this unit.
   template <auto P, class... Options>
-  Description& member(std::string name, std::string unit, std::string text, Options... options) {
+  Description& member(std::string_view name, std::string_view unit, std::string_view text, Options... options) {
     using Type = typename detail::PointerTo<P>::Type;
-    Member m;
-    m.name = std::move(name);
-    m.unit = std::move(unit);
-    m.text = std::move(text);
-    m.kind = detail::Convert<Type>::kind;
-    m.list = detail::IsVector<Type>::value;
-    m.in_double = detail::in_double<Type>;
-    m.component_class = detail::referred_class<detail::Referee<Type>>();
-    m.owner = &info_;
-    if (opened_) m.group = opened_->name;
-    m.get = [](const Component& c, const Member& self) {
-      return detail::Convert<Type>::write(static_cast<const T&>(c).*P, self);
-    };
-    m.store = [](Component& c, const Member& self, const Value& v) {
-      detail::Convert<Type>::read(v, self, static_cast<T&>(c).*P);
-    };
+    static constexpr MemberType type{
+        detail::Convert<Type>::kind, detail::IsVector<Type>::value, detail::in_double<Type>,
+        [](const Component& c, const Member& self) { return detail::Convert<Type>::write(static_cast<const T&>(c).*P, self); },
+        [](Component& c, const Member& self, const Value& v) { detail::Convert<Type>::read(v, self, static_cast<T&>(c).*P); }};
+    Member& m = add_member(name, unit, text, type, detail::referred_class<detail::Referee<Type>>());
     (option(m, std::move(options)), ...);
-    info_.members.push_back(std::move(m));
     return *this;
   }
 
   /// Removes an inherited member that would have no effect in this class; `why` is the reason in the error message if it is
   /// set.
-  Description& without(const std::string& name, std::string why) {
-    if (std::erase_if(info_.members, [&](const Member& m) { return m.name == name; }) == 0)
-      throw Error("there is no member '" + name + "' that the class could be without");
-    info_.absent.push_back({name, std::move(why)});
+  Description& without(std::string_view name, std::string_view why) {
+    remove_member(name, why);
     return *this;
   }
 
   /// A plain value (a number, a colour) where this class's interface is expected is converted to an object of this class with
   /// that member set.
-  Description& literal(std::string member) {
-    info_.literal = std::move(member);
+  Description& literal(std::string_view member) {
+    set_literal(member);
     return *this;
   }
-
- private:
-  static void option(Member& m, Range r) { m.range = r; }
-  static void option(Member& m, Effect e) { m.effect = e; }
-  static void option(Member& m, Required) { m.required = true; }
-  static void option(Member& m, std::vector<std::string> names) { m.choices = std::move(names); }
-  static void option(Member& m, SoftRange r) { m.soft = r; }
-  static void option(Member& m, Logarithmic) { m.logarithmic = true; }
-  static void option(Member& m, Meaning meaning) { m.meaning = meaning; }
-  static void option(Member& m, Condition c) { m.conditions.push_back(std::move(c)); }
-
-  struct Opened {
-    std::string name;
-    size_t members = 0;  ///< number of members described before the group
-  };
-  ClassInfo& info_;
-  std::optional<Opened> opened_;
 };
 
 // ---- registration -------------------------------------------------------------------------------------------------

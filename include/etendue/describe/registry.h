@@ -56,6 +56,14 @@ std::string_view name(Meaning);
 /// A condition on another member of the same component: a member has an effect only if all its conditions hold.
 struct Condition {
   using Wanted = std::variant<bool, double, std::string>;
+  // Compiled once, in src/describe/description.cpp.
+  Condition();
+  Condition(const Condition&);
+  Condition(Condition&&) noexcept;
+  Condition& operator=(const Condition&);
+  Condition& operator=(Condition&&) noexcept;
+  ~Condition();
+
   std::string member;
   /// The other member must have one of these values; numbers are in its unit. If the list is empty, any value except false, 0,
   /// "", an empty list, none, and a map that is 0 everywhere.
@@ -85,6 +93,14 @@ std::string_view name(Kind);
 
 /// One described member of a class.
 struct Member {
+  // Compiled once, in src/describe/description.cpp.
+  Member();
+  Member(const Member&);
+  Member(Member&&) noexcept;
+  Member& operator=(const Member&);
+  Member& operator=(Member&&) noexcept;
+  ~Member();
+
   std::string name, unit, text;
   Kind kind = Kind::number;
   bool list = false;

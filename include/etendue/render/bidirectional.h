@@ -7,7 +7,7 @@
 //     LightTracer                  lens alone
 //
 // With C_{s,t} the contribution of the strategy that takes s vertices from a luminaire and t from the lens, and w its multiple
-// importance sampling weight among all strategies in use (transport/bidirectional_subpaths.h), one sample is
+// importance sampling weight (transport/bidirectional_weight.h), one sample is
 //     sum_{s,t} w_{s,t} C_{s,t}  +  sum_t sum_p w_{p,t} alpha_p f(z_{t-1}, w_p) alpha_t / (n pi r^2),
 // the second sum being over the photons p within r of z_{t-1}, of n light subpaths.
 
@@ -17,7 +17,8 @@
 
 namespace etendue {
 
-/// The strategies that an algorithm combines. Merging is one of them when the estimator is given photons.
+/// The strategies that an algorithm combines. Merging is one of them when the estimator is given photons. Weights do not depend
+/// on the choice: a strategy that is left out leaves its share out, unless `weighted` is false.
 struct BidirectionalStrategies {
   bool emitter_hits = true;  ///< s = 0
   bool next_event = true;    ///< s = 1

@@ -75,6 +75,7 @@ class RenderProcess {
   /// A path as a function of primary samples: these give the film point within an area, the lens point, the time, the
   /// wavelengths, and then all choices in `radiance`. Other numbers give another path of the same algorithm, so a Metropolis
   /// sampler may mutate each of them. The arena is empty afterwards.
+  /// If the area is a crop, the value counts as a splat times the crop's share of the whole image.
   CameraSample path(const PixelArea& area, const NumberSource&, SampleKey, Arena&, const PathSink& = {}) const;
   /// The path of one sample of a pixel, as it is in the picture: for replay. An algorithm whose samples are not such paths
   /// (Markov chains, for one) returns the nearest it can, or throws Error with the reason.

@@ -52,7 +52,7 @@ class Renderer : public Component {
   /// Render::add throw Error), and a replay renders all earlier steps.
   virtual bool steps_depend() const { return false; }
   virtual Expectation expectation() const { return Expectation::unbiased; }
-  /// Whether its samples contribute to other film points than their own (SampleContext::splat).
+  /// Whether its samples contribute to other film points than their own (splat_light in transport/light_groups.h).
   virtual bool splats() const { return false; }
   /// How its samples depend on one another, which determines how the film can estimate their error.
   virtual Estimator estimator() const { return Estimator::independent; }

@@ -3,9 +3,9 @@
 // with its multiple importance sampling weight.
 //
 // A strategy (s, t) takes s vertices y_0 … y_{s-1} from the luminaire and t vertices z_0 … z_{t-1} from the lens. With alpha
-// the throughputs of the subpaths and w the multiple importance sampling weight of the strategy among all that can make the
-// same path (bidirectional_weight.h), its contribution is
-//     C_{s,t} = w_{s,t} alpha_s c_{s,t} alpha_t     (Veach 1997, section 10.1; connection.h).
+// the throughputs of the subpaths, its contribution is
+//     C_{s,t} = alpha_s c_{s,t} alpha_t     (Veach 1997, section 10.1; connection.h),
+// which counts w_{s,t} C_{s,t}, with w the multiple importance sampling weight of the strategy (bidirectional_weight.h).
 //   s = 0: emitter hit. z_{t-1} lies on a luminaire.
 //   s = 1: next event estimation. A point of a luminaire is sampled as seen from z_{t-1}.
 //   t = 1: light tracing. y_{s-1} is connected to the lens, and the contribution is splatted where it falls on the film.
@@ -33,7 +33,7 @@ struct Photon;
 struct PathContribution {
   int s = 0, t = 0;  ///< vertices from the luminaire and from the camera
   bool merged = false;
-  Spectrum light;                          ///< C / w [W m^-2 sr^-1 nm^-1]; for t = 1 the value of a Splat
+  Spectrum light;                          ///< C, without w [W m^-2 sr^-1 nm^-1]; for t = 1 the value of a Splat
   const SceneObject* luminaire = nullptr;  ///< null: emitted by a medium
   float weight = 1;                        ///< w
   Point2 film = {};                        ///< of t = 1: where it is splatted
@@ -94,7 +94,7 @@ class BidirectionalSubpaths {
   Wavelengths light_wavelengths_;
   const EmissionPlane front_;
   CameraDirections* directions_ = nullptr;
-  float y0_pdf_next_event_ = 0;  ///< pdf of y_0 when it is sampled as seen from y_1
+  float y0_next_event_point_pdf_ = 0;  ///< pdf of y_0 when it is sampled as seen from y_1
 };
 
 /// Adds a weighted contribution to the sample's radiance, or splats it (t = 1), and passes it to the sample's PathSink.

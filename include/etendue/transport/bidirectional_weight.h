@@ -1,6 +1,8 @@
 #pragma once
 // Multiple importance sampling weights of bidirectional path tracing and of vertex connection and merging: the weight of one
-// strategy among all that can make the same path.
+// strategy among all that can make the same path. These are always emitter hits, next event estimation, connections and the
+// lens, and merging where its factor (Merging) is more than 0: an algorithm that leaves one of them out has no weights that sum
+// to 1, and must take each strategy in full (StrategyWeights::weighted = false).
 //
 // A path x_0 (on a luminaire) … x_k (on the lens) can be made by k + 1 strategies: strategy j takes x_0 … x_{j-1} from a light
 // subpath and the other vertices from a camera subpath, and connects the two. With L_i the pdf of x_i as sampled by a light
@@ -51,7 +53,7 @@ struct ConnectedPath {
   float light_before_from_camera = 0;  ///< E of light[s-2]
   float camera_last_from_light = 0;    ///< L of camera[t-1]
   float camera_before_from_light = 0;  ///< L of camera[t-2]
-  float pdf_next_event = 0;            ///< D_0: pdf of x_0 by next event estimation
+  float next_event_point_pdf = 0;      ///< D_0: pdf of x_0 by next event estimation
   float pdf_emission_origin = 0;       ///< L_0: pdf of x_0 as the origin of a light subpath
   bool emitter_can_be_hit = true;
   Merging merging = {};

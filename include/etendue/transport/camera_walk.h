@@ -132,7 +132,7 @@ class CameraWalk : public Walk<clear> {
                                                   const SurfacePoint& luminaire) const {
     if (this->specular) return 1;
     return heuristic_weight(heuristic, this->direction_pdf,
-                            next_event_pdf(lights, this->from, this->from_normal, ray.direction, luminaire));
+                            next_event_direction_pdf(lights, this->from, this->from_normal, ray.direction, luminaire));
   }
 
   /// Samples the direction in which the walk leaves its last vertex: T *= f |cos| / p. False: the walk is absorbed.

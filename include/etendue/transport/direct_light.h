@@ -80,8 +80,8 @@ template <class Scattering>
 }
 
 /// The pdf [1/sr] with which next event estimation from `from` samples a given point of a luminaire: P p.
-inline float next_event_pdf(const LightSampler& lights, const Point3& from, const Normal3& normal, const Vector3& direction,
-                            const SurfacePoint& on_luminaire) {
+inline float next_event_direction_pdf(const LightSampler& lights, const Point3& from, const Normal3& normal,
+                                      const Vector3& direction, const SurfacePoint& on_luminaire) {
   const SceneObject& luminaire = *on_luminaire.object;
   const float probability = lights.probability(from, normal, luminaire);
   return probability > 0 ? probability * luminaire.visible_pdf(from, direction, on_luminaire) : 0;

@@ -22,7 +22,7 @@ struct Splat {
   Spectrum value;  ///< the contribution of one path to the mean radiance over the whole film, with importance normalised to an
                    ///< integral of 1: see ImageTile::splat
   Wavelengths wavelengths;
-  int length = 0;  ///< segments of the path
+  int length = 0;  ///< segments of the path; with light groups SplatLabel::packed
 };
 
 /// A list of records of one type, for which paths need not know the algorithm that reads them: training samples, reservoirs.
@@ -63,7 +63,7 @@ struct PathSink {
     if (!lengths.empty()) [[unlikely]]
       lengths[std::min(size_t(length), lengths.size()) - 1] += value;
   }
-  /// A contribution to a point of the film, besides the sample's own radiance.
+  /// A contribution to a point of the film, besides the sample's own radiance. `length`: see Splat.
   void splat(Point2 film, const Spectrum& value, const Wavelengths& w, int length) {
     if (splats) splats->push_back({film, value, w, length});
   }

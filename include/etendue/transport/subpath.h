@@ -33,9 +33,9 @@ struct SubpathVertex : PathVertex {
                                  ///< from the camera 1 at first
   float extinction = 0;          ///< in a medium [1/m], mean over the wavelengths
   float mean_transmittance = 1;  ///< of the segment from the vertex before
-  float pdf_forward = 0,
-        pdf_reverse = 0;  ///< by which the subpath itself sampled the vertex, and by which a subpath from the next vertex would
-                          ///< sample it
+  float pdf_forward = 0;  ///< of the vertex, sampled from the vertex before [1/m^2 on a surface; 1/m^3 in a medium; 1/sr on a
+                          ///< luminaire at infinity and of an escaped ray]
+  float pdf_reverse = 0;  ///< the same, sampled from the vertex after
 
   /// Whether the vertex can be connected to a vertex of another subpath: it has a lobe that is not specular, whichever lobe the
   /// subpath sampled.
@@ -121,8 +121,9 @@ float camera_direction_pdf(const Camera&, const Ray&);
 float pdf_emission_origin(const LightSampler&, const SubpathVertex& x1, const SubpathVertex& luminaire,
                           const Vector3& direction);
 
-/// The pdf of that point by next event estimation from x1, in the same measure.
-float pdf_next_event(const LightSampler&, const SubpathVertex& x1, const SubpathVertex& luminaire, const Vector3& direction);
+/// The pdf of that point by next event estimation from x1 [1/m^2]; for a luminaire at infinity [1/sr].
+float next_event_point_pdf(const LightSampler&, const SubpathVertex& x1, const SubpathVertex& luminaire,
+                           const Vector3& direction);
 
 /// Stores the vertices of a subpath in a PathRecord.
 void record_subpath(std::vector<PathRecord::Vertex>&, std::span<const SubpathVertex> walk);

@@ -16,7 +16,9 @@
 // luminaire T_k is the flux [W/nm] that the subpath carries to x_k.
 //
 // Some events on the way are not vertices: media through which the walk passes, boundaries that are hidden because they lie
-// inside an object of higher priority (boundaries.h), and null scattering. At a surface with null scattering and other lobes,
+// inside an object of higher priority (boundaries.h), and null scattering. (With `collects_light` a null-scattering surface
+// that has smooth lobes too is a vertex first, where light is gathered; null scattering is then one of its lobes, after which
+// `pass_on` continues the segment.) Otherwise, at a surface with null scattering and other lobes,
 // the walk passes with the probability q, the fraction n that is let through (or the ratio of n to the whole albedo, where n is
 // 1 or more and light is scattered as well), and both outcomes are weighted by the inverse of their probability.
 
@@ -87,8 +89,8 @@ class Walk {
   /// For a branch of a split walk (CameraWalk::split): a survival probability that Roulette has yet to apply; 1: none.
   float pending_survival = 1;
 
-  /// The throughput relative to the initial one, for Russian roulette. Excludes the factor eta^2 of refraction, which the way
-  /// out of the medium takes back, and the weight of splitting.
+  /// The throughput relative to the initial one, for Russian roulette (of a camera walk that is 1). Excludes the factor eta^2
+  /// of refraction, which the way out of the medium takes back, and the weight of splitting.
   float roulette_weight() const {
     if (transport == Transport::radiance) return throughput.maximum() * eta_squared_ * branches;
     float most = 0;

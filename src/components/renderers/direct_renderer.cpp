@@ -212,7 +212,7 @@ class DirectRenderer final : public Renderer {
 
       const auto weight = [&](const SurfacePoint& on_luminaire) {
         if (strategy == Strategy::shader || next->specular()) return 1.0f;
-        const float pdf = next_event_pdf(*light_sampler, point.position, point.normal, next->direction, on_luminaire);
+        const float pdf = next_event_direction_pdf(*light_sampler, point.position, point.normal, next->direction, on_luminaire);
         return heuristic_weight(heuristic, n * next->pdf, float(light_samples) * pdf);
       };
       for (int crossings = 0; crossings <= most_crossings; ++crossings) {

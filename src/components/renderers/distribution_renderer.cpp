@@ -103,7 +103,7 @@ class DistributionRenderer final : public Renderer {
     if (light.black()) return;
     float weight = 1;
     if (branch.pdf > 0) {
-      const float pdf = next_event_pdf(*light_sampler, branch.from, branch.from_normal, direction, point);
+      const float pdf = next_event_direction_pdf(*light_sampler, branch.from, branch.from_normal, direction, point);
       weight = heuristic_weight(Heuristic::power, branch.pdf, branch.luminaire_rays * pdf);
     }
     light *= weight;
