@@ -206,7 +206,9 @@ const ClassInfo* Registry::find(std::string_view name) const {
   const_cast<Registry*>(this)->adopt();
   const std::lock_guard lock(s->mutex);
   auto found = s->by_name.find(name);
-  if (found == s->by_name.end() && load_format_library()) {
+  // Names of classes begin with a capital; the parser looks up every other name of a scene, too.
+  const bool capital = !name.empty() && name[0] >= 'A' && name[0] <= 'Z';
+  if (found == s->by_name.end() && capital && load_format_library()) {
     const_cast<Registry*>(this)->adopt();
     found = s->by_name.find(name);
   }
@@ -259,7 +261,12 @@ std::vector<std::string> Registry::plugins() const {
 }
 
 void Registry::load_plugin(const std::string& path) {
-  adopt();
+  {
+    // First, so that a plugin that defines a class of that library again is refused here, and for that reason.
+    const std::lock_guard lock(s->mutex);
+    load_format_library();
+    adopt();
+  }
   const std::string file = find_plugin(path);
   note_input(file);
   {

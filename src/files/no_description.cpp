@@ -46,11 +46,11 @@ std::string endings_text(std::vector<std::string> all) {
 }  // namespace
 
 std::string why_no_description(const std::string& path, std::string_view text, bool main,
-                               const std::vector<std::string>& others) {
+                               const std::function<std::vector<std::string>()>& others) {
   const std::string ending = ending_of_contents(path);
   const bool known = ending.empty() || ending == "etd" || ending == "json";
   if (!known && !begins_as_description(text, main))
-    return fmt::format("'{}': files ending in .{} are not read; these are: {}", path, ending, endings_text(others));
+    return fmt::format("'{}': files ending in .{} are not read; these are: {}", path, ending, endings_text(others()));
   const std::string contents = mistaken_contents(text, ending == "json" ? ending : "etd");
   return contents.empty() ? contents : fmt::format("'{}' is no render description: {}", path, contents);
 }

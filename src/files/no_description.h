@@ -1,6 +1,7 @@
 #pragma once
 // Recognizes files that are not render descriptions before they are parsed as such.
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,6 @@ namespace etendue {
 /// read; these are: …". Empty: it may be one. `main`: the file is rendered itself, not included. `others`: extensions of other
 /// programs' files that can be read.
 std::string why_no_description(const std::string& path, std::string_view text, bool main,
-                               const std::vector<std::string>& others);
+                               const std::function<std::vector<std::string>()>& others);
 
 }  // namespace etendue

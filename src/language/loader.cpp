@@ -75,8 +75,8 @@ bool Loader::load(const std::string& path, Location named_at, Space& space, bool
     whole_ = false;
     return false;
   }
-  const std::string wrong = why_no_description(path, source.text, main_ == intern(path) && active_.empty(),
-                                               other_files_ ? other_files_->endings() : std::vector<std::string>());
+  const auto others = [&] { return other_files_ ? other_files_->endings() : std::vector<std::string>(); };
+  const std::string wrong = why_no_description(path, source.text, main_ == intern(path) && active_.empty(), others);
   if (!wrong.empty()) {
     diagnostics_.add(Error(wrong, named_at));
     whole_ = false;

@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
+#include "etendue/core/math.h"
 #include "etendue/describe/registry.h"
 #include "etendue/film/image_tools.h"
 
@@ -40,6 +42,215 @@ class Plugin : public ::testing::Test {
                "/installed && cmake --build " + f + "/build --target " + target) == 0;
   }
 };
+
+/// The mean of an image's luminance.
+double mean(const Image& image) {
+  double sum = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) sum += double(image.at(x, y, 1));
+  return sum / image.width / image.height;
+}
+
+// The plugins of the pages write-an-object, -map, -emission, -camera, -volume, -tone-map and -importer: each passes `conform`
+// and agrees with a closed form. `program` is the installed one, and `f` the folder with `build`.
+
+/// The mean of a picture that the program renders of the description `name`.
+double rendered_mean(const std::string& program, const std::string& f, const std::string& name, int samples,
+                     const std::string& options = "") {
+  std::string output;
+  EXPECT_EQ(run(program + " render " + f + "/" + name + ".etd --samples " + std::to_string(samples) + " --quiet -o " + f + "/" +
+                    name + ".npy " + options,
+                &output),
+            0)
+      << output;
+  return mean(read_image(f + "/" + name + ".npy"));
+}
+
+void check_object(const std::string& program, const std::string& f) {
+  std::string output;
+  // The shape. Parallel rays across its axis see 2 r h + pi r^2 of a capsule, here in a picture of 4 m^2. Its area is
+  // 2 pi r (h + 2 r): a power of 470 nm times pi times that is a radiance of 1 between 360 and 830 nm. Inside a capsule that
+  // emits 1, also one that an instance stretches, a surface of albedo 0.8 has the radiance 0.8 by sampled points alone. A
+  // capsule of glass in an environment of radiance 1 is invisible, also far from the origin.
+  const std::string capsule = f + "/build/libcapsule.so";
+  EXPECT_EQ(run(program + " conform Capsule --quick --plugin " + capsule, &output), 0) << output;
+  std::ofstream(f + "/side.etd") << R"(plugin "build/libcapsule.so"
+Job { camera: OrthographicCamera { from: [0, -5, 0], to: [0, 0, 0], up: [0, 0, 1], width: 2 }
+      image: ImageBuffer { width: 32, height: 32, filter: BoxFilter {} }
+      scene: BruteForceScene { objects: [
+          Capsule { radius: 0.4, height: 0.9, emission: DiffuseEmission { power: 470 * pi * 2 * pi * 0.4 * 1.7 } } ] } })";
+  EXPECT_NEAR(rendered_mean(program, f, "side", 64), (2 * 0.4 * 0.9 + M_PI * 0.16) / 4, 0.002);
+  std::ofstream(f + "/inside.etd") << R"(plugin "build/libcapsule.so"
+Job { camera: OrthographicCamera { from: [0, 0, 0.3], to: [0, 0, 0], up: [0, 1, 0], width: 0.2 }
+      image: ImageBuffer { width: 4, height: 4, filter: BoxFilter {} }, renderer: SimplePathTracer {}
+      scene: BruteForceScene { objects: [
+          Rectangle { corner: [-0.1, -0.1, 0], edge_u: [0.2, 0, 0], edge_v: [0, 0.2, 0], shader: Lambertian { color: 0.8 } }
+          Instance { transform: scale(2, 1, 1.5), scene: BruteForceScene { objects: [
+              Capsule { emission: DiffuseEmission { sides: both } } ] } } ] } })";
+  EXPECT_NEAR(rendered_mean(program, f, "inside", 1024), 0.8, 0.01);
+  std::ofstream(f + "/glass.etd") << R"(plugin "build/libcapsule.so"
+Job { camera: OrthographicCamera { from: [1e7, -5, 0], to: [1e7, 0, 0], up: [0, 0, 1], width: 2 }
+      image: ImageBuffer { width: 8, height: 8, filter: BoxFilter {} }, renderer: PathTracer { max_depth: 60 }
+      scene: BvhScene { objects: [
+          Capsule { transform: translate(1e7, 0, 0) * rotate(30 deg, [1, 2, 3]), shader: Dielectric { ior: 1.5 } }
+          Environment { emission: DiffuseEmission {} } ] } })";
+  EXPECT_NEAR(rendered_mean(program, f, "glass", 64), 1, 0.001);
+  std::ofstream(f + "/stretched.etd") << R"(plugin "build/libcapsule.so"
+Job { camera: OrthographicCamera { from: [0, -5, 0], to: [0, 0, 0], up: [0, 0, 1], width: 2 }
+      scene: BruteForceScene { objects: [ Capsule { transform: scale(1, 2, 1) } ] } })";
+  EXPECT_EQ(run(program + " render " + f + "/stretched.etd --quiet -o " + f + "/stretched.npy", &output), 2);
+  EXPECT_NE(output.find("Capsule.transform: must not stretch"), std::string::npos) << output;
+}
+
+void check_map(const std::string& program, const std::string& f) {
+  std::string output;
+  // The texture covers (1 - joint)^2 of the surface with tiles. A corner of this picture is the centre of one, and an eighth of
+  // the width further is the middle of a border. A footprint wider than a tile shows the mean in each pixel.
+  EXPECT_EQ(run(program + " conform HexagonMap --quick --plugin " + f + "/build/libhexagons.so", &output), 0) << output;
+  std::ofstream(f + "/hexagons.etd") << R"(plugin "build/libhexagons.so"
+Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], width: 1 }
+      image: ImageBuffer { width: 64, height: 64, filter: BoxFilter {} }
+      scene: BruteForceScene { objects: [
+          Rectangle { corner: [-0.5, -0.5, 0], edge_u: [1, 0, 0], edge_v: [0, 1, 0], emission: DiffuseEmission {
+              radiance: HexagonMap { tile: 0.8, mortar: 0.2, joint: 0.25, repeat: [4, 4 * sqrt(3)] } } } ] } })";
+  const double expected = 0.2 + 0.6 * 0.75 * 0.75;
+  EXPECT_NEAR(rendered_mean(program, f, "hexagons", 64), expected, 0.003);
+  const Image sharp = read_image(f + "/hexagons.npy");
+  EXPECT_NEAR(double(sharp.at(0, 0, 1)), 0.8, 0.01);
+  EXPECT_NEAR(double(sharp.at(8, 0, 1)), 0.2, 0.01);
+  EXPECT_NEAR(rendered_mean(program, f, "hexagons", 16, "--set renderer.map_filter=32"), expected, 0.003);
+  const Image filtered = read_image(f + "/hexagons.npy");
+  EXPECT_NEAR(double(filtered.at(0, 0, 1)), expected, 0.01);
+  EXPECT_NEAR(double(filtered.at(8, 0, 1)), expected, 0.01);
+}
+
+void check_emission(const std::string& program, const std::string& f) {
+  std::string output;
+  // An emission: through an orthographic camera a star's disc has the radiance 1 - a (1 - m), m = sqrt(1 - r^2), and the mean
+  // 1 - a / 3; a square around the disc has pi / 4 of that. Light tracing samples its directions.
+  const std::string star = f + "/build/liblimb_darkened.so";
+  EXPECT_EQ(run(program + " conform LimbDarkenedEmission --quick --plugin " + star, &output), 0) << output;
+  std::ofstream(f + "/star.etd") << R"(plugin "build/liblimb_darkened.so"
+Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 2 }, image: ImageBuffer { width: 40, height: 40, filter: BoxFilter {} }
+      scene: BruteForceScene { objects: [ Sphere { emission: LimbDarkenedEmission {} } ] } })";
+  EXPECT_EQ(run(program + " render " + f + "/star.etd --samples 64 --quiet -o " + f + "/star.npy", &output), 0) << output;
+  const Image disc = read_image(f + "/star.npy");
+  EXPECT_NEAR(mean(disc), 0.8 * 3.14159265 / 4, 0.002);
+  EXPECT_NEAR(disc.at(31, 20, 1), 1 - 0.6 * (1 - std::sqrt(1 - 0.575 * 0.575 - 0.025 * 0.025)), 0.003);
+  std::ofstream(f + "/starlight.etd") << R"(plugin "build/liblimb_darkened.so"
+Job { renderer: PathTracer { max_depth: 3 }, camera: PerspectiveCamera { from: [0, -8, 5], to: [0, 0, 0.5], up: [0, 0, 1] }
+      image: ImageBuffer { width: 24, height: 24, filter: BoxFilter {} }
+      scene: BruteForceScene { objects: [ Sphere { centre: [0, 0, 1.5], emission: LimbDarkenedEmission { sides: both } }
+          Rectangle { corner: [-3, -3, 0], edge_u: [6, 0, 0], edge_v: [0, 6, 0], shader: Lambertian { color: 0.6 } } ] } })";
+  EXPECT_EQ(
+      run(program + " verify " + f + "/starlight.etd --renderers PathTracer,LightTracer --samples 256 --size 24x24 --quiet",
+          &output),
+      0)
+      << output;
+}
+
+void check_camera(const std::string& program, const std::string& f) {
+  std::string output;
+  // A camera: a ball on the axis, seen under 45 degrees on each side, fills a disc of half the radius of the picture's, both by
+  // camera rays and by connections to the lens.
+  const std::string fisheye = f + "/build/libfisheye.so";
+  EXPECT_EQ(run(program + " conform FisheyeCamera --quick --plugin " + fisheye, &output), 0) << output;
+  std::ofstream(f + "/ball.etd") << R"(plugin "build/libfisheye.so"
+Job { camera: FisheyeCamera { to: [0, 0, 2] }, image: ImageBuffer { width: 32, height: 32, filter: BoxFilter {} }
+      scene: BruteForceScene { objects: [ Sphere { centre: [0, 0, 2], radius: 1.41421356, emission: DiffuseEmission {} } ] } })";
+  for (const std::string renderer : {"PathTracer", "LightTracer"}) {
+    EXPECT_EQ(run(program + " render " + f + "/ball.etd --samples 256 --quiet --set 'renderer=" + renderer + " {}' -o " + f +
+                      "/ball.npy",
+                  &output),
+              0)
+        << output;
+    EXPECT_NEAR(mean(read_image(f + "/ball.npy")), 3.14159265 / 16, 0.001) << renderer;
+  }
+  EXPECT_EQ(run(program + " verify " ETENDUE_SOURCE_DIR "/scenes/cornell_box.etd --plugin " + fisheye +
+                    " --set 'camera=FisheyeCamera { from: [278, 273, -200] mm, to: [278, 200, 280] mm, fov: 200 deg }'"
+                    " --renderers PathTracer,LightTracer,BidirectionalPathTracer --samples 128 --size 16x12 --quiet",
+                &output),
+            0)
+      << output;
+}
+
+void check_volume(const std::string& program, const std::string& f) {
+  std::string output;
+  // A medium: along a ray through the centre of a ball of radius 2 with a planet of radius 1, whose air only absorbs, the
+  // optical depth is 2 a (H (1 - exp(-1 / H)) + 1).
+  const std::string air = f + "/build/libatmosphere.so";
+  EXPECT_EQ(run(program + " conform RayleighAtmosphere --quick --plugin " + air, &output), 0) << output;
+  std::ofstream(f + "/air.etd") << R"(plugin "build/libatmosphere.so"
+Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 0.01 }, image: ImageBuffer { width: 1, height: 1, filter: BoxFilter {} }
+      scene: BruteForceScene { objects: [
+          Sphere { radius: 2, shader: PassThrough {}
+                   interior: RayleighAtmosphere { scattering: 0, absorption: 0.5, scale_height: 0.5, radius: 1 } }
+          Environment { emission: DiffuseEmission { sides: both } } ] } })";
+  EXPECT_EQ(run(program + " render " + f + "/air.etd --samples 16384 --quiet -o " + f + "/air.npy", &output), 0) << output;
+  EXPECT_NEAR(read_image(f + "/air.npy").at(0, 0, 1), std::exp(-(0.5 * (1 - std::exp(-2.0)) + 1)), 0.01);
+}
+
+void check_tone_map(const std::string& program, const std::string& f) {
+  std::string output;
+  // The neutral tone map: greys of 0.5 after 0, 2 and -4 stops lie on the three branches of its curve, and a bright colour
+  // loses saturation as the formula says. With the space "xyz" a grey is R = G = B exactly.
+  const std::string neutral = f + "/build/libneutral_tone_map.so";
+  EXPECT_EQ(run(program + " conform NeutralToneMap --quick --plugin " + neutral, &output), 0) << output;
+  const auto toned = [&](const std::string& color, const std::string& emission, const std::string& tone_map) {
+    std::ofstream(f + "/toned.etd")
+        << "plugin \"build/libneutral_tone_map.so\"\n"
+           "Job { camera: OrthographicCamera { from: [0, 0, 9], to: [0, 0, 0], width: 1 }, image: "
+           "ImageBuffer { width: 4, height: 4 }\n scene: BruteForceScene { objects: [ Sphere { shader: Lambertian "
+           "{ color: "
+        << color << " } }, Environment { emission: DiffuseEmission { radiance: " << emission
+        << ", sides: both } } ] }\n outputs: [NpyOutput { tone_map: NeutralToneMap { exposure: fixed, " << tone_map
+        << " } }] }";
+    EXPECT_EQ(run(program + " render " + f + "/toned.etd --samples 1024 --quiet -o " + f + "/toned.npy", &output), 0) << output;
+    return read_image(f + "/toned.npy");
+  };
+  for (const auto& [stops, shown] :
+       {std::pair{"0", 0.5 - 0.04}, {"2", 1 - 0.0576 / (1.96 + 0.24 - 0.76)}, {"-4", 0.03125 * 0.03125 / 0.16}}) {
+    const Image grey = toned("0.5", "1", std::string("color_space: \"xyz\", transfer: \"linear\", stops: ") + stops);
+    for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(grey.at(1, 2, c), shown, 0.01 * shown) << stops;
+  }
+  // (2, 1, 0.5) loses 0.04, its peak 1.96 becomes q = 0.96, and the weight of grey is 1 - 1 / (0.15 (1.96 - 0.96) + 1).
+  const Image bright = convert_color_space(toned("1", "rgb(2, 1, 0.5)", "transfer: \"linear\""), "srgb");
+  const double q = 0.96, mixed = 0.15 / 1.15;
+  const double less[] = {1.96, 0.96, 0.46};
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(bright.at(1, 2, c), less[c] * (q / 1.96) * (1 - mixed) + q * mixed, 0.003) << c;
+  EXPECT_EQ(run(program + " render " + f + "/toned.etd --set 'outputs[0].tone_map.start=0.05'", &output), 2);
+  EXPECT_NE(output.find("at least twice the reflectance"), std::string::npos) << output;
+}
+
+void check_importer(const std::string& program, const std::string& f) {
+  std::string output;
+  // The importer: a carbon atom covers pi 1.7^2 of the film's 64 m^2 and reflects the linear value of its sRGB grey 0x90; the
+  // rest of the film sees a radiance of 1.
+  const std::string importer = f + "/build/libxyz_importer.so", of_plugin = " --quiet --plugin " + importer;
+  EXPECT_EQ(run(program + " conform XyzImporter --quick --plugin " + importer, &output), 0) << output;
+  std::ofstream(f + "/atom.xyz") << "1\none atom\nC 1 0 0\n";
+  std::ofstream(f + "/atom.etd") << R"(plugin "build/libxyz_importer.so"
+Job { camera: OrthographicCamera { from: [1, 0, 9], to: [1, 0, 0], width: 8 }, image: ImageBuffer { width: 16, height: 16 }
+      scene: BruteForceScene { objects: [ Import { file: "atom.xyz" }, Environment { emission: DiffuseEmission { sides: both } } ] } })";
+  EXPECT_EQ(run(program + " render " + f + "/atom.etd --samples 256 --quiet -o " + f + "/atom.npy", &output), 0) << output;
+  const Image atom = read_image(f + "/atom.npy");
+  const double seen = mean(atom);
+  const double reflected = std::pow((0x90 / 255.0 + 0.055) / 1.055, 2.4);
+  EXPECT_NEAR(seen, 1 - pi * 1.7 * 1.7 / 64 * (1 - reflected), 0.002);
+  // A file of its ending is rendered by itself, what was added and left out is told, and errors have their place.
+  std::ofstream(f + "/two.xyz") << "1\nwater, then another frame\nO 0 0 0 -0.8\n1\n\nH 0 0 0\n";
+  EXPECT_EQ(run(program + " render " + f + "/two.xyz --size 16x16 --samples 1 -o " + f + "/two.npy" + of_plugin, &output), 0)
+      << output;
+  for (const char* said :
+       {"two.xyz:3:9: warning: what follows coordinates", "two.xyz:4:1: warning: only the first frame", "no camera"})
+    EXPECT_NE(output.find(said), std::string::npos) << output;
+  EXPECT_EQ(run(program + " render " + f + "/two.xyz --strict --size 16x16 --samples 1" + of_plugin, &output), 2) << output;
+  std::ofstream(f + "/wrong.xyz") << "2\n\nC 0 0 0\nO 1 zero 0\n";
+  EXPECT_EQ(run(program + " render " + f + "/wrong.xyz --samples 1" + of_plugin, &output), 2);
+  EXPECT_NE(output.find("wrong.xyz:4:5: a number is expected here: y"), std::string::npos) << output;
+  EXPECT_EQ(run(program + " render " + f + "/atom.xyz --samples 1", &output), 2);  // without the plugin
+  EXPECT_NE(output.find("files ending in .xyz are not read"), std::string::npos) << output;
+}
 
 TEST_F(Plugin, BuildsOutOfTreeAndRenders) {
   const std::string f = folder.string();
@@ -131,6 +342,14 @@ Job { camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], width: 1 }, i
                 &output),
             0)
       << output;
+
+  check_object(program, f);
+  check_map(program, f);
+  check_emission(program, f);
+  check_camera(program, f);
+  check_volume(program, f);
+  check_tone_map(program, f);
+  check_importer(program, f);
 }
 
 TEST_F(Plugin, AProgramDrivesARender) {
@@ -164,6 +383,13 @@ TEST(PluginPage, ShowsExactlyWhatIsBuilt) {
   };
   check(ETENDUE_SOURCE_DIR "/tests/plugin/gold.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-shader.md", 60);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/minnaert.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-textured-shader.md", 70);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/capsule.cpp", ETENDUE_SOURCE_DIR "/docs/write-an-object.md", 110);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/hexagons.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-map.md", 70);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/limb_darkened.cpp", ETENDUE_SOURCE_DIR "/docs/write-an-emission.md", 90);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/fisheye.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-camera.md", 90);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/atmosphere.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-volume.md", 90);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/neutral_tone_map.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-tone-map.md", 90);
+  check(ETENDUE_SOURCE_DIR "/tests/plugin/xyz_importer.cpp", ETENDUE_SOURCE_DIR "/docs/write-an-importer.md", 90);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/student_tracer.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 60);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/small_photon_mapper.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 190);
   check(ETENDUE_SOURCE_DIR "/tests/plugin/small_metropolis.cpp", ETENDUE_SOURCE_DIR "/docs/write-a-renderer.md", 160);

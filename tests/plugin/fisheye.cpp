@@ -34,14 +34,13 @@ class FisheyeCamera final : public Camera {
     forward_ = Vector3(1 / length(way) * way);
     if (!is_finite(up) || !(length(cross(forward_, up)) > 1e-5f * length(up))) fail("up", "must not be along the axis");
     if (!(shutter_close >= shutter_open)) fail("shutter_close", "must not be before shutter_open");
+    if (shutter_opening + shutter_closing > 1.00001f * (shutter_close - shutter_open))
+      fail("shutter_closing", "opening and closing must not take longer than the shutter is open");
     right_ = normalize(cross(forward_, up));
     up_ = cross(right_, forward_);
     position_ = Point3(DoublePoint3{} + (from - world_centre));
   }
-  void set_film(int width, int height) override {
-    w_ = float(width), h_ = float(height);
-    radius_ = (full_frame ? std::hypot(w_, h_) : std::min(w_, h_)) / 2;
-  }
+  void set_film(int width, int height) override { w_ = float(width), h_ = float(height); }
 
   Ray ray(Point2 film, Point2, float time) const override {
     const float x = film.x - w_ / 2, y = h_ / 2 - film.y, r = std::hypot(x, y), t = std::min(r / scale(), pi);
@@ -55,7 +54,7 @@ class FisheyeCamera final : public Camera {
   }
   bool sample_ray(Point2 film, Point2 lens, float time, Wavelengths&, CameraRay& sample) const override {
     sample.ray = ray(film, lens, time);
-    return std::hypot(film.x - w_ / 2, film.y - h_ / 2) <= radius_;  // outside the disc the picture is black
+    return std::hypot(film.x - w_ / 2, film.y - h_ / 2) <= radius();  // outside the disc the picture is black
   }
   bool has_lens() const override { return false; }
   std::optional<Point2> film_point(const Ray& r) const override { return film_of(r.direction); }
@@ -70,19 +69,20 @@ class FisheyeCamera final : public Camera {
   CameraPdf pdf(const Ray& r) const override { return {film_of(r.direction) ? 1.0f : 0.0f, importance(r)}; }
 
  private:
-  float scale() const { return radius_ / (radians(fov) / 2); }  // f [pixels/rad]
+  float radius() const { return (full_frame ? std::hypot(w_, h_) : std::min(w_, h_)) / 2; }  // R [pixels]
+  float scale() const { return radius() / (radians(fov) / 2); }                              // f [pixels/rad]
   float angle(const Vector3& v) const { return std::atan2(std::hypot(dot(v, right_), dot(v, up_)), dot(v, forward_)); }
   float density(float t) const { return square(scale()) / (w_ * h_) * (t > 0 ? t / std::max(std::sin(t), 1e-6f) : 1); }
   std::optional<Point2> film_of(const Vector3& v) const {
     const float x = dot(v, right_), y = dot(v, up_), sine = std::hypot(x, y), r = scale() * angle(v);
-    if (r > radius_) return std::nullopt;
+    if (r > radius()) return std::nullopt;
     const Point2 film = sine > 0 ? Point2{w_ / 2 + r * x / sine, h_ / 2 - r * y / sine} : Point2{w_ / 2, h_ / 2};
     return film.x >= 0 && film.x < w_ && film.y >= 0 && film.y < h_ ? std::optional(film) : std::nullopt;
   }
 
   Point3 position_;
   Vector3 right_{-1, 0, 0}, up_{0, 1, 0}, forward_{0, 0, 1};
-  float w_ = 1, h_ = 1, radius_ = 0.5f;  // of the film and of the disc [pixels]
+  float w_ = 1, h_ = 1;  // size of the film [pixels]
 };
 
 static const Register<FisheyeCamera> registered;

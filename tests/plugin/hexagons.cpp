@@ -4,10 +4,10 @@
 
 using namespace etendue;
 
-// The centres of the tiles are a lattice in which neighbours are 1 apart: a grid with the periods 1 and sqrt(3), and the same
-// grid moved by half of both. With d the offset from the nearest centre, h = max(|d.x|, |d.x| / 2 + sqrt(3) / 2 |d.y|) is 0 at
-// the centre and 1/2 on the border between two tiles. A tile ends at h = (1 - joint) / 2, so tiles cover (1 - joint)^2 of the
-// area.
+// Neighbouring tiles have centres at a distance of 1. These are the points of two grids: one has the periods 1 and sqrt(3), the
+// other is the same moved by half of both. At the offset d from the nearest centre the maximum of |d.x| and
+// |d.x| / 2 + sqrt(3) / 2 |d.y| is 0 at the centre and 1/2 on the border between two tiles. The mortar begins at
+// (1 - joint) / 2, so tiles cover (1 - joint)^2 of the surface.
 class HexagonMap final : public ObjectMap {
   Ref<ObjectMap> tile = etendue::constant(0.6f), mortar = etendue::constant(0.2f);
   Vector2 repeat{8, 8};
@@ -32,34 +32,34 @@ class HexagonMap final : public ObjectMap {
     return (1 - t) * mortar->color(p, w, use) + t * tile->color(p, w, use);
   }
   float scalar(const SurfacePoint& p) const override { return lerp(covered(p), mortar->scalar(p), tile->scalar(p)); }
-  float largest() const override { return std::max(tile->largest(), mortar->largest()); }
+  float largest() const override { return std::max(mortar->largest(), tile->largest()); }
 
  private:
-  /// The fraction of a point's footprint that tiles cover.
+  /// The fraction of the ray's footprint that tiles cover: 0 or 1 without a footprint, the mean for wide ones.
   float covered(const SurfacePoint& p) const {
-    constexpr float root3 = 1.7320508f;
-    const float x = p.uv.x * repeat.x, y = p.uv.y * repeat.y, width = width_of(p), mean = square(1 - joint);
-    if (!(std::abs(x) < 1e6f && std::abs(y) < 1e6f && width < 1)) return mean;
-    const auto offset = [&](float moved) {
-      const float a = x - moved, b = y - moved * root3;
-      return Vector2{a - std::round(a), b - root3 * std::round(b / root3)};
-    };
-    const Vector2 d0 = offset(0), d1 = offset(0.5f);
-    const Vector2 d = std::hypot(d0.x, d0.y) < std::hypot(d1.x, d1.y) ? d0 : d1;
-    const float h = std::max(std::abs(d.x), 0.5f * std::abs(d.x) + 0.5f * root3 * std::abs(d.y));
-    const float border = 0.5f - h, half = 0.5f * joint;
-    if (!(width > 1e-4f)) return border < half ? 0.0f : 1.0f;
-    // The joint is averaged as if it were straight; wide footprints tend to the mean over all tiles.
-    const float covering = std::min(border + 0.5f * width, half) - std::max(border - 0.5f * width, -half);
-    return lerp(square(width), 1 - clamp(covering / width, 0, 1), mean);
+    const float x = p.uv.x * repeat.x, y = p.uv.y * repeat.y;
+    const Vector2 width = footprint(p);
+    if (!(std::abs(x) < 1e6f && std::abs(y) < 1e6f && width.x < 1 && width.y < 1)) return square(1 - joint);
+    if (width == Vector2{}) return is_tile(x, y);
+    float sum = 0;
+    for (int i = 0; i < 16; ++i)
+      sum += is_tile(x + width.x * (float(i % 4) - 1.5f) / 4, y + width.y * (float(i / 4) - 1.5f) / 4);
+    return sum / 16;
   }
-  /// The side of a square with the area of the ray's footprint, in widths of a tile.
-  float width_of(const SurfacePoint& point) const {
-    if (!(point.footprint > 0)) return 0;
+  bool is_tile(float x, float y) const {
+    constexpr float root3 = 1.7320508f;
+    const auto offset = [&](float a, float b) { return Vector2{a - std::round(a), b - root3 * std::round(b / root3)}; };
+    const Vector2 d0 = offset(x, y), d1 = offset(x - 0.5f, y - 0.5f * root3);
+    const Vector2 d = std::hypot(d0.x, d0.y) < std::hypot(d1.x, d1.y) ? d0 : d1;
+    return std::max(std::abs(d.x), 0.5f * (std::abs(d.x) + root3 * std::abs(d.y))) <= 0.5f * (1 - joint);
+  }
+  /// The widths of the footprint along u and v, in widths of a tile. Its direction on the surface is neglected.
+  Vector2 footprint(const SurfacePoint& point) const {
+    if (!(point.footprint > 0)) return {};
     SurfacePoint p = point;
     if (p.dpdu == Vector3{} && p.dpdv == Vector3{} && p.object) p.object->tangents(p);
-    const float area = length(cross(p.dpdu, p.dpdv)) / (repeat.x * repeat.y);
-    return p.footprint / std::sqrt(area * std::max(p.footprint_cosine, 1e-3f));
+    const float side = p.footprint / std::sqrt(std::max(p.footprint_cosine, 0.01f));  // of a square with its area [m]
+    return {side / length(p.dpdu) * repeat.x, side / length(p.dpdv) * repeat.y};
   }
 };
 

@@ -43,7 +43,7 @@ struct Line {
 class XyzImporter final : public Importer {
  public:
   static void describe(Description<XyzImporter>& d) {
-    d.summary("XYZ files of molecules: a sphere for each atom. -D radius=0.3 makes all of them smaller.", "Bondi 1964");
+    d.summary("XYZ files: molecules, a sphere for each atom, 1 m for an angstrom. -D radius=0.3: smaller ones.", "Bondi 1964");
   }
   std::vector<std::string> extensions() const override { return {"xyz"}; }
 

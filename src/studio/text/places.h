@@ -22,7 +22,7 @@ class Places {
  private:
   static constexpr size_t step = 1024;
   const std::string text_;
-  std::vector<size_t> marks_;  // units before each multiple of `step` bytes; empty for ASCII
+  std::vector<size_t> marks_;  // UTF-16 code units before each multiple of `step` bytes; empty for ASCII
   std::vector<size_t> lines_;  // byte position of each line's beginning
   size_t units_ = 0;
 };

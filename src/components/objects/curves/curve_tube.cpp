@@ -223,9 +223,9 @@ size_t append_tube(std::span<const StrandPoint> points, double turned_by, std::v
     } else {
       const TubePiece before = piece(i - 1);
       const Double3 a = before.axis(), half = a + b;
-      if (dot(half, half) >
-          1e-6) {  // reflected, so that v is continuous (Wang et al. 2008, "Computation of rotation minimizing
-        const Double3 m = normalize(half);  // frames")
+      // The frame is reflected, so that v is continuous (Wang et al. 2008, "Computation of rotation minimizing frames").
+      if (dot(half, half) > 1e-6) {
+        const Double3 m = normalize(half);
         e = e - 2 * dot(e, m) * m;
       }
       const double ca = std::sqrt(1 - before.slope() * before.slope()), cb = std::sqrt(1 - after.slope() * after.slope());
