@@ -223,8 +223,8 @@ void Parser::go_on_with_last(Document& document) {
   members(rest, token_.at);
 }
 
-// Parses a component; the current token is the '{'.
-Node Parser::component(const Token& class_name) {
+// Parses a component; the current token is the '{', or, if that is missing, the first token after it.
+Node Parser::component(const Token& class_name, bool braced) {
   const Location opened = token_.at;
   const Level level(*this, opened);
   const Lines lines(*this, false);
@@ -233,7 +233,7 @@ Node Parser::component(const Token& class_name) {
   node.type = NodeType::component;
   node.at = class_name.at;
   node.text = class_name.text;
-  node.inside = take().end;
+  if (braced) node.inside = take().end;
   members(node, opened);
   open_ = std::move(outside);
   return node;

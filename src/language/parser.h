@@ -41,7 +41,7 @@ class Parser {
   Node conditional();
   void comprehension(Node& list);
   using Seen = std::unordered_map<std::string, Location>;
-  Node component(const Token& class_name);
+  Node component(const Token& class_name, bool braced = true);
   void members(Node& component, const Location& opened);
   void member(Node& component, Seen& seen);
   bool member_value(Node& component, size_t index);

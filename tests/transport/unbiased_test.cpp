@@ -349,7 +349,7 @@ std::string map_text(const ClassInfo& info, const std::string& image) {
 }
 
 TEST(Unbiased, EveryMapAtAnyNumberOfSamples) {
-  const ImageFile image("board.exr", {4, 4, 1, NumberType::hero_only}, {0, 1, 0, 1, 1, 0, 1, 0, 0, 1, 0, 1, 1, 0, 1, 0});
+  const ImageFile image("board.exr", {4, 4, 1, NumberType::single}, {0, 1, 0, 1, 1, 0, 1, 0, 0, 1, 0, 1, 1, 0, 1, 0});
   constexpr int size = 20, fine = 32;
   // The map is squared, so that using the mean of the map would be wrong; it is the opacity of a surface.
   const auto job_with = [&](const std::string& opacity, int samples, int seed) {

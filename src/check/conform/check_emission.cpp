@@ -79,38 +79,49 @@ class EmissionTrial {
 
   void check_directions(const SurfacePoint& p) {
     const Frame frame(p.normal == Normal3{} ? Normal3{0, 0, 1} : p.normal);
-    long lost = 0;
-    double covered = 0;
     const auto pdf_at = [&](const Vector3& v) { return Spectrum(emission_.pdf(p, v)); };
+    Drawn drawn;
     const auto draw = [&](int count) {
-      std::vector<Vector3> list;
-      lost = 0;
-      covered = 0;
-      for (int i = 0; i < count; ++i) {
-        const DirectionSample s = emission_.sample(p, trial.pair());
-        trial.expect(s.pdf >= 0 && s.pdf < infinity && (s.pdf == 0 || std::abs(length(s.direction) - 1) < 1e-4f),
-                     "sampled directions are unit vectors",
-                     [&] { return fmt::format("{}, density {}", text_of(s.direction), s.pdf); });
-        if (!(s.pdf > 0)) {
-          ++lost;
-          continue;
-        }
-        covered += 1 / double(s.pdf) / count;
-        trial.expect(agree(Spectrum(s.pdf), pdf_at(s.direction), 2e-3f, true, [&] { return rounding_of(pdf_at, s.direction); }),
-                     "a sample's density is that of its direction", [&] {
-                       return fmt::format("on a {} towards {}: {} and {}", name_, text_of(s.direction), s.pdf,
-                                          emission_.pdf(p, s.direction));
-                     });
-        list.push_back(frame.to_local(s.direction));
-      }
-      return list;
+      drawn = draw_directions(
+          count, "sampled directions are unit vectors", "a sample's density is that of its direction",
+          [&] { return emission_.sample(p, trial.pair()); }, pdf_at, [&](const Vector3& v) { return frame.to_local(v); });
+      return drawn.list;
     };
     const std::vector<Vector3> first = draw(trial.samples(8000));
     if (first.size() < 200) return;
     compare(
-        "sampled directions follow the density", first, covered,
+        "sampled directions follow the density", first, drawn.covered,
         [&](const Vector3& local) { return double(emission_.pdf(p, frame.to_world(local))); },
-        [&](int count) { return std::pair(draw(count), lost); });
+        [&](int count) { return std::pair(draw(count), drawn.lost); });
+  }
+
+  struct Drawn {
+    std::vector<Vector3> list;  ///< of the samples with a density
+    long lost = 0;              ///< number of the others
+    double covered = 0;         ///< the mean of 1 / density: the solid angle that is sampled [sr]
+  };
+  /// Draws directions and checks each; `turned` gives the coordinates of the list.
+  template <class Sample, class Pdf, class Turn>
+  Drawn draw_directions(int count, const char* unit, const char* same, const Sample& sample, const Pdf& pdf_at,
+                        const Turn& turned) {
+    Drawn drawn;
+    for (int i = 0; i < count; ++i) {
+      const DirectionSample s = sample();
+      trial.expect(s.pdf >= 0 && s.pdf < infinity && (s.pdf == 0 || std::abs(length(s.direction) - 1) < 1e-4f), unit,
+                   [&] { return fmt::format("{}, density {}", text_of(s.direction), s.pdf); });
+      if (!(s.pdf > 0)) {
+        ++drawn.lost;
+        continue;
+      }
+      drawn.covered += 1 / double(s.pdf) / count;
+      trial.expect(agree(Spectrum(s.pdf), pdf_at(s.direction), 2e-3f, true, [&] { return rounding_of(pdf_at, s.direction); }),
+                   same, [&] {
+                     return fmt::format("on a {} towards {}: {} and {}", name_, text_of(s.direction), s.pdf,
+                                        pdf_at(s.direction)[0]);
+                   });
+      drawn.list.push_back(turned(s.direction));
+    }
+    return drawn;
   }
 
   /// Samples may be lost (sent to a side that does not emit): their fraction is what the pdf's integral lacks to 1.
@@ -155,37 +166,19 @@ class EmissionTrial {
     const auto up = [](const Vector3& v) { return Vector3{v.z, v.x, v.y}; };
     const auto down = [](const Vector3& v) { return Vector3{v.y, v.z, v.x}; };
     const auto pdf_at = [&](const Vector3& v) { return Spectrum(emission_.incident_pdf(v)); };
-    double covered = 0;
-    long lost = 0;
+    Drawn drawn;
     const auto draw = [&](int count) {
-      std::vector<Vector3> list;
-      covered = 0;
-      lost = 0;
-      for (int i = 0; i < count; ++i) {
-        const DirectionSample s = emission_.sample_incident(trial.pair());
-        trial.expect(s.pdf >= 0 && s.pdf < infinity && (s.pdf == 0 || std::abs(length(s.direction) - 1) < 1e-4f),
-                     "sampled incident directions are unit vectors",
-                     [&] { return fmt::format("{}, density {}", text_of(s.direction), s.pdf); });
-        if (!(s.pdf > 0)) {
-          ++lost;
-          continue;
-        }
-        covered += 1 / double(s.pdf) / count;
-        trial.expect(agree(Spectrum(s.pdf), pdf_at(s.direction), 2e-3f, true, [&] { return rounding_of(pdf_at, s.direction); }),
-                     "an incident sample's density is that of its direction", [&] {
-                       return fmt::format("from {}: {} and {}", text_of(s.direction), s.pdf,
-                                          emission_.incident_pdf(s.direction));
-                     });
-        list.push_back(up(s.direction));
-      }
-      return list;
+      drawn = draw_directions(
+          count, "sampled incident directions are unit vectors", "an incident sample's density is that of its direction",
+          [&] { return emission_.sample_incident(trial.pair()); }, pdf_at, up);
+      return drawn.list;
     };
     const std::vector<Vector3> first = draw(trial.samples(8000));
     if (first.size() < 200) return;
     compare(
-        "sampled incident directions follow the density", first, covered,
+        "sampled incident directions follow the density", first, drawn.covered,
         [&](const Vector3& local) { return double(emission_.incident_pdf(down(local))); },
-        [&](int count) { return std::pair(draw(count), lost); });
+        [&](int count) { return std::pair(draw(count), drawn.lost); });
   }
 
  private:

@@ -1,6 +1,6 @@
-// A random walk: the shortest program that solves the rendering equation (Kajiya 1986), and the first of three that a reader
-// should know. RandomWalk samples directions uniformly; SimplePathTracer samples them as the surface scatters, and luminaires
-// too; PathTracer combines the two and goes through media.
+// A random walk: the shortest program that solves the rendering equation (Kajiya 1986), and the first of three renderers to
+// read. RandomWalk samples directions uniformly; SimplePathTracer samples them in proportion to the BSDF, and samples
+// luminaires, too; PathTracer weights these two strategies, and traces media.
 //
 // The radiance that leaves a point x in the direction out is
 //     L(x, out) = L_e(x, out) + integral over the sphere of f(out, in) |cos_in| L(x', -in) d(in),
@@ -9,7 +9,7 @@
 //     L(x, out) ~ L_e(x, out) + f(out, in) |cos_in| / p  L(x', -in),
 // and the same again for L(x', -in). Unrolled, with the throughput T_1 = 1 at the first point x_1 that the camera sees,
 //     L = sum over k of T_k L_e(x_k),     T_{k+1} = T_k f |cos| / p.
-// Specular surfaces and delta lights have no chance: their directions have the probability 0.
+// Light by specular surfaces and of delta lights is not found: a uniform direction hits theirs with probability 0.
 
 #include "etendue/core/warp.h"
 #include "etendue/render/renderer.h"

@@ -1,13 +1,13 @@
-// A simple path tracer: the second of three that a reader should know (random_walk.cpp, path_tracer.cpp). Two things are new.
+// A simple path tracer: the second of three renderers to read (random_walk.cpp, path_tracer.cpp). Two things are new.
 //
-// Directions are sampled by the surface, with a pdf p that is large where f |cos| is, so that f |cos| / p varies little:
+// Directions are sampled by the BSDF, with a pdf p that is nearly proportional to f |cos|, so that f |cos| / p varies little:
 //     T_{k+1} = T_k f |cos| / p.
 //
 // Next event estimation: the light that comes to x_k straight from luminaires is found by sampling a point on one. A luminaire
 // is chosen with the probability P, and a point on it with the solid-angle pdf p_l [1/sr] as seen from x_k, so that
 //     direct(x_k) ~ f(out, in) |cos_in| L_e V / (P p_l),     V = 1 if nothing lies between, else 0.
-// Then emission that the path itself hits must not be added again, but for the first point, and where x_{k-1} scattered
-// specularly, since next event estimation has no chance there:
+// The path hits the same emitters itself, and their light must not be added twice. L_e(x_k) is therefore added at the first
+// point alone, and after specular scattering at x_{k-1}, where next event estimation finds nothing:
 //     L = sum over k of T_k ( [k = 1 or specular] L_e(x_k) + direct(x_k) ).
 // path_tracer.cpp takes both wherever both are possible, and weights them (multiple importance sampling).
 
@@ -72,7 +72,8 @@ class SimplePathTracer final : public Renderer {
       const std::optional<ScatterSample> next = scatter->sample(out, lobe, sample.numbers.next_pair(), Transport::radiance);
       if (!next || enters_subsurface(x, *next)) break;
       T *= next->weight;  // f |cos| / p
-      // Where refraction sends each wavelength its own way, the path goes on with one of them, which makes up for the others.
+      // A dispersive refraction has another direction for each wavelength: the path follows the hero, whose weight is
+      // increased.
       if (next->dispersive) T *= sample.wavelengths.drop_secondary();
       specular = next->specular();
       go_on(x, *next, ray, media);

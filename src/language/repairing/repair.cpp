@@ -53,17 +53,7 @@ bool Parser::two_words(const Token& class_name) {
 
 Node Parser::component_without_brace(const Token& class_name) {
   report(fmt::format("expected '{{' after '{}', not {}", class_name.text, token_.words()), token_.at);
-  const Location opened = token_.at;
-  const Level level(*this, opened);
-  const Lines lines(*this, false);
-  std::string outside = std::exchange(open_, {});
-  Node node;
-  node.type = NodeType::component;
-  node.at = class_name.at;
-  node.text = class_name.text;
-  members(node, opened);
-  open_ = std::move(outside);
-  return node;
+  return component(class_name, false);
 }
 
 // Where a member name is expected, but the current token continues the previous value, as for a list without its '['.

@@ -72,7 +72,7 @@ class Directives {
   void need_world();
   void need_options();
 
-  // directives_transforms.cpp
+  // Transforms
   void apply(const Transform& t);
   void put(const std::array<Transform, 2>& to);
   Transform matrix();
@@ -88,7 +88,7 @@ class Directives {
   void transform_times();
   void active_transform();
 
-  // directives_states.cpp
+  // States
   struct Kept {
     State state;
     const char* what;
@@ -106,7 +106,7 @@ class Directives {
   void reverse_orientation();
   void attribute();
 
-  // directives_settings.cpp
+  // Before WorldBegin
   void set(Setting& setting);
   void camera();
   void film();
@@ -120,7 +120,7 @@ class Directives {
   void world_begin();
   void world_end();
 
-  // directives_world.cpp
+  // The world
   void material();
   void make_named_material();
   void named_material();
