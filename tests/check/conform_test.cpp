@@ -186,6 +186,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"WrongDirectionsEmission", "sampled directions follow the density"},
         Fault{"WrongAreaSquare", "the area is that which lines find"},
         Fault{"WrongVisibleSquare", "points sampled to be seen have densities of the solid angle seen"},
+        Fault{"MissWritingSquare", "a miss leaves the hit unchanged"},
+        Fault{"InwardSquare", "normals of a closed object point outwards"},
         Fault{"WrongTangentsSquare", "tangents are the change of position with surface coordinates"},
         Fault{"SecretLensCamera", "without a lens rays do not depend on the lens point"},
         Fault{"UnboundedMap", "reflectances are in [0, 1]"}, Fault{"DimRenderer", "the value of a furnace is the known one"},

@@ -146,6 +146,31 @@ class WrongVisibleSquare final : public Square {
 };
 const Register<WrongVisibleSquare> visible;
 
+class MissWritingSquare final : public Square {
+ public:
+  static void describe(Description<MissWritingSquare>& d) { d.summary("A unit square that changes the hit on a miss."); }
+  bool intersect(const Ray& ray, Hit& hit) const override {
+    if (Square::intersect(ray, hit)) return true;
+    hit.distance = ray.maximum;
+    return false;
+  }
+};
+const Register<MissWritingSquare> miss;
+
+/// Says that it is closed, while its normals point away from whoever hits it, as on the inside of a closed surface.
+class InwardSquare final : public Square {
+ public:
+  static void describe(Description<InwardSquare>& d) {
+    d.summary("A unit square that says it is closed and shows its inside alone.");
+  }
+  bool closed() const override { return true; }
+  void surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const override {
+    Square::surface_point(ray, hit, p);
+    if (dot(p.normal, ray.direction) < 0) p.normal = p.shading_normal = -p.normal;
+  }
+};
+const Register<InwardSquare> inward;
+
 /// The tangents are wrong on a fortieth of the square (0.16^2): `conform` may accept no more wrong steps than poles and
 /// rounding explain.
 class WrongTangentsSquare final : public Square {

@@ -26,7 +26,12 @@ bool rays_agree(const ObjectTrial& o, const Ray& ray, float t) {
   Hit hit;
   Ray other = ray;
   other.maximum = t - off;
+  // Structures pass the nearest hit so far to one object after the other: a miss must not change it.
+  hit.distance = -1;
   if (o.object.intersect(other, hit) || o.object.occludes(other)) return false;
+  o.trial.expect(hit.distance == -1 && !hit.object && hit.depth == 0, "a miss leaves the hit unchanged", [&] {
+    return fmt::format("from {} towards {}: t {}", text_of(ray.origin), text_of(ray.direction), hit.distance);
+  });
   other.maximum = t + off;
   if (!o.object.intersect(other, hit) || std::abs(hit.distance - t) > off || !o.object.occludes(other)) return false;
   HitList list;
@@ -60,7 +65,7 @@ void check_hit(const ObjectTrial& o, const Ray& ray, const Hit& hit, const Surfa
 void check_lines(const ObjectTrial& o) {
   const float r = 1.05f * o.radius;
   statistics::Mean crossings;
-  int disagree = 0, tested = 0;
+  int disagree = 0, tested = 0, inward = 0;
   for (int i = o.trial.samples(30000); i > 0; --i) {
     const Vector3 d = o.trial.direction();
     const float across = r * std::sqrt(o.trial.uniform()), phi = 2 * pi * o.trial.uniform();
@@ -71,6 +76,7 @@ void check_lines(const ObjectTrial& o) {
       if (n == 0) {
         ++tested;
         disagree += !rays_agree(o, ray, hit.distance);
+        inward += dot(p.normal, d) > 0;
         check_hit(o, ray, hit, p);
       }
       p.leave(d, ray);
@@ -81,6 +87,8 @@ void check_lines(const ObjectTrial& o) {
   }
   o.trial.expect(ObjectTrial::few(disagree, tested), "shorter, longer and scaled rays and occlusion agree with the hit",
                  [&] { return fmt::format("{} of {} do not", disagree, tested); });
+  o.trial.expect(!o.object.closed() || inward <= tested / 2, "normals of a closed object point outwards",
+                 [&] { return fmt::format("{} of {} first hits have one that points inwards", inward, tested); });
   const double scale = 2 * M_PI * double(r) * double(r), found = scale * crossings.mean(), said = double(o.object.area(o.time));
   o.trial.expect(
       std::abs(found - said) <
