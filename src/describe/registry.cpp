@@ -11,8 +11,8 @@
 
 #include "etendue/describe/description.h"
 #include "faults.h"
+#include "files/format_library.h"
 #include "files/input_files.h"
-#include "format_library.h"
 #include "guard.h"
 #include "plugin.h"
 #include "words.h"
@@ -134,8 +134,9 @@ std::string note_defaults(const std::vector<ClassInfo*>& added) {
 }  // namespace
 
 void Registry::adopt() {
-  if (!pending) return;
   const std::lock_guard lock(s->mutex);
+  const std::lock_guard libraries(libraries_guard());  // all classes of a library, or none
+  if (!pending) return;
   std::unordered_map<std::type_index, RegistrationNode*> waiting;
   std::vector<ClassInfo*> added;
   std::string faults;

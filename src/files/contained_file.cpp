@@ -4,6 +4,8 @@
 
 #include <map>
 
+#include "format_library.h"
+
 namespace etendue {
 namespace {
 
@@ -15,9 +17,22 @@ std::map<std::string, Unpack>& containers() {
 }  // namespace
 
 bool register_container(const std::vector<std::string>& endings, Unpack unpack) {
+  const std::lock_guard lock(libraries_guard());
   for (const std::string& ending : endings) containers()[ending] = unpack;
   return true;
 }
+
+namespace {
+
+/// Null: no container.
+Unpack unpacking_of(const std::string& ending) {
+  const std::lock_guard lock(libraries_guard());
+  auto known = containers().find(ending);
+  if (known == containers().end() && ending != "etd" && load_format_library()) known = containers().find(ending);
+  return known == containers().end() ? nullptr : known->second;
+}
+
+}  // namespace
 
 std::optional<ContainedFile> contained_file(const std::string& path) {
   struct stat status{};
@@ -27,9 +42,8 @@ std::optional<ContainedFile> contained_file(const std::string& path) {
     if (dot == std::string::npos || container[dot] != '.') continue;
     std::string ending = container.substr(dot + 1);
     for (char& c : ending) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-    const auto known = containers().find(ending);
-    if (known == containers().end() || ::stat(container.c_str(), &status) != 0 || ::stat(path.c_str(), &status) == 0) continue;
-    return ContainedFile{container, path.substr(at + 1), known->second};
+    if (::stat(container.c_str(), &status) != 0 || ::stat(path.c_str(), &status) == 0) continue;
+    if (const Unpack unpack = unpacking_of(ending)) return ContainedFile{container, path.substr(at + 1), unpack};
   }
   return std::nullopt;
 }

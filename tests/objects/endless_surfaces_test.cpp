@@ -20,7 +20,7 @@ std::vector<Row> rows() {
   const std::string near = "PerspectiveCamera { from: [0, -3, 2], to: [0, 1, 1], up: [0, 0, 1], fov: 20 }",
                     far = "PerspectiveCamera { from: [2000, 0, 2], to: [2000, 1, 0], up: [0, 0, 1], fov: 40 }",
                     two = "max_depth: 2";
-  const std::vector<Way> ways = {{"PathTracer", two, 4}, {"BidirectionalPathTracer", two, 16}, {"LightTracer", two, 1024}};
+  const std::vector<Way> ways = {{"PathTracer", two, 4}, {"BidirectionalPathTracer", two, 16}, {"LightTracer", two, 3072}};
   const std::vector<Way> eye = {{"PathTracer", two, 4}, {"BidirectionalPathTracer", two, 16}};
   return {{"SkyNear", near, plane + sky, 1, ways},
           {"SunNear", near, plane + sun, 3 / exact_pi, ways},

@@ -1,8 +1,8 @@
 // Hostile input: the program terminates in bounded time and memory and reports what is wrong.
 
 #include <bit>
-#include <chrono>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 
 #include "etendue/render/job.h"
@@ -89,14 +89,14 @@ TEST(Robustness, FormulasThatTellNothingAreGivenUpWithAWarning) {
   EXPECT_NE(said.find(":3:"), std::string::npos) << said;
   EXPECT_NE(said.find("take more than 16384 steps"), std::string::npos) << said;
   Random random(1);
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();  // of the processor: other programs may run
   for (int i = 0; i < 20; ++i) {
     Hit hit;
     const Vector3 d = random.direction();
     const bool met = wild->intersect(ray(Point3{} - 3 * d, d), hit);
     EXPECT_TRUE(!met || (hit.distance > 0 && hit.distance < 6));
   }
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5);  // 20 times 16384 steps
+  EXPECT_LT(double(std::clock() - begin) / CLOCKS_PER_SEC, 5);  // 20 times 16384 steps
 }
 
 // ---- boundaries -----------------------------------------------------------------------------------------------------------
@@ -156,13 +156,13 @@ TEST(Robustness, SolidsOfWhatHoldsRaysInPlaceComeToAnEnd) {
   register_trap();
   const Ref<SceneObject> solid =
       ref_cast<SceneObject>(parse_component("Union { operands: [ TestTrap {}, Sphere { centre: [3, 0, 0] m } ] }", "test"));
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();  // of the processor: other programs may run
   prepare_tree(*solid);
   HitList list;
   solid->all_hits(ray({0, 0, -5}, {0, 0, 1}), list);
   EXPECT_LE(list.size, HitList::capacity);
   EXPECT_GE(solid->area(0), 0);
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 60);
+  EXPECT_LT(double(std::clock() - begin) / CLOCKS_PER_SEC, 60);
 }
 
 // Fewer consecutive null surfaces than the limit do not reduce the light.

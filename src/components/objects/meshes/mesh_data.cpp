@@ -6,6 +6,7 @@
 
 #include "etendue/describe/component.h"
 #include "files/file_kind.h"
+#include "files/format_library.h"
 #include "files/gzip.h"
 #include "files/regular_file.h"
 #include "files/text_encoding.h"
@@ -47,15 +48,29 @@ void tell_remarks(const MeshData& mesh, const std::string& path) {
 }
 
 bool register_mesh_format(const std::vector<std::string>& endings, ReadPart read) {
+  const std::lock_guard lock(libraries_guard());
   for (const std::string& ending : endings) formats()[ending] = read;
   return true;
 }
 
+namespace {
+
+/// Null: no format that importers or other files here registered.
+ReadPart registered_format(const std::string& ending) {
+  const std::lock_guard lock(libraries_guard());
+  auto known = formats().find(ending);
+  const bool own = ending == "ply" || ending == "stl" || ending == "off";
+  if (known == formats().end() && !own && load_format_library()) known = formats().find(ending);
+  return known == formats().end() ? nullptr : known->second;
+}
+
+}  // namespace
+
 MeshData read_mesh(const std::string& path, const std::string& part) {
   try {
     const std::string ending = ending_of_contents(path);
-    const auto other = formats().find(ending);
-    if (other != formats().end() && (!part.empty() || ending != "obj")) return other->second(path, part);
+    const ReadPart other = registered_format(ending);
+    if (other && (!part.empty() || ending != "obj")) return other(path, part);
     if (!part.empty()) throw Error("files of this format have no parts");
     return read_whole(path, ending);
   } catch (const NoTriangles& error) {

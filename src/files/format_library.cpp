@@ -10,8 +10,14 @@
 
 namespace etendue {
 
+std::recursive_mutex& libraries_guard() {
+  static auto* guard = new std::recursive_mutex;  // never destroyed: used until the program ends
+  return *guard;
+}
+
 bool load_format_library() {
-  static bool loaded = false;  // guarded by the registry's lock
+  const std::lock_guard lock(libraries_guard());
+  static bool loaded = false;
   if (loaded) return false;
   constexpr const char* file_name = "libetendue_formats.so";
   Dl_info own{};
