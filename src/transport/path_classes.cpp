@@ -55,8 +55,7 @@ constexpr std::array<PathClassInfo, 15> classes{{
      [](const SceneTraits& t) { return told("light that ", t.glossy, verb(t.glossy, "send") + " on to other surfaces"); }},
     {area_caustics, "area_caustics", "caustics of luminaires with an extent",
      [](const SceneTraits& t) { return caustics(extended(t), t); }},
-    {delta_caustics, "delta_caustics", "caustics of delta lights",
-     [](const SceneTraits& t) { return caustics(delta(t), t); }},
+    {delta_caustics, "delta_caustics", "caustics of delta lights", [](const SceneTraits& t) { return caustics(delta(t), t); }},
     {delta_caustics_in_mirrors, "delta_caustics_in_mirrors",
      "caustics of delta lights, where they are seen in mirrors or through glass",
      [](const SceneTraits& t) {
