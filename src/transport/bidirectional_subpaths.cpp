@@ -49,7 +49,8 @@ void BidirectionalSubpaths::from_luminaire(float time, const SubpathLimits& limi
   EmittedLight emitted;
   generate_light_subpath(context_.scene, lights_, time, {limits.longest, limits.roulette_depth, directions_}, light, light_,
                          emitted);
-  if (light_.size() > 1) y0_next_event_point_pdf_ = next_event_point_pdf(lights_, light_[1], light_[0], light_[1].out);
+  if (weights_.weighted && light_.size() > 1)
+    y0_next_event_point_pdf_ = next_event_point_pdf(lights_, light_[1], light_[0], light_[1].out);
 }
 
 bool BidirectionalSubpaths::has_specular_prefix(int t) const {
