@@ -41,14 +41,16 @@ void BidirectionalSubpaths::from_camera(const Ray& ray, const SubpathLimits& lim
     void crossed_luminaire() override { paths.add_emitter_hits(paths.camera_vertices(), paths.segment_emission_); }
   } emission(*this);
   directions_ = limits.directions;
-  generate_camera_subpath(context_, ray, limits, sample_, camera_, emission);
+  SubpathLimits own = limits;
+  own.reverse_pdfs = weights_.weighted;
+  generate_camera_subpath(context_, ray, own, sample_, camera_, emission);
 }
 
 void BidirectionalSubpaths::from_luminaire(float time, const SubpathLimits& limits) {
   SampleContext light{light_wavelengths_, sample_.numbers.fork("light"), sample_.arena, {.abort = sample_.sink.abort}};
   EmittedLight emitted;
-  generate_light_subpath(context_.scene, lights_, time, {limits.longest, limits.roulette_depth, directions_}, light, light_,
-                         emitted);
+  generate_light_subpath(context_.scene, lights_, time, {limits.longest, limits.roulette_depth, directions_, weights_.weighted},
+                         light, light_, emitted);
   if (weights_.weighted && light_.size() > 1)
     y0_next_event_point_pdf_ = next_event_point_pdf(lights_, light_[1], light_[0], light_[1].out);
 }
@@ -158,25 +160,28 @@ std::optional<PathContribution> BidirectionalSubpaths::connect_to_lens(int s) co
   const auto c = etendue::connect_to_lens(context_, y, light_wavelengths_, numbers, sample_.arena);
   if (!c) return {};
   PathContribution found{s, 1, false, c->light, light_[0].point.object, 1, c->lens.film};
-  if (weights_.weighted) {
-    const Vector3& direction = c->lens.direction;
-    ConnectedPath path{light_.data(),
-                       s,
-                       &c->camera,
-                       1,
-                       0,
-                       0,
-                       0,
-                       0,
-                       y0_next_event_point_pdf_,
-                       light_[0].pdf_forward,
-                       emitter_can_be_hit(light_[0]),
-                       weights_.merging};
-    path.light_last_from_camera = vertex_pdf(c->pdf_at_lens, c->camera, y, -direction, c->mean_transmittance, front_);
-    path.light_before_from_camera = before_from(light_, s, direction, Transport::radiance);
-    found.weight = bidirectional_weight(path, weights_.heuristic);
-  }
+  if (weights_.weighted) found.weight = lens_weight(s, *c);
   return found;
+}
+
+float BidirectionalSubpaths::lens_weight(int s, const LensConnection& c) const {
+  const SubpathVertex &y = light_vertex(s), lens = lens_vertex(context_.camera, c.lens.lens, y.point.time);
+  Ray to_y;
+  to_y.origin = c.lens.lens;
+  to_y.direction = -c.lens.direction;
+  to_y.time = y.point.time;
+  return bidirectional_weight({.light = light_.data(),
+                               .s = s,
+                               .camera = &lens,
+                               .t = 1,
+                               .light_last_from_camera = vertex_pdf(camera_direction_pdf(context_.camera, to_y), lens, y,
+                                                                    to_y.direction, c.mean_transmittance, front_),
+                               .light_before_from_camera = before_from(light_, s, c.lens.direction, Transport::radiance),
+                               .next_event_point_pdf = y0_next_event_point_pdf_,
+                               .pdf_emission_origin = light_[0].pdf_forward,
+                               .emitter_can_be_hit = emitter_can_be_hit(light_[0]),
+                               .merging = weights_.merging},
+                              weights_.heuristic);
 }
 
 std::optional<PathContribution> BidirectionalSubpaths::merge(const Photon& photon, int t) const {

@@ -83,7 +83,7 @@ std::optional<LensConnection> connect_to_lens(const RenderContext& context, cons
   c.lens = *lens;
   if (SurfacePoint seen = y.point; emits && !context.scene.in_front(seen, lens->direction)) return {};
   const Spectrum sent = emits ? emitted_towards(y, lens->direction, wavelengths)
-                              : y.throughput * scattering(y, y.out, lens->direction, Transport::importance).value;
+                              : y.throughput * scattered(y, y.out, lens->direction, Transport::importance);
   c.light = sent * (lens->importance / lens->pdf) * camera.lens_weight(*lens, wavelengths);
   if (c.light.black()) return {};
   const Ray ray_to_lens = lens_ray(y, *lens);
@@ -98,15 +98,6 @@ std::optional<LensConnection> connect_to_lens(const RenderContext& context, cons
       shadow_transmittance(context.scene, ray_to_lens, media, wavelengths, numbers, arena, Transport::importance, &likely);
   if (visible.black()) return {};
   c.light *= visible;
-  c.camera.kind = PathVertex::Kind::camera;
-  c.camera.parallel = camera.parallel();
-  c.camera.point.position = lens->lens;
-  c.camera.point.time = y.point.time;
-  Ray ray;
-  ray.origin = lens->lens;
-  ray.direction = -lens->direction;
-  ray.time = y.point.time;
-  c.pdf_at_lens = camera_direction_pdf(camera, ray);
   c.mean_transmittance = likely.average();
   return c;
 }

@@ -87,13 +87,15 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
   std::vector<SubpathVertex> walk;
   EmittedLight light;
   const EmissionPlane front(context.scene);
+  SubpathLimits of_walk = limits;
+  of_walk.reverse_pdfs = against != nullptr;
   for (std::uint64_t n = item * item_size; n < std::min(walks, (item + 1) * item_size); ++n) {
     const ArenaScope memory(arena);
     Wavelengths w = wavelengths;
     NumberStream walk_samples(numbers, SampleKey(context.seed, -2 - int(kinds), int(step), std::uint32_t(n)));
     NumberStream chances = walk_samples.fork("kept");
     SampleContext sample{w, walk_samples, arena, {.abort = abort}};
-    if (!generate_light_subpath(context.scene, lights, time, limits, sample, walk, light, targets)) continue;
+    if (!generate_light_subpath(context.scene, lights, time, of_walk, sample, walk, light, targets)) continue;
     if (sample.aborted()) return;
     const float luminaire_pdf = walk.size() > 1 && against ? next_event_point_pdf(lights, walk[1], walk[0], walk[1].out) : 0;
     bool specular = true;  // whether all vertices since the luminaire are specular

@@ -37,6 +37,14 @@ struct StoringEvents : NoEvents {
   }
 };
 
+/// pdf_reverse of the vertex `before` v: its pdf for a subpath from the other end, which comes to v from the direction `next`.
+float reverse_pdf(const SubpathVertex& v, const SubpathVertex& before, const Vector3& next, Transport transport,
+                  const CameraDirections* directions, const EmissionPlane& front) {
+  float back = v.specular ? 1 : scattering_pdf(v, next, v.out, adjoint(transport));
+  if (transport == Transport::importance && !v.specular) back = camera_pdf(directions, v, next, v.out, back);
+  return vertex_pdf(back, v, before, v.out, v.mean_transmittance, front);
+}
+
 /// Traces a walk whose first vertex is stored already, and stores its vertices with their pdfs. `pdf`: of the first direction.
 void grow(Growing& walk, float pdf, const SubpathLimits& limits, std::vector<SubpathVertex>& subpath, SegmentEvents* events) {
   const EmissionPlane front(walk.scene);
@@ -62,12 +70,10 @@ void grow(Growing& walk, float pdf, const SubpathLimits& limits, std::vector<Sub
     walk.leave(*next);
     v.specular = walk.specular;
     pdf = v.specular ? 1 : next->pdf;
-    // pdf_reverse of the vertex before: its pdf for a subpath from the other end, which comes to this vertex from
-    // `next->direction`.
-    float back = v.specular ? 1 : scattering_pdf(v, next->direction, v.out, adjoint(walk.transport));
-    if (!from_camera && !v.specular) back = camera_pdf(limits.directions, v, next->direction, v.out, back);
-    SubpathVertex& before = subpath[subpath.size() - 2];
-    before.pdf_reverse = vertex_pdf(back, v, before, v.out, v.mean_transmittance, front);
+    if (limits.reverse_pdfs) {
+      SubpathVertex& before = subpath[subpath.size() - 2];
+      before.pdf_reverse = reverse_pdf(v, before, next->direction, walk.transport, limits.directions, front);
+    }
     more *= way.more;
     if (!roulette.survives(walk, walk.roulette_weight() * more)) return;
   }
@@ -100,6 +106,15 @@ float vertex_pdf(float pdf, const SubpathVertex& a, const SubpathVertex& b, cons
   return pdf / length_squared(b.point.position - a.point.position);
 }
 
+SubpathVertex lens_vertex(const Camera& camera, const Point3& position, float time) {
+  SubpathVertex lens;
+  lens.kind = PathVertex::Kind::camera;
+  lens.parallel = camera.parallel();
+  lens.point.position = position;
+  lens.point.time = time;
+  return lens;
+}
+
 float camera_direction_pdf(const Camera& camera, const Ray& ray) {
   const CameraPdf pdf = camera.pdf(ray);
   return camera.parallel() ? pdf.position : pdf.direction;
@@ -108,11 +123,7 @@ float camera_direction_pdf(const Camera& camera, const Ray& ray) {
 void generate_camera_subpath(const RenderContext& context, const Ray& ray, const SubpathLimits& limits, SampleContext& sample,
                              std::vector<SubpathVertex>& subpath, SegmentEvents& events) {
   subpath.clear();
-  SubpathVertex& lens = subpath.emplace_back();
-  lens.kind = PathVertex::Kind::camera;
-  lens.parallel = context.camera.parallel();
-  lens.point.position = context.camera.lens_point(ray);
-  lens.point.time = ray.time;
+  subpath.push_back(lens_vertex(context.camera, context.camera.lens_point(ray), ray.time));
   Growing walk(context.scene, sample, ray, limits.longest);
   if (context.scene.has_interiors()) media_at(context.scene, ray.origin, ray.time, walk.media);
   grow(walk, camera_direction_pdf(context.camera, ray), limits, subpath, &events);

@@ -81,6 +81,8 @@ class BidirectionalSubpaths {
  private:
   void add_emitter_hit(const SubpathVertex&, const SurfacePoint& luminaire, int t, std::vector<PathContribution>&) const;
   void add_emitter_hits(int t, std::vector<PathContribution>&) const;
+  /// The weight of strategy (s, 1).
+  float lens_weight(int s, const LensConnection&) const;
   /// The pdf (vertex_pdf) of the vertex before the last among a subpath's first `count` vertices, if it is sampled from the
   /// opposite end: by a walk that comes to the last vertex from the direction `from` and is scattered there.
   float before_from(const std::vector<SubpathVertex>& subpath, int count, const Vector3& from, Transport) const;

@@ -46,8 +46,6 @@ std::optional<LuminaireConnection> connect_to_luminaire(const Scene&, const Ligh
 struct LensConnection {
   Spectrum light;  ///< the value of a Splat
   LensSample lens;
-  SubpathVertex camera;   ///< the lens point
-  float pdf_at_lens = 0;  ///< pdf of the camera ray towards y (camera_direction_pdf)
   float mean_transmittance = 1;
 };
 

@@ -44,6 +44,11 @@ inline ScatterValue scattering(const PathVertex& v, const Vector3& out, const Ve
   }
   return v.scatter ? v.scatter->value_and_pdf(out, in, transport, v.lobes) : ScatterValue{};
 }
+/// Only that value.
+inline Spectrum scattered(const PathVertex& v, const Vector3& out, const Vector3& in, Transport transport) {
+  if (v.in_medium()) return Spectrum(v.medium.phase(v.point.position, v.point.time, out, in));
+  return v.scatter ? v.scatter->evaluate(out, in, transport, v.lobes) : Spectrum();
+}
 /// Only that pdf.
 inline float scattering_pdf(const PathVertex& v, const Vector3& out, const Vector3& in, Transport transport) {
   if (v.in_medium()) return v.medium.phase(v.point.position, v.point.time, out, in);

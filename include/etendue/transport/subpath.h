@@ -65,6 +65,7 @@ struct SubpathLimits {
   int roulette_depth = 5;                  ///< segments before Russian roulette may end the subpath
   CameraDirections* directions = nullptr;  ///< for camera subpaths, and for the pdfs of other vertices as sampled from the
                                            ///< camera; null: directions are sampled by scattering alone
+  bool reverse_pdfs = true;                ///< whether SubpathVertex::pdf_reverse is computed, which weights alone need
 };
 
 /// The pdf [1/sr] with which a camera subpath that came from `out` samples `in`; `scatter` is the pdf of scattering alone.
@@ -112,6 +113,9 @@ bool generate_light_subpath(const Scene&, const LightSampler&, float time, const
 /// `mean_transmittance` that of the segment.
 float vertex_pdf(float pdf, const SubpathVertex& a, const SubpathVertex& b, const Vector3& direction, float mean_transmittance,
                  const EmissionPlane&);
+
+/// The first vertex of a camera subpath: a point of the lens.
+SubpathVertex lens_vertex(const Camera&, const Point3&, float time);
 
 /// The pdf of a camera ray's direction [1/sr]; for an orthographic camera that of its position [1/m^2].
 float camera_direction_pdf(const Camera&, const Ray&);
