@@ -4,7 +4,7 @@
 //
 //   Spectrum local_evaluate(out, in, lobes)    f [1/sr] without the cosine, as for importance: without the factor 1 / eta^2 of
 //                                              refracted radiance
-//   float local_pdf(out, in, lobes)            the pdf [1/sr] with which local_sample samples `in`
+//   float local_pdf(out, in, lobes)            the pdf [1/sr] with which local_sample samples `in`, without specular lobes
 //   bool local_sample(out, choice, u, lobes, LocalSample&)    false: the sample is absorbed
 //   Spectrum local_albedo(out, lobes)          as Scatter::albedo
 //
