@@ -85,7 +85,7 @@ class Shading {
       if (v.scatters_smoothly() && sample_next_event(lights_, v, 0, wavelengths_, number(), {number(), number()},
                                                      Heuristic::power, direct, ScatteringOf{v}))
         sum_ += direct.light[0];
-      if (const auto next = v.scatter->sample(v.out, number(), {number(), number()}, Transport::radiance, v.lobes))
+      if (const auto next = v.scatter->sample(v.out, number(), {number(), number()}, {.lobes = v.lobes}))
         sum_ += next->weight[0];
     }
     arena_.reset();

@@ -16,7 +16,7 @@ namespace etendue {
 /// The sides of a surface that emit, or that scatter.
 enum class Sides : std::uint8_t { front, back, both };
 /// The treatment of light that a shading normal would send through the surface: the mirrored shading-normal correction, or
-/// dropped (see scatter_answers.h).
+/// dropped (see scatter_corrections.h).
 enum class ShadingNormals : std::uint8_t { folded, clipped };
 
 /// A sampled direction with its pdf per solid angle.

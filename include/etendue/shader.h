@@ -3,13 +3,13 @@
 // in pbrt). Shader::bind reads the maps once, for a point and wavelengths, and returns a Scatter, which evaluates and samples
 // the scattering there.
 //
-// A new material derives one class from Shader and one from Scatter (docs/write-a-shader.md):
+// A new material derives one class from Shader and one from ScatterModel (docs/write-a-shader.md):
 //   - Shader must implement `bind` and `possible_lobes`. Optional: `interior_index` if it refracts, `transmits`, `lossless`,
 //     `reciprocal`, `albedo_error`, `stochastic`, and for subsurface scattering `has_subsurface_exit` with `sample_exit`.
-//   - Scatter must implement `local_evaluate`, `local_pdf`, `local_sample` and `local_albedo`. Optional: `local_value_and_pdf`
-//     for speed, `relative_index` for rough refraction, `total_internal_reflection` for smooth refraction.
-//   - A Scatter made of other Scatters derives from ScatterCombination; one that is evaluated very often from ScatterModel
-//     (scatter_model.h).
+//   - ScatterModel (scatter_model.h) needs the model's functions in local directions, which it documents, and makes the
+//     corrections for shading normals and refraction.
+//   - A Scatter made of other Scatters derives from Scatter itself, and must implement `world_value_and_pdf`, `world_sample`
+//     and `world_albedo`, in world directions.
 
 #include <optional>
 
@@ -53,6 +53,13 @@ enum class Transport : std::uint8_t { radiance, importance };
 /// The quantity of the same path traced in the opposite direction.
 inline Transport adjoint(Transport t) { return t == Transport::radiance ? Transport::importance : Transport::radiance; }
 
+/// Which part of a BSDF a function of Scatter computes, and for which quantity (BSDFContext in Mitsuba). By default all of it,
+/// for radiance.
+struct ScatterContext {
+  Transport transport = Transport::radiance;
+  Lobes lobes = all_lobes;  ///< the requested lobes; those that are not present contribute nothing
+};
+
 /// A direction sampled by a Scatter. All vectors point away from the surface and have unit length.
 struct ScatterSample {
   Vector3 direction;
@@ -75,52 +82,47 @@ struct ScatterValue {
 };
 
 /// A BSDF at a point. `out` is the direction the path came from, `in` the direction it continues in, both pointing away from
-/// the surface. The public functions apply the side tests, lobe masks and corrections for shading normals and refraction
-/// (derived in scatter_answers.h). Subclasses override the protected local_* functions, in whose coordinates z is along the
-/// shading normal on the front side.
+/// the surface. Values include the side tests and the corrections for shading normals and refraction (derived in
+/// scatter_corrections.h).
 class Scatter {
  public:
   /// f |cos| [1/sr]. The cosine is with the normal that the model uses (its shading normal), therefore it is part of the value.
   /// Zero for specular lobes.
-  Spectrum evaluate(const Vector3& out, const Vector3& in, Transport transport = Transport::radiance,
-                    Lobes which = all_lobes) const {
-    return world_evaluate(out, in, transport, Lobes(which & lobes_));
+  Spectrum evaluate(const Vector3& out, const Vector3& in, ScatterContext context = {}) const {
+    return world_evaluate(out, in, present(context));
   }
   /// The pdf [1/sr] of `sample` for `in`, without specular lobes. The pdf of the reverse direction is the same call with the
   /// directions exchanged.
-  float pdf(const Vector3& out, const Vector3& in, Transport transport = Transport::radiance, Lobes which = all_lobes) const {
-    return world_pdf(out, in, transport, Lobes(which & lobes_));
+  float pdf(const Vector3& out, const Vector3& in, ScatterContext context = {}) const {
+    return world_pdf(out, in, present(context));
   }
   /// Both of the above in one call.
-  ScatterValue value_and_pdf(const Vector3& out, const Vector3& in, Transport transport = Transport::radiance,
-                             Lobes which = all_lobes) const {
-    return world_value_and_pdf(out, in, transport, Lobes(which & lobes_));
+  ScatterValue value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext context = {}) const {
+    return world_value_and_pdf(out, in, present(context));
   }
   /// Samples a direction from the requested lobes: `choice` selects the lobe, `u` the direction within it. Empty when the
   /// sample is absorbed: it must be counted as a sample with contribution zero.
-  std::optional<ScatterSample> sample(const Vector3& out, float choice, Point2 u, Transport transport = Transport::radiance,
-                                      Lobes which = all_lobes) const {
-    which &= lobes_;
-    return which == no_lobes ? std::nullopt : world_sample(out, choice, u, transport, which);
+  std::optional<ScatterSample> sample(const Vector3& out, float choice, Point2 u, ScatterContext context = {}) const {
+    context = present(context);
+    return context.lobes == no_lobes ? std::nullopt : world_sample(out, choice, u, context);
   }
   /// The directional albedo: the fraction of uniform incident light that the requested lobes scatter towards `out`, as power
   /// (without the factor 1 / eta^2 of refracted radiance). Used by Russian roulette, the choice between lobes, and the albedo
   /// images of denoisers. Its accuracy is Shader::albedo_error.
-  Spectrum albedo(const Vector3& out, Lobes which = all_lobes) const {
-    which &= lobes_;
-    return which == no_lobes ? Spectrum() : world_albedo(out, which);
+  Spectrum albedo(const Vector3& out, Lobes lobes = all_lobes) const {
+    lobes &= lobes_;
+    return lobes == no_lobes ? Spectrum() : world_albedo(out, lobes);
   }
 
   /// The lobes present at this point.
   Lobes lobes() const { return lobes_; }
   bool has(Lobes any) const { return (lobes_ & any) != 0; }
-  /// Whether `sample` uses its argument `choice`. Subclasses that never do set has_choice_ to false, which saves a random
-  /// number.
+  /// Whether `sample` uses its argument `choice`.
   bool has_choice() const { return has_choice_ || normals_ == Normals::folded; }
   /// The specular lobes that disperse for every `out`, each wavelength into its own direction. When one of these lobes alone is
   /// requested, `sample` returns the direction of the hero wavelength. A lobe that disperses in some of its directions only, as
   /// a grating's does, is not included.
-  Lobes dispersed() const { return dispersed_; }
+  Lobes dispersed_lobes() const { return dispersed_lobes_; }
   /// |cos| of the angle between a direction and the shading normal.
   float cosine(const Vector3& v) const { return std::abs(dot(frame_.n, v)); }
   const Frame& frame() const { return frame_; }
@@ -132,59 +134,32 @@ class Scatter {
       : frame_(frame), normal_(p.normal), lobes_(Lobes(lobes & let_through(p))), normals_(normals_of(p, frame)) {}
   ~Scatter() = default;
 
-  struct LocalSample {
-    Vector3 in;
-    Spectrum value;  ///< f |cos| for smooth lobes, summed over all requested ones; for a specular lobe its reflectance or
-                     ///< transmittance
-    float pdf = 0;   ///< [1/sr] for smooth lobes, of all requested ones together; for a specular lobe its discrete probability
-    Lobe lobe = diffuse_reflection;
-    float eta = 1;  ///< at the hero wavelength, as in ScatterSample
-    bool dispersive = false;
-  };
-  // f [1/sr] without the cosine, as for importance: without the factor 1 / eta^2 of refracted radiance. `which` holds all
-  // requested lobes that are present, reflection and transmission, specular ones too, so that the probabilities of choosing
-  // between lobes are the same here as in local_sample. Whether the pair of directions is reflection or transmission follows
-  // from the signs of z, which agree with the geometric sides.
-  virtual Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const = 0;
-  virtual float local_pdf(const Vector3& out, const Vector3& in, Lobes which) const = 0;
-  virtual ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const {
-    return {local_evaluate(out, in, which), local_pdf(out, in, which)};
+  // Implement the public functions. The lobes given are the requested ones that are present; world_sample and world_albedo are
+  // called only if there are any.
+  virtual Spectrum world_evaluate(const Vector3& out, const Vector3& in, ScatterContext context) const {
+    return world_value_and_pdf(out, in, context).value;
   }
-  /// Returns false if the sample is absorbed. The pdf of a sample of a smooth lobe must include every requested lobe that could
-  /// have generated the direction.
-  virtual bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample&) const = 0;
-  virtual Spectrum local_albedo(const Vector3& out, Lobes which) const = 0;
-  /// For smooth transmission lobes: the index on the side of `in` (second argument) over that on the side of `out` (first), per
-  /// wavelength; 1 without refraction.
-  virtual Spectrum relative_index(const Vector3&, const Vector3&) const { return Spectrum(1.0f); }
-
-  /// Whether there is total internal reflection for a viewer in a local direction, at a specular boundary without smooth lobes.
-  /// Only called for models that set has_total_internal_reflection_.
-  virtual bool total_internal_reflection(const Vector3&) const { return false; }
-
-  // Implement the public functions, for the requested lobes that are present. Here they call the local functions; ScatterModel
-  // (scatter_model.h) and ScatterCombination override them.
-  virtual Spectrum world_evaluate(const Vector3& out, const Vector3& in, Transport, Lobes which) const;
-  virtual float world_pdf(const Vector3& out, const Vector3& in, Transport, Lobes which) const;
-  virtual ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport, Lobes which) const;
-  virtual std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport, Lobes which) const;
-  virtual Spectrum world_albedo(const Vector3& out, Lobes which) const;
+  virtual float world_pdf(const Vector3& out, const Vector3& in, ScatterContext context) const {
+    return world_value_and_pdf(out, in, context).pdf;
+  }
+  virtual ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext) const = 0;
+  virtual std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, ScatterContext) const = 0;
+  virtual Spectrum world_albedo(const Vector3& out, Lobes) const = 0;
 
   Frame frame_;
   Normal3 normal_;
   Lobes lobes_;
   /// Whether the shading normal equals the geometric normal, and if not, which correction is applied (ShadingNormals).
   enum class Normals : std::uint8_t { same, folded, clipped } normals_;
+  /// Whether world_sample uses `choice` at this point; false saves a random number.
   bool has_choice_ = true;
-  bool has_total_internal_reflection_ = false;
-  Lobes dispersed_ = no_lobes;
-  /// False for a model whose f changes when `out` and `in` are exchanged. Then the argument `out` of local_evaluate is the
-  /// direction that light leaves in, for importance too; local_sample and local_pdf still get the direction the path came from.
-  bool reciprocal_ = true;
+  /// See dispersed_lobes.
+  Lobes dispersed_lobes_ = no_lobes;
 
  private:
   template <class Model>
-  friend class ScatterAnswers;
+  friend class ScatterCorrections;
+  ScatterContext present(ScatterContext context) const { return {context.transport, Lobes(context.lobes & lobes_)}; }
   /// The lobes that remain on an object of which one side only scatters (SceneObject::sides). Light transmitted to the other
   /// side is absorbed; null scattering stays, as it is not scattering by matter.
   static Lobes let_through(const SurfacePoint& p) {
@@ -194,33 +169,6 @@ class Scatter {
     if (frame.n == p.normal) return Normals::same;
     return p.object && p.object->shading_normals == ShadingNormals::clipped ? Normals::clipped : Normals::folded;
   }
-};
-
-/// The base of a Scatter made of other Scatters, each of which may have its own shading normal. It implements the public
-/// functions in world directions by calling the public functions of its parts, which apply their own corrections.
-class ScatterCombination : public Scatter {
- public:
-  // Values are those of `Scatter::evaluate`, including the cosine and the corrections.
-  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport, Lobes which) const override = 0;
-  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport,
-                                            Lobes which) const override = 0;
-  Spectrum world_albedo(const Vector3& out, Lobes which) const override = 0;
-
- protected:
-  ScatterCombination(const SurfacePoint& p, Lobes lobes) : Scatter(p, lobes) {}
-  ~ScatterCombination() = default;
-
- private:
-  Spectrum world_evaluate(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {
-    return world_value_and_pdf(out, in, transport, which).value;
-  }
-  float world_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const final {
-    return world_value_and_pdf(out, in, transport, which).pdf;
-  }
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const final { return {}; }
-  float local_pdf(const Vector3&, const Vector3&, Lobes) const final { return 0; }
-  bool local_sample(const Vector3&, float, Point2, Lobes, LocalSample&) const final { return false; }
-  Spectrum local_albedo(const Vector3&, Lobes) const final { return {}; }
 };
 
 /// The exit point of subsurface scattering: where light that entered an object leaves it again.
@@ -250,7 +198,8 @@ class Shader : public Component {
   /// Whether nothing is absorbed: the albedo is 1 for every direction.
   virtual bool lossless() const { return false; }
   /// Whether f(out, in) = f(in, out), across refraction with the squared indices. A model that is not reciprocal documents why.
-  /// Its Scatter sets reciprocal_ to false, so that the scattering of importance is still the adjoint of that of radiance.
+  /// Its ScatterModel declares it too (ScatterModel::reciprocal), so that the scattering of importance is still the adjoint of
+  /// that of radiance.
   virtual bool reciprocal() const { return true; }
   /// An upper bound of the relative error of Scatter::albedo: 0 if it is exact except for rounding; more if it comes from a
   /// table or an approximation. The bound holds up to 85 degrees from the normal, for every set of lobes.

@@ -25,7 +25,7 @@ inline double lobe_share(const ChainVertex& v, const Vector3& out, Lobes group) 
 /// Throws Error if the lobe has several directions.
 inline std::optional<ScatterSample> follow_specular(const ChainVertex& v, const Vector3& out, Transport transport, Lobe lobe) {
   if (!v.scatter) return {};
-  const auto s = v.scatter->sample(out, 0, {}, transport, lobe);
+  const auto s = v.scatter->sample(out, 0, {}, {transport, lobe});
   if (!s || enters_subsurface(v.point, *s)) return {};
   if (s->pdf < 0.9999f)
     v.point.object->shader->fail({}, "sends light on in several specular directions, which PathSpaceMetropolis cannot follow");

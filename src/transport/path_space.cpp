@@ -150,7 +150,7 @@ bool PathSpace::walk(Walk& walk, int count, Transport transport, ChoiceNumbers& 
       const bool specular_one = lobe_groups[chosen] != smooth_lobes;
       if (specular_one && walk.size() == given) return false;  // the vertices that were given stay smooth
       const auto s = specular_one ? follow_specular(from, out, transport, Lobe(lobe_groups[chosen]))
-                                  : from.scatter->sample(out, next(choices), next_pair(choices), transport, smooth_lobes);
+                                  : from.scatter->sample(out, next(choices), next_pair(choices), {transport, smooth_lobes});
       if (!s || enters_subsurface(from.point, *s)) return false;
       from.specular = specular_one;
       from.lobe = Lobe(s->lobe);

@@ -26,7 +26,7 @@ Spectrum scattered_from_photon(const PathVertex& at, const Photon& photon, const
   // The density of photons already includes the cosine of the incident direction.
   const float cosine = std::abs(dot(at.point.normal, photon.out));
   if (photon.in_medium || !at.scatter || !(cosine > 0)) return {};
-  return at.scatter->evaluate(at.out, photon.out, Transport::radiance, at.lobes) * light / cosine;
+  return at.scatter->evaluate(at.out, photon.out, {.lobes = at.lobes}) * light / cosine;
 }
 
 bool photon_occluded(const Scene& scene, const Point3& a, const Vector3& normal_a, float time, const Point3& b,

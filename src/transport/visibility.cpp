@@ -41,7 +41,7 @@ Spectrum shadow_transmittance_slowly(const Scene& scene, const Ray& shadow, cons
     if (!hidden) {
       point.media = around ? &media : nullptr;
       const Scatter* scatter = bound(*object.shader, point, wavelengths, arena);
-      const auto straight = scatter ? scatter->sample(-ray.direction, 0, {}, transport, null_scattering) : std::nullopt;
+      const auto straight = scatter ? scatter->sample(-ray.direction, 0, {}, {transport, null_scattering}) : std::nullopt;
       if (!straight) return {};
       // Requested alone, the lobe has probability 1, and its weight is the fraction that is let through.
       fraction *= straight->weight;

@@ -2,37 +2,41 @@
 
 #include "etendue/core/warp.h"
 #include "etendue/object_map.h"
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 
 namespace etendue {
 namespace {
 
-/// A correct Scatter: diffuse, on both sides.
-class Matt : public Scatter {
+/// The base of models that are diffuse on both sides, correct except for the functions that a model replaces.
+template <class Model>
+class MattModel : public ScatterModel<Model> {
  public:
-  Matt(const SurfacePoint& p, float reflectance, Lobes lobes = diffuse_reflection)
-      : Scatter(p, lobes), reflectance_(reflectance) {}
+  MattModel(const SurfacePoint& p, float reflectance, Lobes lobes = diffuse_reflection)
+      : ScatterModel<Model>(p, lobes), reflectance_(reflectance) {}
 
- protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? Spectrum(reflectance_ * inverse_pi) : Spectrum();
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
   }
-  bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes lobes, LocalSample& s) const {
     s.in = warp::cosine_hemisphere(u);
     if (out.z < 0) s.in.z = -s.in.z;
     s.lobe = diffuse_reflection;
-    s.pdf = local_pdf(out, s.in, which);
-    s.value = local_evaluate(out, s.in, which) * std::abs(s.in.z);
+    s.pdf = this->model().local_pdf(out, s.in, lobes);
+    s.value = this->model().local_evaluate(out, s.in, lobes) * std::abs(s.in.z);
     return s.pdf > 0;
   }
-  Spectrum local_albedo(const Vector3&, Lobes which) const override {
-    return (which & lobes_) ? Spectrum(reflectance_) : Spectrum();
-  }
+  Spectrum local_albedo(const Vector3&, Lobes lobes) const { return this->has(lobes) ? Spectrum(reflectance_) : Spectrum(); }
 
+ protected:
   float reflectance_;
+};
+
+class Matt final : public MattModel<Matt> {
+ public:
+  using MattModel::MattModel;
 };
 
 /// The members and lobes that all these shaders have.
@@ -54,14 +58,11 @@ class MattShader : public Shader {
 };
 
 // ---- a pdf without the cosine ------------------------------------------------------------------------------------------
-class DensityScatter final : public Matt {
+class DensityScatter final : public MattModel<DensityScatter> {
  public:
-  using Matt::Matt;
+  using MattModel::MattModel;
 
- protected:
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
-    return out.z * in.z > 0 ? warp::hemisphere_pdf : 0;
-  }
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const { return out.z * in.z > 0 ? warp::hemisphere_pdf : 0; }
 };
 class WrongDensityShader final : public MattShader<DensityScatter> {
  public:
@@ -71,30 +72,27 @@ const Register<WrongDensityShader> pdf;
 
 // ---- reciprocal at the hero wavelength only ----------------------------------------------------------------------------
 /// Diffuse transmission: f(front to back) / f(back to front) must be the squared relative index of each wavelength.
-class HeroIndexScatter final : public Scatter {
+class HeroIndexScatter final : public ScatterModel<HeroIndexScatter> {
  public:
-  HeroIndexScatter(const SurfacePoint& p, const Spectrum& eta) : Scatter(p, diffuse_transmission), eta_(eta) {}
+  HeroIndexScatter(const SurfacePoint& p, const Spectrum& eta) : ScatterModel(p, diffuse_transmission), eta_(eta) {}
 
- protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z < 0 ? Spectrum(0.4f * inverse_pi * towards(out)) : Spectrum();
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z < 0 ? std::abs(in.z) * inverse_pi : 0;
   }
-  bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes lobes, LocalSample& s) const {
     s.in = warp::cosine_hemisphere(u);
     if (out.z > 0) s.in.z = -s.in.z;
     s.lobe = diffuse_transmission;
-    s.pdf = local_pdf(out, s.in, which);
-    s.value = local_evaluate(out, s.in, which) * std::abs(s.in.z);
+    s.pdf = local_pdf(out, s.in, lobes);
+    s.value = local_evaluate(out, s.in, lobes) * std::abs(s.in.z);
     s.eta = towards(out);
     return s.pdf > 0;
   }
-  Spectrum local_albedo(const Vector3& out, Lobes) const override { return 0.4f * towards(out); }
-  Spectrum relative_index(const Vector3& out, const Vector3&) const override {
-    return out.z > 0 ? eta_ : Spectrum(1.0f) / eta_;
-  }
+  Spectrum local_albedo(const Vector3& out, Lobes) const { return 0.4f * towards(out); }
+  Spectrum relative_index(const Vector3& out, const Vector3&) const { return out.z > 0 ? eta_ : Spectrum(1.0f) / eta_; }
 
  private:
   float towards(const Vector3& out) const { return out.z > 0 ? eta_[0] : 1 / eta_[0]; }
@@ -114,12 +112,11 @@ class HeroIndexShader final : public MattShader<Matt> {
 const Register<HeroIndexShader> hero_index;
 
 // ---- an albedo that is not that of the scattered light -----------------------------------------------------------------
-class AlbedoScatter final : public Matt {
+class AlbedoScatter final : public MattModel<AlbedoScatter> {
  public:
-  AlbedoScatter(const SurfacePoint& p, float reflectance, float factor) : Matt(p, reflectance), factor_(factor) {}
+  AlbedoScatter(const SurfacePoint& p, float reflectance, float factor) : MattModel(p, reflectance), factor_(factor) {}
 
- protected:
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override { return Matt::local_albedo(out, which) * factor_; }
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const { return MattModel::local_albedo(out, lobes) * factor_; }
 
  private:
   float factor_;
@@ -152,12 +149,11 @@ class BoundlessAlbedoShader final : public MattShader<Matt> {
 const Register<BoundlessAlbedoShader> boundless_albedo;
 
 // ---- more light than arrives -------------------------------------------------------------------------------------------
-class EnergyScatter final : public Matt {
+class EnergyScatter final : public MattModel<EnergyScatter> {
  public:
-  EnergyScatter(const SurfacePoint& p, float reflectance) : Matt(p, 1 + 0.1f * reflectance) {}
+  EnergyScatter(const SurfacePoint& p, float reflectance) : MattModel(p, 1 + 0.1f * reflectance) {}
 
- protected:
-  Spectrum local_albedo(const Vector3&, Lobes which) const override { return (which & diffuse_reflection) ? 1.0f : 0.0f; }
+  Spectrum local_albedo(const Vector3&, Lobes lobes) const { return (lobes & diffuse_reflection) ? 1.0f : 0.0f; }
 };
 class GainingShader final : public MattShader<EnergyScatter> {
  public:
@@ -166,16 +162,15 @@ class GainingShader final : public MattShader<EnergyScatter> {
 const Register<GainingShader> gaining;
 
 // ---- not reciprocal ----------------------------------------------------------------------------------------------------
-class OneWayScatter final : public Matt {
+class OneWayScatter final : public MattModel<OneWayScatter> {
  public:
-  using Matt::Matt;
+  using MattModel::MattModel;
 
- protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return Matt::local_evaluate(out, in, which) * (0.5f + 0.5f * std::abs(out.z));
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes lobes) const {
+    return MattModel::local_evaluate(out, in, lobes) * (0.5f + 0.5f * std::abs(out.z));
   }
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    return Matt::local_albedo(out, which) * (0.5f + 0.5f * std::abs(out.z));
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
+    return MattModel::local_albedo(out, lobes) * (0.5f + 0.5f * std::abs(out.z));
   }
 };
 class OneWayShader final : public MattShader<OneWayScatter> {
@@ -187,13 +182,12 @@ class OneWayShader final : public MattShader<OneWayScatter> {
 const Register<OneWayShader> one_way;
 
 // ---- a weight that is not value times cosine over pdf ------------------------------------------------------------------
-class WeightScatter final : public Matt {
+class WeightScatter final : public MattModel<WeightScatter> {
  public:
-  using Matt::Matt;
+  using MattModel::MattModel;
 
- protected:
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
-    const bool sampled = Matt::local_sample(out, choice, u, which, s);
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
+    const bool sampled = MattModel::local_sample(out, choice, u, lobes, s);
     s.value *= 1.03f;
     return sampled;
   }
@@ -205,28 +199,28 @@ class WrongWeightShader final : public MattShader<WeightScatter> {
 const Register<WrongWeightShader> weight;
 
 // ---- two lobes, one of which ignores the lobe mask ---------------------------------------------------------------------
-class MaskScatter final : public Matt {
+class MaskScatter final : public MattModel<MaskScatter> {
  public:
-  MaskScatter(const SurfacePoint& p, float reflectance) : Matt(p, reflectance, diffuse_reflection | diffuse_transmission) {}
+  MaskScatter(const SurfacePoint& p, float reflectance)
+      : MattModel(p, reflectance, diffuse_reflection | diffuse_transmission) {}
 
- protected:
   // Half of the light is reflected and half transmitted; but reflection is sampled even if the mask excludes it.
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return reflectance_ / 2 * inverse_pi; }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
-    if (which == diffuse_reflection) return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return reflectance_ / 2 * inverse_pi; }
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
+    if (lobes == diffuse_reflection) return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
     return std::abs(in.z) * inverse_pi / 2;
   }
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
     s.in = warp::cosine_hemisphere(u);
-    const bool through = (which & diffuse_transmission) != 0 && choice < 0.5f;
+    const bool through = (lobes & diffuse_transmission) != 0 && choice < 0.5f;
     if ((out.z < 0) != through) s.in.z = -s.in.z;
     s.lobe = through ? diffuse_transmission : diffuse_reflection;
-    s.pdf = local_pdf(out, s.in, which);
-    s.value = local_evaluate(out, s.in, which) * std::abs(s.in.z);
+    s.pdf = local_pdf(out, s.in, lobes);
+    s.value = local_evaluate(out, s.in, lobes) * std::abs(s.in.z);
     return s.pdf > 0;
   }
-  Spectrum local_albedo(const Vector3&, Lobes which) const override {
-    return reflectance_ * ((which & diffuse_reflection ? 0.5f : 0) + (which & diffuse_transmission ? 0.5f : 0));
+  Spectrum local_albedo(const Vector3&, Lobes lobes) const {
+    return reflectance_ * ((lobes & diffuse_reflection ? 0.5f : 0) + (lobes & diffuse_transmission ? 0.5f : 0));
   }
 };
 class MaskIgnoringShader final : public MattShader<MaskScatter> {
@@ -239,14 +233,13 @@ class MaskIgnoringShader final : public MattShader<MaskScatter> {
 const Register<MaskIgnoringShader> mask;
 
 // ---- NaN where the cosine vanishes -------------------------------------------------------------------------------------
-class GrazingScatter final : public Matt {
+class GrazingScatter final : public MattModel<GrazingScatter> {
  public:
-  using Matt::Matt;
+  using MattModel::MattModel;
 
- protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes lobes) const {
     // sqrt of a negative number just above the horizon.
-    return Matt::local_evaluate(out, in, which) * std::sqrt(std::abs(in.z) - 0.001f) / std::sqrt(std::abs(in.z) - 0.001f);
+    return MattModel::local_evaluate(out, in, lobes) * std::sqrt(std::abs(in.z) - 0.001f) / std::sqrt(std::abs(in.z) - 0.001f);
   }
 };
 class GrazingShader final : public MattShader<GrazingScatter> {

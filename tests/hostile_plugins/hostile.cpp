@@ -10,7 +10,7 @@
 #include "etendue/describe/color.h"
 #include "etendue/describe/description.h"
 #include "etendue/object_map.h"
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 
 using namespace etendue;
 
@@ -36,26 +36,25 @@ struct Opening {
   Opening() { misbehave("open"); }
 } opening;
 
-class HalfScatter final : public Scatter {
+class HalfScatter final : public ScatterModel<HalfScatter> {
  public:
-  explicit HalfScatter(const SurfacePoint& p) : Scatter(p, diffuse_reflection) {}
+  explicit HalfScatter(const SurfacePoint& p) : ScatterModel(p, diffuse_reflection) {}
 
- protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? Spectrum(0.5f * inverse_pi) : Spectrum();
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
   }
-  bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes lobes, LocalSample& s) const {
     const float r = std::sqrt(u.x), phi = 2 * pi * u.y, z = safe_sqrt(1 - u.x);
     s.in = {r * std::cos(phi), r * std::sin(phi), std::copysign(z, out.z)};
     s.lobe = diffuse_reflection;
-    s.pdf = local_pdf(out, s.in, which);
+    s.pdf = local_pdf(out, s.in, lobes);
     s.value = Spectrum(0.5f) * s.pdf;
     return true;
   }
-  Spectrum local_albedo(const Vector3&, Lobes) const override { return Spectrum(0.5f); }
+  Spectrum local_albedo(const Vector3&, Lobes) const { return Spectrum(0.5f); }
 };
 
 }  // namespace

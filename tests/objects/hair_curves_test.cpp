@@ -71,7 +71,7 @@ TEST(HairCurves, TheWallOfATubeIsNotThereFromInside) {
   EXPECT_EQ(s->lobe, null_scattering);
   EXPECT_EQ(s->direction, -out);
   EXPECT_EQ(s->weight[0], 1);
-  EXPECT_FALSE(scatter->sample(-out, 0.3f, {0.4f, 0.6f}, Transport::radiance, null_scattering));
+  EXPECT_FALSE(scatter->sample(-out, 0.3f, {0.4f, 0.6f}, {.lobes = null_scattering}));
 }
 
 }  // namespace

@@ -1,31 +1,30 @@
 // A shader in one file, out of tree: gold that scatters diffusely.
 #include "etendue/describe/color.h"
 #include "etendue/describe/description.h"
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 
 using namespace etendue;
 
-class GoldScatter final : public Scatter {
+class GoldScatter final : public ScatterModel<GoldScatter> {
  public:
-  GoldScatter(const SurfacePoint& p, Spectrum color) : Scatter(p, diffuse_reflection), color_(color) {}
+  GoldScatter(const SurfacePoint& p, Spectrum color) : ScatterModel(p, diffuse_reflection), color_(color) {}
 
- protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? color_ * inverse_pi : Spectrum();
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
   }
-  bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes lobes, LocalSample& s) const {
     // Uniform points of the unit disc, lifted to the hemisphere: the pdf is cos / pi [1/sr].
     const float r = std::sqrt(u.x), phi = 2 * pi * u.y, z = safe_sqrt(1 - u.x);
     s.in = {r * std::cos(phi), r * std::sin(phi), std::copysign(z, out.z)};
     s.lobe = diffuse_reflection;
-    s.pdf = local_pdf(out, s.in, which);
+    s.pdf = local_pdf(out, s.in, lobes);
     s.value = color_ * s.pdf;
     return true;
   }
-  Spectrum local_albedo(const Vector3&, Lobes) const override { return color_; }
+  Spectrum local_albedo(const Vector3&, Lobes) const { return color_; }
 
  private:
   Spectrum color_;

@@ -2,32 +2,31 @@
 #include "etendue/core/warp.h"
 #include "etendue/describe/description.h"
 #include "etendue/object_map.h"
-#include "etendue/shader.h"
+#include "etendue/scatter_model.h"
 
 using namespace etendue;
 
 // f = c (k + 1) / (2 pi) (cos_out cos_in)^(k - 1) [1/sr], k >= 1. It is reciprocal, and the integral of f cos_in over the
 // hemisphere is c cos_out^(k - 1). Directions are sampled with the pdf (k + 1) / (2 pi) cos_in^k [1/sr].
-class MinnaertScatter final : public Scatter {
+class MinnaertScatter final : public ScatterModel<MinnaertScatter> {
  public:
-  MinnaertScatter(const SurfacePoint& p, Spectrum color, float k) : Scatter(p, diffuse_reflection), color_(color), k_(k) {}
+  MinnaertScatter(const SurfacePoint& p, Spectrum color, float k) : ScatterModel(p, diffuse_reflection), color_(color), k_(k) {}
 
- protected:
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? color_ * ((k_ + 1) / (2 * pi) * std::pow(out.z * in.z, k_ - 1)) : Spectrum();
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? warp::power_cosine_pdf(std::abs(in.z), k_) : 0;
   }
-  bool local_sample(const Vector3& out, float, Point2 u, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes lobes, LocalSample& s) const {
     s.in = warp::power_cosine(u, k_);
     s.in.z = std::copysign(s.in.z, out.z);
     s.lobe = diffuse_reflection;
-    s.pdf = local_pdf(out, s.in, which);
-    s.value = local_albedo(out, which) * s.pdf;
+    s.pdf = local_pdf(out, s.in, lobes);
+    s.value = local_albedo(out, lobes) * s.pdf;
     return s.pdf > 0;
   }
-  Spectrum local_albedo(const Vector3& out, Lobes) const override { return color_ * std::pow(std::abs(out.z), k_ - 1); }
+  Spectrum local_albedo(const Vector3& out, Lobes) const { return color_ * std::pow(std::abs(out.z), k_ - 1); }
 
  private:
   Spectrum color_;

@@ -116,7 +116,7 @@ class PhotonProcess final : public RenderProcess {
       if (v.scatters_smoothly()) gather(walk, add);
       const NumberStream::Bounce u = walk.numbers.next_bounce();
       const auto next =
-          v.scatter ? v.scatter->sample(v.out, u.lobe_choice, u.direction, Transport::radiance, specular_lobes) : std::nullopt;
+          v.scatter ? v.scatter->sample(v.out, u.lobe_choice, u.direction, {.lobes = specular_lobes}) : std::nullopt;
       if (!next) break;
       walk.leave(*next);
     }

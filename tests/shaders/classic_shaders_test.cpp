@@ -34,18 +34,18 @@ class Bound {
     if (!scatter_) throw std::logic_error("the shader is black");
   }
   const Scatter* operator->() const { return scatter_; }
-  double value(const Vector3& out, const Vector3& in, Lobes which = all_lobes) const {
-    return double(scatter_->evaluate(out, in, Transport::radiance, which)[0]) / std::max(double(scatter_->cosine(in)), 1e-30);
+  double value(const Vector3& out, const Vector3& in, Lobes lobes = all_lobes) const {
+    return double(scatter_->evaluate(out, in, {.lobes = lobes})[0]) / std::max(double(scatter_->cosine(in)), 1e-30);
   }
   /// The mean weight of stratified samples: the radiance towards `out` in a uniform environment of radiance 1.
-  double albedo(const Vector3& out, Lobes which = all_lobes, int steps = 48) const {
+  double albedo(const Vector3& out, Lobes lobes = all_lobes, int steps = 48) const {
     double sum = 0;
     test::Random random(1);
     for (int i = 0; i < steps; ++i)
       for (int k = 0; k < steps; ++k) {
         const float choice = (float((i * 29 + k * 13) % steps) + random()) / float(steps);
         const Point2 u{(float(i) + random()) / float(steps), (float(k) + random()) / float(steps)};
-        if (const auto s = scatter_->sample(out, std::min(choice, one_minus_epsilon), u, Transport::radiance, which))
+        if (const auto s = scatter_->sample(out, std::min(choice, one_minus_epsilon), u, {.lobes = lobes}))
           sum += double(s->weight[0]);
       }
     return sum / (steps * steps);
@@ -96,7 +96,7 @@ TEST(ClassicShaders, ValuesOfThePapers) {
   const struct {
     std::string name;
     Ref<Shader> shader;
-    Lobes which;
+    Lobes lobes;
     double expected[4];
   } table[] = {
       {"EON",
@@ -184,12 +184,12 @@ TEST(ClassicShaders, SamplesFollowDensity) {
   for (const Case& c : cases()) {
     const Bound scatter(c.shader);
     for (const double angle : angles)
-      for (const Lobes which : {Lobes(all_lobes), Lobes(glossy_reflection | diffuse_transmission)}) {
-        if (!scatter->has(which) || (which != all_lobes && scatter->lobes() == which)) continue;
+      for (const Lobes lobes : {Lobes(all_lobes), Lobes(glossy_reflection | diffuse_transmission)}) {
+        if (!scatter->has(lobes) || (lobes != all_lobes && scatter->lobes() == lobes)) continue;
         const Vector3 out = direction(angle, 40);
         const std::vector<double> fine =
             test::integrate_cells(scatter->frame(), finer * rows, finer * columns,
-                                  [&](const Vector3& in) { return double(scatter->pdf(out, in, Transport::radiance, which)); });
+                                  [&](const Vector3& in) { return double(scatter->pdf(out, in, {.lobes = lobes})); });
         std::vector<double> expected(size_t(rows * columns));
         for (size_t i = 0; i < fine.size(); ++i) {
           const size_t row = i / (finer * columns), column = i % (finer * columns);
@@ -206,10 +206,10 @@ TEST(ClassicShaders, SamplesFollowDensity) {
         test::Random random(seed++);
         for (int i = 0; i < count; ++i) {
           const float choice = random();
-          const auto s = scatter->sample(out, choice, random.pair(), Transport::radiance, which);
+          const auto s = scatter->sample(out, choice, random.pair(), {.lobes = lobes});
           ++counts[s && !s->specular() ? test::cell_of(scatter->frame(), rows, columns, s->direction) : counts.size() - 1];
         }
-        EXPECT_GT(test::chi_square(counts, expected), significance) << c.name << " at " << angle << ", lobes " << int(which);
+        EXPECT_GT(test::chi_square(counts, expected), significance) << c.name << " at " << angle << ", lobes " << int(lobes);
       }
   }
 }
@@ -221,12 +221,12 @@ TEST(ClassicShaders, AreReciprocalAndConsistent) {
     int seen = 0;
     for (int i = 0; i < 400; ++i) {
       const Vector3 out = random.direction();
-      const Lobes which = i % 2 ? Lobes(all_lobes) : Lobes(1u << (i / 2 % 7));
+      const Lobes lobes = i % 2 ? Lobes(all_lobes) : Lobes(1u << (i / 2 % 7));
       const float choice = random();
-      const auto s = scatter->sample(out, choice, random.pair(), Transport::radiance, which);
+      const auto s = scatter->sample(out, choice, random.pair(), {.lobes = lobes});
       if (!s || s->specular()) continue;
       ++seen;
-      const ScatterValue both = scatter->value_and_pdf(out, s->direction, Transport::radiance, which);
+      const ScatterValue both = scatter->value_and_pdf(out, s->direction, {.lobes = lobes});
       EXPECT_NEAR(both.pdf, s->pdf, 2e-3f * s->pdf) << c.name;
       EXPECT_NEAR(both.value[0], s->weight[0] * s->pdf, 2e-3f * s->weight[0] * s->pdf) << c.name;
       const double there = scatter.value(out, s->direction), back = scatter.value(s->direction, out);
@@ -262,7 +262,7 @@ TEST(CoupledMatteSpecular, AlbedoIsCoatPlusWhatItLetsThrough) {
     const double r = 0.1 + 0.9 * std::pow(1 - std::abs(std::cos(angle * M_PI / 180)), 5);
     EXPECT_NEAR(scatter->albedo(out)[0], r + 0.6 * (1 - r), 1e-6);
     EXPECT_NEAR(scatter.albedo(out, diffuse_lobes), 0.6 * (1 - r), 1e-3);
-    EXPECT_NEAR(scatter->sample(out, 0, {0.5f, 0.5f}, Transport::radiance, specular_lobes)->weight[0], r, 1e-6);
+    EXPECT_NEAR(scatter->sample(out, 0, {0.5f, 0.5f}, {.lobes = specular_lobes})->weight[0], r, 1e-6);
   }
 }
 

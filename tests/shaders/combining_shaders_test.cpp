@@ -113,14 +113,14 @@ TEST(MixShader, KeepsTheAdjointOfPartsWithOtherNormals) {
   int seen = 0;
   for (int i = 0; i < 500; ++i) {
     const Vector3 a = random.direction(), b = random.direction();
-    const Spectrum light = scatter.evaluate(a, b, Transport::importance) / std::abs(dot(p.normal, b));
+    const Spectrum light = scatter.evaluate(a, b, {.transport = Transport::importance}) / std::abs(dot(p.normal, b));
     const Spectrum camera = scatter.evaluate(b, a) / std::abs(dot(p.normal, a));
     EXPECT_NEAR(light[0], camera[0], 1e-3f * camera[0] + 1e-9f);
     seen += !light.black();
     // For both transport modes the weight of a sample is f |cos| / pdf.
     for (const Transport t : {Transport::radiance, Transport::importance})
-      if (const auto s = scatter.sample(a, to_unit_float(std::uint32_t(i) << 23), random.pair(), t)) {
-        const ScatterValue v = scatter.value_and_pdf(a, s->direction, t);
+      if (const auto s = scatter.sample(a, to_unit_float(std::uint32_t(i) << 23), random.pair(), {.transport = t})) {
+        const ScatterValue v = scatter.value_and_pdf(a, s->direction, {.transport = t});
         EXPECT_NEAR(s->weight[0], v.value[0] / v.pdf, 2e-3f * s->weight[0]);
         EXPECT_NEAR(s->pdf, v.pdf, 2e-3f * v.pdf);
       }
@@ -136,8 +136,8 @@ TEST(MaskShader, LetsTheRestPass) {
   const SurfacePoint p = test::surface_point();
   const Scatter &scatter = *mask->bind(p, test::wavelengths(), arena), &both = *mix->bind(p, test::wavelengths(), arena);
   const Vector3 out = at_angle(scatter.frame(), 20), in = at_angle(scatter.frame(), 50, 2);
-  EXPECT_NEAR(scatter.sample(out, 0, {}, Transport::radiance, null_scattering)->weight[0], 0.7f, 1e-6f);
-  EXPECT_NEAR(both.sample(out, 0, {}, Transport::radiance, null_scattering)->weight[0], 0.85f, 1e-6f);
+  EXPECT_NEAR(scatter.sample(out, 0, {}, {.lobes = null_scattering})->weight[0], 0.7f, 1e-6f);
+  EXPECT_NEAR(both.sample(out, 0, {}, {.lobes = null_scattering})->weight[0], 0.85f, 1e-6f);
   EXPECT_NEAR(scatter.evaluate(out, in)[0], 0.15f * inverse_pi * scatter.cosine(in), 1e-6f);
   EXPECT_EQ(scatter.lobes(), null_scattering | diffuse_reflection);
   // With all lobes: 70 % null scattering, 15 % reflected. Both weights are constant, so the means are exact up to counting.
@@ -232,10 +232,10 @@ TEST(NormalMapShader, TakesAMapThatHoldsThem) {
 
 // ---- ThinFilm -----------------------------------------------------------------------------------------------------
 
-float film_reflectance(const Shader& film, double angle, float hero = 500, Lobes which = reflection_lobes) {
+float film_reflectance(const Shader& film, double angle, float hero = 500, Lobes lobes = reflection_lobes) {
   Arena arena;
   const Scatter& s = *film.bind(test::surface_point(), test::wavelengths(hero), arena);
-  return s.albedo(at_angle(s.frame(), angle), which)[0];
+  return s.albedo(at_angle(s.frame(), angle), lobes)[0];
 }
 
 TEST(ThinFilm, WithoutThicknessIsTheBareSurface) {

@@ -62,18 +62,18 @@ TEST(Dielectric, SamplesReflectAndRefract) {
     EXPECT_NEAR(length(through->direction), 1, 1e-6f);
     // Radiance scales by the square of the index, power does not.
     EXPECT_NEAR(through->weight[0], 1 / (eta * eta), 1e-5f);
-    EXPECT_NEAR(scatter.sample(out, f * 1.01f, {}, Transport::importance)->weight[0], 1, 1e-5f);
+    EXPECT_NEAR(scatter.sample(out, f * 1.01f, {}, {.transport = Transport::importance})->weight[0], 1, 1e-5f);
     // Reflection and refraction together have the albedo 1.
     EXPECT_NEAR(scatter.albedo(out, reflection_lobes)[0] + scatter.albedo(out, transmission_lobes)[0], 1, 1e-6f);
     EXPECT_EQ(scatter.albedo(out)[0], 1);
     // With a single lobe the weight is that lobe's fraction.
-    EXPECT_NEAR(scatter.sample(out, 0.99f, {}, Transport::importance, specular_reflection)->weight[0], f, 1e-6f);
-    EXPECT_NEAR(scatter.sample(out, 0, {}, Transport::importance, specular_transmission)->weight[0], 1 - f, 1e-6f);
+    EXPECT_NEAR(scatter.sample(out, 0.99f, {}, {Transport::importance, specular_reflection})->weight[0], f, 1e-6f);
+    EXPECT_NEAR(scatter.sample(out, 0, {}, {Transport::importance, specular_transmission})->weight[0], 1 - f, 1e-6f);
   }
   // Under total reflection nothing is refracted.
   const Vector3 out = at_angle(scatter.frame(), 120);
   EXPECT_EQ(scatter.sample(out, one_minus_epsilon, {})->lobe, specular_reflection);
-  EXPECT_FALSE(scatter.sample(out, 0.5f, {}, Transport::radiance, specular_transmission));
+  EXPECT_FALSE(scatter.sample(out, 0.5f, {}, {.lobes = specular_transmission}));
 }
 
 TEST(Dielectric, Disperses) {

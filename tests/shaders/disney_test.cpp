@@ -34,7 +34,8 @@ void expect_rows(const char* name, const std::vector<Row>& rows) {
     for (int i = 0; i < 9; ++i) {
       const auto& [a, b, turn] = directions[i];
       const auto value = [&](double side) {
-        return double(s.evaluate(direction(side * a, 0.4), direction(side * b, 0.4 + turn), Transport::importance)[0]);
+        return double(
+            s.evaluate(direction(side * a, 0.4), direction(side * b, 0.4 + turn), {.transport = Transport::importance})[0]);
       };
       // Mitsuba's model has a back only within `twosided`, where it looks the same; here an opaque surface always has both
       // sides.
@@ -117,7 +118,8 @@ double sent_away(const char* name, const std::vector<Setting>& settings, const V
   double sum = 0;
   constexpr int n = 20000;
   for (int i = 0; i < n; ++i)
-    if (const auto sample = s.sample(out, random(), random.pair(), Transport::importance)) sum += double(sample->weight[0]) / n;
+    if (const auto sample = s.sample(out, random(), random.pair(), {.transport = Transport::importance}))
+      sum += double(sample->weight[0]) / n;
   return sum;
 }
 
@@ -194,10 +196,10 @@ TEST(DisneyPrincipled, ReflectsOnlyWhereThatIsAskedFor) {
                           ->bind(surface_point({0, 0, 1}), wavelengths(), arena);
   Random random(3);
   // The diffuse lobe has a nonzero pdf in the direction of a reflection, which could let the reflection be accepted.
-  constexpr Lobes which = diffuse_reflection | glossy_transmission;
+  constexpr Lobes lobes = diffuse_reflection | glossy_transmission;
   int refracted = 0;
   for (int i = 0; i < 2000; ++i)
-    if (const auto sample = s.sample(direction(0.8, 0), random(), random.pair(), Transport::radiance, which)) {
+    if (const auto sample = s.sample(direction(0.8, 0), random(), random.pair(), {.lobes = lobes})) {
       EXPECT_NE(sample->lobe, glossy_reflection);
       refracted += sample->lobe == glossy_transmission;
     }

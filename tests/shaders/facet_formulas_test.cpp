@@ -107,7 +107,7 @@ TEST(ShaderFormulas, RoughDielectric) {
       const V o = turned({double(out.x), double(out.y), double(out.z)}, 0.3),
               t = turned({double(in.x), double(in.y), double(in.z)}, 0.3);
       const Spectrum radiance = s.evaluate(out, in) / s.cosine(in),
-                     importance = s.evaluate(out, in, Transport::importance) / s.cosine(in);
+                     importance = s.evaluate(out, in, {.transport = Transport::importance}) / s.cosine(in);
       for (int k = 0; k < spectrum_size; ++k) {
         const double above = 1, below = n(double(w[k])), no = out.z > 0 ? above : below, ni = in.z > 0 ? above : below;
         double expected = 0;
@@ -152,7 +152,8 @@ TEST(ShaderFormulas, RoughDielectricLosesNothing) {
         for (int k = 0; k < steps; ++k) {
           const double z = -1 + 2 * (i + 0.5) / steps, phi = M_PI * (k + 0.5) / steps, r = std::sqrt(1 - z * z);
           const Vector3 in{float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)};
-          sums[z * double(out.z) < 0] += double(s.evaluate(out, in, Transport::importance)[0]) * 4 * M_PI / (steps * steps);
+          sums[z * double(out.z) < 0] +=
+              double(s.evaluate(out, in, {.transport = Transport::importance})[0]) * 4 * M_PI / (steps * steps);
         }
       EXPECT_NEAR(sums[0] + sums[1], 1, 0.006) << alpha << " at " << angle;
       EXPECT_NEAR(double(s.albedo(out, reflection_lobes)[0]), sums[0], 0.01) << alpha << " at " << angle;

@@ -98,8 +98,9 @@ TEST(LayeredShader, SmoothPlastic) {
       const double expected = rho / M_PI * into(out) * into(in) / (2.25 * (1 - rho * 0.596346));
       for (const Transport t : {Transport::radiance, Transport::importance}) {
         Mean value;
-        at_many_points(*shader, 5000,
-                       [&](const Scatter& s, test::Random&) { value.add(double(s.evaluate(out, in, t)[0] / s.cosine(in))); });
+        at_many_points(*shader, 5000, [&](const Scatter& s, test::Random&) {
+          value.add(double(s.evaluate(out, in, {.transport = t})[0] / s.cosine(in)));
+        });
         EXPECT_MEAN(value, expected) << rho << " at " << angle;
         EXPECT_LT(value.error(), 0.02 * expected);
       }
@@ -147,7 +148,7 @@ TEST(LayeredShader, AbsorbsOnTheWay) {
   EXPECT_EQ(s.lobes(), null_scattering);
   for (const double angle : {0.0, 60.0, 130.0}) {
     const float expected = float(std::exp(-0.6 / std::abs(std::cos(angle * M_PI / 180))));
-    EXPECT_NEAR(s.sample(at_angle(frame, angle), 0, {}, Transport::radiance, null_scattering)->weight[0], expected, 1e-5f);
+    EXPECT_NEAR(s.sample(at_angle(frame, angle), 0, {}, {.lobes = null_scattering})->weight[0], expected, 1e-5f);
     EXPECT_NEAR(s.sample(at_angle(frame, angle), 0.5f, {})->weight[0], expected, 1e-5f);
     EXPECT_NEAR(s.albedo(at_angle(frame, angle))[0], expected, 1e-5f);
   }
@@ -231,17 +232,17 @@ TEST(LayeredShader, ValuesAreThoseOfSamples) {
         Mean difference, combined;
         at_many_points(*c.shader, 3000, [&](const Scatter& s, test::Random& random) {
           const float choice = random();
-          const auto sample = s.sample(out, choice, random.pair(), t);
+          const auto sample = s.sample(out, choice, random.pair(), {.transport = t});
           const double sampled = sample && !sample->specular() ? double(sample->weight[0]) * probe(sample->direction) : 0;
           const Vector3 in = warp::sphere(random.pair());
-          const ScatterValue v = s.value_and_pdf(out, in, t);
+          const ScatterValue v = s.value_and_pdf(out, in, {.transport = t});
           const double value = double(v.value[0] / warp::sphere_pdf) * probe(in);
           difference.add(sampled - value);
           const auto weight = [](double p, double q) { return p > 0 ? p / (p + q) : 0; };
           combined.add(sampled * (sampled > 0 ? weight(double(sample->pdf), double(warp::sphere_pdf)) : 0) +
                        value * weight(double(warp::sphere_pdf), double(v.pdf)) - value);
           if (sample && !sample->specular()) {
-            EXPECT_FLOAT_EQ(sample->pdf, s.pdf(out, sample->direction, t)) << c.name;
+            EXPECT_FLOAT_EQ(sample->pdf, s.pdf(out, sample->direction, {.transport = t})) << c.name;
             EXPECT_GT(sample->pdf, 0);
           }
         });
@@ -263,7 +264,7 @@ TEST(LayeredShader, ImportanceIsTheAdjoint) {
       at_many_points(
           *c.shader, 20000,  // importance has heavy tails at grazing angles
           [&](const Scatter& s, test::Random&) {
-            const double light = double(s.evaluate(a, b, Transport::importance)[0] / std::abs(b.z));
+            const double light = double(s.evaluate(a, b, {.transport = Transport::importance})[0] / std::abs(b.z));
             const double camera = double(s.evaluate(b, a)[0] / std::abs(a.z));
             difference.add(light - camera);
             total += light + camera;
@@ -281,7 +282,7 @@ TEST(LayeredShader, KeepsEnergyAndEstimatesIt) {
       double albedo = 0, albedo_reflected = 0;
       at_many_points(*c.shader, 25000, [&](const Scatter& s, test::Random& random) {
         const float choice = random();
-        const auto sample = s.sample(out, choice, random.pair(), Transport::importance);
+        const auto sample = s.sample(out, choice, random.pair(), {.transport = Transport::importance});
         all.add(sample ? double(sample->weight[0]) : 0);
         reflected.add(sample && !sample->transmitted() ? double(sample->weight[0]) : 0);
         albedo = double(s.albedo(out)[0]);

@@ -142,12 +142,12 @@ TEST(Fresnel, KnownValues) {
 }
 
 /// The albedo seen from `out`: the mean weight of n^2 samples of stratified directions.
-Spectrum sampled_albedo(const Scatter& s, const Vector3& out, int n, Lobes which = all_lobes) {
+Spectrum sampled_albedo(const Scatter& s, const Vector3& out, int n, Lobes lobes = all_lobes) {
   Spectrum sum;
   test::Random random(5);
   for (int i = 0; i < n * n; ++i) {
     const Point2 u{(float(i % n) + random()) / float(n), (float(i / n) + random()) / float(n)};
-    if (const auto sample = s.sample(out, random(), u, Transport::importance, which)) sum += sample->weight;
+    if (const auto sample = s.sample(out, random(), u, {Transport::importance, lobes})) sum += sample->weight;
   }
   return sum / float(n * n);
 }
@@ -259,7 +259,7 @@ TEST(Dielectric, RoughIsReciprocalAndKeepsAllWavelengths) {
   int through = 0;
   for (int i = 0; i < 500; ++i) {
     const Vector3 a = random.direction(), b = random.direction();
-    const Spectrum from_light = s.evaluate(a, b, Transport::importance) / s.cosine(b),
+    const Spectrum from_light = s.evaluate(a, b, {.transport = Transport::importance}) / s.cosine(b),
                    from_camera = s.evaluate(b, a) / s.cosine(a);
     for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(from_light[k], from_camera[k], 1e-3f * from_camera[k] + 1e-7f);
     through += dot(s.frame().n, a) * dot(s.frame().n, b) < 0 && !from_light.black();
@@ -269,7 +269,7 @@ TEST(Dielectric, RoughIsReciprocalAndKeepsAllWavelengths) {
   const Vector3 out = at_angle(s.frame(), 30);
   for (int i = 0; i < 2000; ++i) {
     const float choice = random();
-    if (const auto sample = s.sample(out, choice, random.pair(), Transport::importance)) {
+    if (const auto sample = s.sample(out, choice, random.pair(), {.transport = Transport::importance})) {
       EXPECT_FALSE(sample->dispersive);
       EXPECT_LT(sample->weight.maximum(), 4.5f);
     }
@@ -282,7 +282,7 @@ TEST(Dielectric, RoughIsReciprocalAndKeepsAllWavelengths) {
     for (int k = 0; k < steps; ++k) {
       const float z = -1 + 2 * (float(i) + 0.5f) / steps, phi = 2 * pi * (float(k) + 0.5f) / steps, r = std::sqrt(1 - z * z);
       const Vector3 in = s.frame().to_world({r * std::cos(phi), r * std::sin(phi), z});
-      albedo += s.evaluate(out, in, Transport::importance) * (4 * pi / (steps * steps));
+      albedo += s.evaluate(out, in, {.transport = Transport::importance}) * (4 * pi / (steps * steps));
     }
   for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(albedo[k], 1, 0.006) << k;
 }
@@ -306,7 +306,7 @@ TEST(ThinDielectric, AllReflectionsInside) {
     for (const double R : {double(r.s), double(r.p)})
       for (int k = 0; k < 10; ++k) transmitted += 0.5 * (1 - R) * (1 - R) * std::pow(R, 2 * k);
     EXPECT_NEAR(s.albedo(out, null_scattering)[0], transmitted, 1e-4);
-    const auto straight = s.sample(out, 0, {}, Transport::radiance, null_scattering);
+    const auto straight = s.sample(out, 0, {}, {.lobes = null_scattering});
     EXPECT_NEAR(straight->weight[0], transmitted, 1e-4);
     EXPECT_LT(length(straight->direction + out), 1e-6f);
     EXPECT_EQ(straight->eta, 1);
@@ -333,7 +333,7 @@ TEST(Plastic, AlbedoIsThatOfTheFormula) {
           const Spectrum albedo = sampled_albedo(s, out, 100);
           if (roughness == 0) {
             EXPECT_NEAR(through, 1 - fresnel_dielectric(s.cosine(out), 1.5f), 1e-5);
-            EXPECT_NEAR(s.sample(out, 0, {}, Transport::radiance, specular_reflection)->weight[0], 1 - through, 1e-5);
+            EXPECT_NEAR(s.sample(out, 0, {}, {.lobes = specular_reflection})->weight[0], 1 - through, 1e-5);
           } else if (rho == 1) {
             EXPECT_NEAR(albedo[0], 1, 0.01) << roughness << " at " << angle;
           }

@@ -57,9 +57,9 @@ double more(double ax, double ay, double color, const Vector3& out, const Vector
   return mean * mean * (1 - lost) / (1 - mean * lost) * double(m.missing(out)) * double(m.missing(in)) / (M_PI * lost);
 }
 
-double value(const Ref<Shader>& shader, const Vector3& out, const Vector3& in, Lobes which = smooth_lobes) {
+double value(const Ref<Shader>& shader, const Vector3& out, const Vector3& in, Lobes lobes = smooth_lobes) {
   Arena arena;
-  return double(shader->bind(flat_point(), test::wavelengths(), arena)->evaluate(out, in, Transport::radiance, which)[0]) /
+  return double(shader->bind(flat_point(), test::wavelengths(), arena)->evaluate(out, in, {.lobes = lobes})[0]) /
          std::abs(double(in.z));
 }
 
@@ -193,7 +193,7 @@ TEST(PrincipledNumbers, SpecularWeightScalesTheReflectance) {
     const Scatter& s = *glossy->bind(flat_point(), test::wavelengths(), arena);
     const double e = std::sqrt(weight) * 0.2, eta = (1 + e) / (1 - e);
     for (const double angle : {0.0, 55.0, 80.0}) {
-      const auto sample = s.sample(direction(angle, 1), 0, {}, Transport::radiance, specular_reflection);
+      const auto sample = s.sample(direction(angle, 1), 0, {}, {.lobes = specular_reflection});
       ASSERT_TRUE(sample);
       EXPECT_NEAR(double(sample->weight[0]), fresnel(std::cos(angle * M_PI / 180), eta), 2e-4) << weight << " " << angle;
     }
@@ -210,8 +210,8 @@ TEST(PrincipledNumbers, ThinWallsArePanes) {
     const double c = std::cos(angle * M_PI / 180), inside = std::sqrt(1 - (1 - c * c) / pow2(1.6));
     const double R = fresnel(c, 1.6), a = std::pow(0.5, 1 / inside);
     const double through = pow2(1 - R) * a / (1 - pow2(R * a)), back = R + pow2(1 - R) * R * a * a / (1 - pow2(R * a));
-    const auto t = s.sample(direction(angle, 1), 0.999f, {}, Transport::radiance, specular_transmission),
-               r = s.sample(direction(angle, 1), 0, {}, Transport::radiance, specular_reflection);
+    const auto t = s.sample(direction(angle, 1), 0.999f, {}, {.lobes = specular_transmission}),
+               r = s.sample(direction(angle, 1), 0, {}, {.lobes = specular_reflection});
     ASSERT_TRUE(t && r);
     EXPECT_NEAR(double(t->weight[0]), through, 2e-4) << angle;
     EXPECT_NEAR(double(r->weight[0]), back, 2e-4) << angle;

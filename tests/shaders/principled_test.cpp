@@ -32,14 +32,14 @@ struct Bound {
         scatter(shader->bind(test::surface_point(), test::wavelengths(), arena)) {}
   Vector3 at(double angle, double azimuth = 0.7) const { return at_angle(scatter->frame(), angle, azimuth); }
   /// The fraction of light at wavelength i, arriving from a direction, that is scattered.
-  double albedo(double angle, int i = 0, Lobes which = all_lobes) const {
+  double albedo(double angle, int i = 0, Lobes lobes = all_lobes) const {
     const Vector3 out = at(angle);
     double sum = 0;
-    const auto flux = [&](const Vector3& in) { return double(scatter->evaluate(out, in, Transport::importance, which)[i]); };
+    const auto flux = [&](const Vector3& in) { return double(scatter->evaluate(out, in, {Transport::importance, lobes})[i]); };
     for (const double cell : test::integrate_cells(scatter->frame(), 48, 40, flux)) sum += cell;
     for (const Lobe lobe : {specular_reflection, specular_transmission, null_scattering})
-      if (scatter->has(Lobes(lobe & which)))
-        if (const auto s = scatter->sample(out, 0.5f, {0.5f, 0.5f}, Transport::importance, lobe))
+      if (scatter->has(Lobes(lobe & lobes)))
+        if (const auto s = scatter->sample(out, 0.5f, {0.5f, 0.5f}, {Transport::importance, lobe}))
           sum += double(s->weight[i] * s->pdf);
     return sum;
   }
@@ -121,7 +121,7 @@ TEST(Principled, SmoothSurfacesFollowFresnel) {
   // Glass; a coat over black; a pane with two reflecting faces, (2 R) / (1 + R); a pane with absorption.
   const double cosine = std::cos(50 * M_PI / 180), r = double(fresnel_dielectric(float(cosine), 1.5f));
   const auto specular = [](const Bound& b, Lobe lobe) {
-    const auto s = b.scatter->sample(b.at(50), 0.5f, {0.5f, 0.5f}, Transport::importance, lobe);
+    const auto s = b.scatter->sample(b.at(50), 0.5f, {0.5f, 0.5f}, {Transport::importance, lobe});
     return s ? double(s->weight[0] * s->pdf) : -1;
   };
   const Settings smooth{{"specular_roughness", 0.0}, {"transmission_weight", 1.0}};
@@ -145,7 +145,7 @@ TEST(Principled, SmoothSurfacesFollowFresnel) {
 TEST(Principled, SpecularWeightScalesTheReflectanceAndTheIndex) {
   for (const double weight : {0.25, 2.0}) {
     const Bound b({{"specular_weight", weight}, {"specular_roughness", 0.0}, {"transmission_weight", 1.0}});
-    const auto s = b.scatter->sample(b.at(0), 0, {0.5f, 0.5f}, Transport::importance, specular_reflection);
+    const auto s = b.scatter->sample(b.at(0), 0, {0.5f, 0.5f}, {Transport::importance, specular_reflection});
     ASSERT_TRUE(s);
     EXPECT_NEAR(s->weight[0] * s->pdf, 0.04 * weight, 1e-5);
     const float n = b.shader->interior_index(test::wavelengths())[0];
@@ -268,8 +268,10 @@ TEST(Principled, IsReciprocal) {
     int seen = 0;
     for (int i = 0; i < 500; ++i) {
       const Vector3 a = random.direction(), b = random.direction();
-      const float ab = bound.scatter->evaluate(a, b, Transport::importance)[0] * bound.scatter->cosine(a) / index2(b);
-      const float ba = bound.scatter->evaluate(b, a, Transport::importance)[0] * bound.scatter->cosine(b) / index2(a);
+      const float ab =
+          bound.scatter->evaluate(a, b, {.transport = Transport::importance})[0] * bound.scatter->cosine(a) / index2(b);
+      const float ba =
+          bound.scatter->evaluate(b, a, {.transport = Transport::importance})[0] * bound.scatter->cosine(b) / index2(a);
       EXPECT_NEAR(ab, ba, 2e-3f * ab + 1e-6f);
       seen += ab > 0;
     }

@@ -166,7 +166,7 @@ TEST(ShaderFormulas, CoupledMatteSpecular) {
   const Scatter& s = *shader->bind(flat_point(), w, arena);
   for (const double c : {1.0, 0.6, 0.15}) {
     const Vector3 out{0, float(-std::sqrt(1 - c * c)), float(c)};
-    const auto mirrored = s.sample(out, 0, {}, Transport::radiance, specular_reflection);
+    const auto mirrored = s.sample(out, 0, {}, {.lobes = specular_reflection});
     ASSERT_TRUE(mirrored);
     for (int k = 0; k < spectrum_size; ++k) {
       EXPECT_NEAR(double(mirrored->weight[k]), R(c, double(w[k])), 1e-5);

@@ -64,20 +64,20 @@ TEST(Shader, WeightIsValueTimesCosineOverDensity) {
   for (const Case& c : smooth_shaders())
     for (const double angle : angles)
       for (const Transport transport : {Transport::radiance, Transport::importance})
-        for (const Lobes which : {Lobes(all_lobes), Lobes(diffuse_lobes), Lobes(glossy_lobes)}) {
+        for (const Lobes lobes : {Lobes(all_lobes), Lobes(diffuse_lobes), Lobes(glossy_lobes)}) {
           Arena arena;
           const SurfacePoint p = test::surface_point({0.1f, 0.2f, 1}, {0.3f, 0.1f, 0.9f});
           const Scatter* scatter = c.shader->bind(p, test::wavelengths(), arena);
           const Vector3 out = at_angle(scatter->frame(), angle);
           for (int i = 0; i < 50; ++i) {
             const float choice = random();
-            const auto s = scatter->sample(out, choice, random.pair(), transport, which);
+            const auto s = scatter->sample(out, choice, random.pair(), {transport, lobes});
             if (!s) continue;
             ++seen;
-            const ScatterValue both = scatter->value_and_pdf(out, s->direction, transport, which);
+            const ScatterValue both = scatter->value_and_pdf(out, s->direction, {transport, lobes});
             EXPECT_NEAR(both.pdf, s->pdf, 2e-3f * s->pdf) << c.name;
-            EXPECT_FLOAT_EQ(both.pdf, scatter->pdf(out, s->direction, transport, which));
-            const Spectrum value = scatter->evaluate(out, s->direction, transport, which);
+            EXPECT_FLOAT_EQ(both.pdf, scatter->pdf(out, s->direction, {transport, lobes}));
+            const Spectrum value = scatter->evaluate(out, s->direction, {transport, lobes});
             const Spectrum weight = value / both.pdf;
             for (int k = 0; k < spectrum_size; ++k) {
               EXPECT_FLOAT_EQ(value[k], both.value[k]);
@@ -144,8 +144,8 @@ TEST(Shader, ImportanceIsTheAdjointUnderShadingNormals) {
     const Scatter* scatter = c.shader->bind(p, test::wavelengths(), arena);
     for (int i = 0; i < 300; ++i) {
       const Vector3 a = random.direction(), b = random.direction();
-      const Spectrum from_light = scatter->evaluate(a, b, Transport::importance) / std::abs(dot(p.normal, b));
-      const Spectrum from_camera = scatter->evaluate(b, a, Transport::radiance) / std::abs(dot(p.normal, a));
+      const Spectrum from_light = scatter->evaluate(a, b, {.transport = Transport::importance}) / std::abs(dot(p.normal, b));
+      const Spectrum from_camera = scatter->evaluate(b, a) / std::abs(dot(p.normal, a));
       for (int k = 0; k < spectrum_size; ++k)
         EXPECT_NEAR(from_light[k], from_camera[k], 1e-3f * from_camera[k] + 1e-9f) << c.name;
       seen += !from_light.black();
@@ -183,14 +183,14 @@ TEST(Shader, LobesAreMasked) {
   const Ref<Shader> phong = create<Shader>("PhongShader");
   const Scatter* scatter = phong->bind(test::surface_point(), test::wavelengths(), arena);
   const Vector3 a = at_angle(scatter->frame(), 30, 0), b = at_angle(scatter->frame(), 35, M_PI);
-  const float both = scatter->evaluate(a, b)[0], diffuse = scatter->evaluate(a, b, Transport::radiance, diffuse_lobes)[0];
-  const float glossy = scatter->evaluate(a, b, Transport::radiance, glossy_lobes)[0];
+  const float both = scatter->evaluate(a, b)[0], diffuse = scatter->evaluate(a, b, {.lobes = diffuse_lobes})[0];
+  const float glossy = scatter->evaluate(a, b, {.lobes = glossy_lobes})[0];
   EXPECT_NEAR(diffuse, 0.5f * inverse_pi * scatter->cosine(b), 1e-6f);
   EXPECT_GT(glossy, diffuse);
   EXPECT_NEAR(both, diffuse + glossy, 1e-5f);
-  EXPECT_TRUE(scatter->evaluate(a, b, Transport::radiance, transmission_lobes).black());
-  EXPECT_EQ(scatter->pdf(a, b, Transport::radiance, specular_lobes), 0);
-  EXPECT_FALSE(scatter->sample(a, 0.5f, {0.5f, 0.5f}, Transport::radiance, specular_lobes));
+  EXPECT_TRUE(scatter->evaluate(a, b, {.lobes = transmission_lobes}).black());
+  EXPECT_EQ(scatter->pdf(a, b, {.lobes = specular_lobes}), 0);
+  EXPECT_FALSE(scatter->sample(a, 0.5f, {0.5f, 0.5f}, {.lobes = specular_lobes}));
   // A black lobe does not exist.
   EXPECT_EQ(create<Shader>("PhongShader", {{"color", 0.0}})->bind(test::surface_point(), test::wavelengths(), arena)->lobes(),
             glossy_reflection);

@@ -180,7 +180,7 @@ TEST(Subsurface, BoundaryAndExitConserveEnergy) {
     EXPECT_NEAR(s->weight[0], 1, 1e-5f);
     EXPECT_NEAR(boundary->albedo(out)[0], 1, 1e-6f);
     EXPECT_EQ(s->transmitted(), dot(s->direction, body.entry.normal) < 0);
-    const auto only = boundary->sample(out, random(), random.pair(), Transport::radiance, specular_transmission);
+    const auto only = boundary->sample(out, random(), random.pair(), {.lobes = specular_transmission});
     EXPECT_NEAR(only->weight[0], 1 - fresnel_dielectric(dot(out, body.entry.normal), 1.5f), 1e-5f);
   }
   const auto e = body.exit(1);

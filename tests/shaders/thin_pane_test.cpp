@@ -31,7 +31,7 @@ TEST(ThinPane, AveragedPolarizations) {
   const Scatter& s = *shader->bind(flat_point(), Wavelengths(), arena);
   for (const double angle : {0.0, 60.0, 80.0}) {
     const Vector3 out = direction(angle);
-    const auto back = s.sample(out, 0, {}, Transport::radiance, specular_reflection);
+    const auto back = s.sample(out, 0, {}, {.lobes = specular_reflection});
     ASSERT_TRUE(back);
     const double n = 1.5, c = double(out.z), inside = std::sqrt(1 - (1 - c * c) / (n * n));
     const double R = (std::pow((c - n * inside) / (c + n * inside), 2) + std::pow((n * c - inside) / (n * c + inside), 2)) / 2;
@@ -49,8 +49,8 @@ TEST(ThinPane, AbsorbsAlongEachPassageAtAllAngles) {
   const Scatter& s = *shader->bind(flat_point(), w, arena);
   for (const double angle : {0.0, 35.0, 60.0, 80.0, 100.0, 150.0, 180.0}) {
     const Vector3 out = direction(angle);
-    const auto through = s.sample(out, 0, {}, Transport::radiance, null_scattering),
-               back = s.sample(out, 0, {}, Transport::radiance, specular_reflection);
+    const auto through = s.sample(out, 0, {}, {.lobes = null_scattering}),
+               back = s.sample(out, 0, {}, {.lobes = specular_reflection});
     ASSERT_TRUE(through && back);
     EXPECT_LT(length(through->direction + out), 1e-6f);
     EXPECT_LT(length(back->direction - Vector3{-out.x, -out.y, out.z}), 1e-6f);
@@ -125,7 +125,7 @@ TEST(ThinFilmSlabs, AgreeWithCharacteristicMatrices) {
     for (const double angle : {0.0, 30.0, 60.0, 80.0, 88.0, 180.0, 150.0, 141.0, 120.0}) {
       if (angle > 90 && f.base.imag() > 0) continue;
       const Vector3 out = direction(angle);
-      const auto back = s.sample(out, 0, {}, Transport::radiance, specular_reflection);
+      const auto back = s.sample(out, 0, {}, {.lobes = specular_reflection});
       ASSERT_TRUE(back);
       for (int i = 0; i < spectrum_size; ++i) {
         const double c = std::abs(double(out.z));
@@ -169,12 +169,12 @@ TEST(ThinPane, GlassSplitsPowerByFresnelOnBothSidesAndWavelengths) {
         const double b = std::sqrt(behind2);
         return (std::pow((c - eta * b) / (c + eta * b), 2) + std::pow((eta * c - b) / (eta * c + b), 2)) / 2;
       };
-      const auto back = s.sample(out, 0, {}, Transport::radiance, specular_reflection);
+      const auto back = s.sample(out, 0, {}, {.lobes = specular_reflection});
       for (int i = 0; i < spectrum_size; ++i)
         EXPECT_NEAR(double(back->weight[i]), fresnel(double(index->at(w[i], ColorUse::coefficient))), 2e-5);
       const double n = double(index->at(w[0], ColorUse::coefficient)), hero = fresnel(n);
-      const auto power = s.sample(out, 0.999f, {}, Transport::importance, specular_transmission),
-                 radiance = s.sample(out, 0.999f, {}, Transport::radiance, specular_transmission);
+      const auto power = s.sample(out, 0.999f, {}, {Transport::importance, specular_transmission}),
+                 radiance = s.sample(out, 0.999f, {}, {.lobes = specular_transmission});
       EXPECT_EQ(bool(power), hero < 1);
       if (!power) continue;
       const double eta = angle < 90 ? n : 1 / n;
@@ -190,7 +190,7 @@ TEST(ThinPane, GlassSplitsPowerByFresnelOnBothSidesAndWavelengths) {
         for (int i = 0; i < spectrum_size; ++i) EXPECT_NEAR(double(power->weight[i]), 1 - hero, 2e-5);
       // With both lobes requested: the hero's weight is 1, whichever is sampled.
       for (const float choice : {0.0f, 0.9999f}) {
-        const auto any = s.sample(out, choice, {}, Transport::importance);
+        const auto any = s.sample(out, choice, {}, {.transport = Transport::importance});
         ASSERT_TRUE(any);
         EXPECT_NEAR(any->weight[0], 1, 1e-5f);
       }
@@ -244,8 +244,7 @@ TEST(ThinPane, MasksAndMixturesLetOnWhatTheirPartsDo) {
                     diffuse = create<Shader>("Lambertian", {{"color", 0.5}});
   Arena arena;
   const auto straight = [&](const Ref<Shader>& shader, const Vector3& out) {
-    const auto s =
-        shader->bind(flat_point(), test::wavelengths(), arena)->sample(out, 0, {}, Transport::radiance, null_scattering);
+    const auto s = shader->bind(flat_point(), test::wavelengths(), arena)->sample(out, 0, {}, {.lobes = null_scattering});
     return s ? double(s->weight[0]) : 0.0;
   };
   for (const double angle : {0.0, 50.0, 130.0}) {

@@ -140,7 +140,8 @@ TEST_P(TiltedNormals, CarryTheSameFromBothEnds) {
       for (const int end : {0, 1}) {
         const Vector3 from = random.direction();
         const float choice = random();
-        const auto s = scatter.sample(from, choice, random.pair(), end == 0 ? Transport::radiance : Transport::importance);
+        const auto s =
+            scatter.sample(from, choice, random.pair(), {.transport = end == 0 ? Transport::radiance : Transport::importance});
         if (!s) continue;
         const double x = double(s->weight[0]) * std::abs(double(dot(p.normal, from))) *
                          (end == 0 ? g(from) * h(s->direction) : h(from) * g(s->direction));

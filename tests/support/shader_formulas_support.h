@@ -49,7 +49,7 @@ inline V turned(const V& v, double turns) {  // into a frame that is rotated cou
 
 /// Compares f with a formula on both sides of the surface, and the weights of samples with f and the pdf.
 inline void expect_formula(const std::string& name, const Ref<Shader>& shader, double rotation, const Formula& formula,
-                           double tolerance = 2e-4, Lobes which = smooth_lobes) {
+                           double tolerance = 2e-4, Lobes lobes = smooth_lobes) {
   const Wavelengths w = test::wavelengths(430);
   Arena arena;
   const Scatter* scatter = shader->bind(flat_point(), w, arena);
@@ -64,7 +64,7 @@ inline void expect_formula(const std::string& name, const Ref<Shader>& shader, d
       if (in.z * out.z < 0) in.z = -in.z;
     }
     if (std::abs(out.z) < 0.03f || std::abs(in.z) < 0.03f) continue;
-    const Spectrum f = scatter->evaluate(out, in, Transport::radiance, which) / scatter->cosine(in);
+    const Spectrum f = scatter->evaluate(out, in, {.lobes = lobes}) / scatter->cosine(in);
     const V o = turned({double(out.x), double(out.y), std::abs(double(out.z))}, rotation),
             t = turned({double(in.x), double(in.y), std::abs(double(in.z))}, rotation);
     for (int k = 0; k < spectrum_size; ++k) {
@@ -77,8 +77,8 @@ inline void expect_formula(const std::string& name, const Ref<Shader>& shader, d
     if (testing::Test::HasFailure()) return;
     // The weight of a sample is value / pdf.
     const float choice = random();
-    if (const auto s = scatter->sample(out, choice, random.pair(), Transport::radiance, which); s && !s->specular()) {
-      const ScatterValue both = scatter->value_and_pdf(out, s->direction, Transport::radiance, which);
+    if (const auto s = scatter->sample(out, choice, random.pair(), {.lobes = lobes}); s && !s->specular()) {
+      const ScatterValue both = scatter->value_and_pdf(out, s->direction, {.lobes = lobes});
       for (int k = 0; k < spectrum_size; ++k)
         EXPECT_NEAR(s->weight[k], both.value[k] / both.pdf, 3e-3f * s->weight[k] + 1e-5f) << name;
     }

@@ -161,7 +161,7 @@ TEST(PassThrough, EverythingGoesStraightOn) {
     ASSERT_NE(scatter, nullptr);
     const Vector3 out = random.direction();
     for (const Transport transport : {Transport::radiance, Transport::importance}) {
-      const auto s = scatter->sample(out, random(), random.pair(), transport);
+      const auto s = scatter->sample(out, random(), random.pair(), {.transport = transport});
       ASSERT_TRUE(s.has_value());
       EXPECT_LT(length(s->direction + out), 1e-6f);
       EXPECT_EQ(s->lobe, null_scattering);
@@ -171,12 +171,12 @@ TEST(PassThrough, EverythingGoesStraightOn) {
       EXPECT_EQ(s->eta, 1);
       EXPECT_FALSE(s->dispersive);
       for (int k = 0; k < spectrum_size; ++k) EXPECT_NEAR(s->weight[k], 1, 1e-6f / std::abs(dot(p.normal, out)));
-      EXPECT_TRUE(scatter->evaluate(out, -out, transport).black());
-      EXPECT_EQ(scatter->pdf(out, -out, transport), 0);
+      EXPECT_TRUE(scatter->evaluate(out, -out, {.transport = transport}).black());
+      EXPECT_EQ(scatter->pdf(out, -out, {.transport = transport}), 0);
     }
     EXPECT_EQ(scatter->albedo(out)[0], 1);
     EXPECT_TRUE(scatter->albedo(out, smooth_lobes).black());
-    EXPECT_FALSE(scatter->sample(out, 0.5f, random.pair(), Transport::radiance, smooth_lobes).has_value());
+    EXPECT_FALSE(scatter->sample(out, 0.5f, random.pair(), {.lobes = smooth_lobes}).has_value());
   }
 }
 

@@ -79,9 +79,8 @@ class OutsideMedium : public testing::Test {
       }
       const float choice = random();
       const Point2 u = random.pair();
-      for (const Lobes which : {Lobes(all_lobes), Lobes(specular_reflection), Lobes(specular_transmission)}) {
-        const auto s = a->sample(out, choice, u, Transport::radiance, which),
-                   t = b->sample(out, choice, u, Transport::radiance, which);
+      for (const Lobes lobes : {Lobes(all_lobes), Lobes(specular_reflection), Lobes(specular_transmission)}) {
+        const auto s = a->sample(out, choice, u, {.lobes = lobes}), t = b->sample(out, choice, u, {.lobes = lobes});
         ASSERT_EQ(bool(s), bool(t)) << name << " " << out.z;
         if (!s || s->lobe != t->lobe) continue;  // rounding may change the chosen lobe
         EXPECT_LT(length(s->direction - t->direction), 2e-3f) << name;

@@ -180,7 +180,7 @@ class CameraWalk : public Walk<clear> {
     if (!vertex.on_surface() || !vertex.scatter || vertex.subsurface_exit) return false;
     const Lobes ways = ways_on();
     if (ways == no_lobes || (ways & ~reflect_and_refract)) return false;
-    return (vertex.scatter->dispersed() && splitting.wavelengths > 1) || splits_reflection_and_refraction(splitting);
+    return (vertex.scatter->dispersed_lobes() && splitting.wavelengths > 1) || splits_reflection_and_refraction(splitting);
   }
 
   /// Continues from such a vertex. If there are several parts to follow, refracted light is followed by branches:
@@ -199,10 +199,10 @@ class CameraWalk : public Walk<clear> {
       ways = choose_way(scatter, choice);
     }
     const auto sampled = [&](Lobe lobe) {
-      return ways & lobe ? scatter.sample(vertex.out, choice, u.direction, Transport::radiance, lobe) : std::nullopt;
+      return ways & lobe ? scatter.sample(vertex.out, choice, u.direction, {.lobes = lobe}) : std::nullopt;
     };
     std::optional<ScatterSample> own = sampled(specular_reflection);
-    if (const int n = ways & scatter.dispersed() ? splitting.wavelengths : 1; n > 1)
+    if (const int n = ways & scatter.dispersed_lobes() ? splitting.wavelengths : 1; n > 1)
       for (int i = 0; i < n; ++i) follow_wavelength(i * spectrum_size / n, n, choice, u.direction, refracted, follow);
     else if (own)
       follow_refracted(sampled(specular_transmission), refracted, follow);
@@ -276,7 +276,7 @@ class CameraWalk : public Walk<clear> {
     branch.lane_ = lane;
     const Scatter* scatter = scattering_at(vertex.point, vertex.out, wavelengths, sample.arena);
     if (!scatter) return;
-    std::optional<ScatterSample> next = scatter->sample(vertex.out, choice, u, Transport::radiance, specular_transmission);
+    std::optional<ScatterSample> next = scatter->sample(vertex.out, choice, u, {.lobes = specular_transmission});
     if (!next) return;
     next->dispersive = true;  // for the record only: the branch has no secondary wavelengths left to drop
     follow_from_here(branch, *next, follow);

@@ -42,7 +42,7 @@ inline ScatterValue scattering(const PathVertex& v, const Vector3& out, const Ve
     const float phase = v.medium.phase(v.point.position, v.point.time, out, in);
     return {Spectrum(phase), phase};
   }
-  return v.scatter ? v.scatter->value_and_pdf(out, in, transport, v.lobes) : ScatterValue{};
+  return v.scatter ? v.scatter->value_and_pdf(out, in, {transport, v.lobes}) : ScatterValue{};
 }
 /// Only that value.
 inline Spectrum scattered(const PathVertex& v, const Vector3& out, const Vector3& in, Transport transport) {
@@ -52,7 +52,7 @@ inline Spectrum scattered(const PathVertex& v, const Vector3& out, const Vector3
 /// Only that pdf.
 inline float scattering_pdf(const PathVertex& v, const Vector3& out, const Vector3& in, Transport transport) {
   if (v.in_medium()) return v.medium.phase(v.point.position, v.point.time, out, in);
-  return v.scatter ? v.scatter->pdf(out, in, transport, v.lobes) : 0;
+  return v.scatter ? v.scatter->pdf(out, in, {transport, v.lobes}) : 0;
 }
 
 /// The sample of a direction that another distribution chose, such as a path guide, with that distribution's pdf [1/sr]; for

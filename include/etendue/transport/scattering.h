@@ -22,14 +22,14 @@ inline const Scatter* bound(const Shader& shader, const SurfacePoint& p, const W
 }
 
 /// The scattering on the black side of a one-sided surface: null scattering alone, through holes and thin panes.
-class StraightScatter final : public ScatterCombination {
+class StraightScatter final : public Scatter {
  public:
-  StraightScatter(const SurfacePoint& p, const Scatter& whole) : ScatterCombination(p, null_scattering), whole_(whole) {
+  StraightScatter(const SurfacePoint& p, const Scatter& whole) : Scatter(p, null_scattering), whole_(whole) {
     has_choice_ = false;
   }
-  ScatterValue world_value_and_pdf(const Vector3&, const Vector3&, Transport, Lobes) const override { return {}; }
-  std::optional<ScatterSample> world_sample(const Vector3& out, float, Point2, Transport transport, Lobes) const override {
-    return whole_.sample(out, 0, {}, transport, null_scattering);  // requested alone, the lobe has probability 1
+  ScatterValue world_value_and_pdf(const Vector3&, const Vector3&, ScatterContext) const override { return {}; }
+  std::optional<ScatterSample> world_sample(const Vector3& out, float, Point2, ScatterContext context) const override {
+    return whole_.sample(out, 0, {}, {context.transport, null_scattering});  // requested alone, the lobe has probability 1
   }
   Spectrum world_albedo(const Vector3& out, Lobes) const override { return whole_.albedo(out, null_scattering); }
 

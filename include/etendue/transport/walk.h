@@ -178,7 +178,7 @@ class Walk {
       return s;
     }
     if (!vertex.scatter) return std::nullopt;
-    return vertex.scatter->sample(vertex.out, choice, u, transport, vertex.lobes);
+    return vertex.scatter->sample(vertex.out, choice, u, {transport, vertex.lobes});
   }
 
   /// Leaves the last vertex in a sampled direction: T *= f |cos| / p, and the ray of the next segment starts there.
@@ -297,7 +297,7 @@ class Walk {
   template <class Events>
   bool passes(const Events& events) {
     const Scatter& scatter = *vertex.scatter;
-    const auto straight = scatter.sample(vertex.out, 0, {}, transport, null_scattering);
+    const auto straight = scatter.sample(vertex.out, 0, {}, {transport, null_scattering});
     const bool alone = scatter.lobes() == null_scattering;
     const Spectrum fraction = straight ? straight->weight : Spectrum();
     const float through = fraction.average();

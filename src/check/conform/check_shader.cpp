@@ -55,8 +55,8 @@ bool turns_normals(const Scatter& scatter, const SurfacePoint& p) {
     const float x = uniform(), choice = uniform(), u = uniform();
     const Vector3 out = warp::sphere({x, uniform()});
     const Point2 at{u, uniform()};
-    const auto a = scatter.sample(out, choice, at, Transport::radiance, reflection_lobes),
-               b = scatter.sample(out, choice, at, Transport::importance, reflection_lobes);
+    const auto a = scatter.sample(out, choice, at, {.lobes = reflection_lobes}),
+               b = scatter.sample(out, choice, at, {Transport::importance, reflection_lobes});
     if (a && b && std::abs(a->weight[0] - b->weight[0]) > 1e-3f * a->weight[0]) return true;
   }
   return false;
@@ -97,14 +97,14 @@ double BoundShader::specular_fraction(const Vector3& out, Lobes specular) const 
     constexpr int steps = 32;
     for (int i = 0; i < steps; ++i) {
       const float u = (float(i) + 0.5f) / steps;
-      if (const auto s = scatter_->sample(out, u, {u, float(i * 19 % steps) / steps}, Transport::radiance, lobe))
+      if (const auto s = scatter_->sample(out, u, {u, float(i * 19 % steps) / steps}, {.lobes = lobe}))
         sum += double(s->weight[0] * square(s->eta)) / steps;
     }
   }
   return sum;
 }
 
-RelativeIndex::RelativeIndex(Trial& trial, const BoundShader& bound, Lobes which) {
+RelativeIndex::RelativeIndex(Trial& trial, const BoundShader& bound, Lobes lobes) {
   known_[0] = known_[1] = true;
   for (int hero = 0; hero < spectrum_size; ++hero) {
     Wavelengths turned = bound.wavelengths();
@@ -118,7 +118,7 @@ RelativeIndex::RelativeIndex(Trial& trial, const BoundShader& bound, Lobes which
     for (int i = 0; scatter && i < 200; ++i) {
       const Vector3 out = trial.direction();
       const bool front = dot(bound.point().normal, out) > 0;
-      const auto s = scatter->sample(out, trial.uniform(), trial.pair(), Transport::radiance, which);
+      const auto s = scatter->sample(out, trial.uniform(), trial.pair(), {.lobes = lobes});
       if (!s || !s->transmitted()) continue;
       dispersive_ |= s->dispersive;
       if (found[front] == 0) found[front] = s->eta;
@@ -174,14 +174,14 @@ void check_dispersion(Trial& trial, const Shader& shader, const BoundShader& bou
   single.drop_secondary();
   Arena arena;
   const Scatter* alone = shader.bind(bound.point(), single, arena);
-  const bool named = bound.scatter()->dispersed() & specular_transmission;
-  trial.expect(!alone || alone->dispersed() == no_lobes, "of one wavelength no lobe is named as dispersed",
-               [&] { return fmt::format("lobes {}", alone->dispersed()); });
+  const bool named = bound.scatter()->dispersed_lobes() & specular_transmission;
+  trial.expect(!alone || alone->dispersed_lobes() == no_lobes, "of one wavelength no lobe is named as dispersed",
+               [&] { return fmt::format("lobes {}", alone->dispersed_lobes()); });
   const RelativeIndex by(trial, bound, specular_transmission);
   for (int i = 0; i < 100; ++i) {
     const Vector3 out = trial.direction();
     const Point2 u = trial.pair();
-    const auto s = bound.scatter()->sample(out, trial.uniform(), u, Transport::radiance, specular_transmission);
+    const auto s = bound.scatter()->sample(out, trial.uniform(), u, {.lobes = specular_transmission});
     // Whether the sample refracts by the interior index: in a mixture it may refract by another one.
     const bool by_inside = s && (std::abs(s->eta - index[0]) < 1e-4f || std::abs(s->eta * index[0] - 1) < 1e-4f);
     const Spectrum* known = by.from(dot(bound.point().normal, out) > 0);

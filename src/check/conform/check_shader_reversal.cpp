@@ -23,10 +23,10 @@ struct Pair {
 };
 
 /// Two directions that a sample connects, or two random ones.
-Pair draw_pair(Trial& trial, const Scatter& scatter, Lobes which) {
+Pair draw_pair(Trial& trial, const Scatter& scatter, Lobes lobes) {
   Pair pair{trial.direction(), trial.direction()};
   if (trial.uniform() < 0.7f)
-    if (const auto s = scatter.sample(pair.a, trial.uniform(), trial.pair(), Transport::radiance, which)) {
+    if (const auto s = scatter.sample(pair.a, trial.uniform(), trial.pair(), {.lobes = lobes})) {
       pair.b = s->direction;
       pair.sampled = true;
       pair.eta = s->eta;
@@ -38,15 +38,15 @@ Pair draw_pair(Trial& trial, const Scatter& scatter, Lobes which) {
 void check_adjoint(Trial& trial, const BoundShader& bound, const std::string& check) {
   const Scatter& scatter = *bound.scatter();
   const Normal3 ng = bound.point().normal;
-  for (const Lobes which : subsets_of(scatter.lobes() & smooth_lobes))
+  for (const Lobes lobes : subsets_of(scatter.lobes() & smooth_lobes))
     for (int i = trial.samples(300); i > 0; --i) {
-      const Pair pair = draw_pair(trial, scatter, which);
+      const Pair pair = draw_pair(trial, scatter, lobes);
       // Both sides are multiplied by both cosines with ng, to avoid divisions.
       const auto importance = [&](const Vector3& a, const Vector3& b) {
-        return scatter.evaluate(a, b, Transport::importance, which) * std::abs(dot(ng, a));
+        return scatter.evaluate(a, b, {Transport::importance, lobes}) * std::abs(dot(ng, a));
       };
       const auto radiance = [&](const Vector3& a, const Vector3& b) {
-        return scatter.evaluate(b, a, Transport::radiance, which) * std::abs(dot(ng, b));
+        return scatter.evaluate(b, a, {.lobes = lobes}) * std::abs(dot(ng, b));
       };
       const Spectrum from_light = importance(pair.a, pair.b), from_camera = radiance(pair.a, pair.b);
       trial.expect(agree(from_light, from_camera, 3e-3f, pair.hero_alone,
@@ -55,7 +55,7 @@ void check_adjoint(Trial& trial, const BoundShader& bound, const std::string& ch
                                   rounding_of([&](const Vector3& v) { return radiance(v, pair.b); }, pair.a);
                          }),
                    check, [&] {
-                     return fmt::format("{}: {} as importance, {} as radiance the other way; a {}, b {}", lobe_names(which),
+                     return fmt::format("{}: {} as importance, {} as radiance the other way; a {}, b {}", lobe_names(lobes),
                                         text(from_light), text(from_camera), bound.name(pair.a), bound.name(pair.b));
                    });
     }
@@ -66,18 +66,18 @@ void check_adjoint(Trial& trial, const BoundShader& bound, const std::string& ch
 /// only pairs that a sample connects are compared, at the hero wavelength.
 void check_reciprocity(Trial& trial, const BoundShader& bound) {
   const Scatter& scatter = *bound.scatter();
-  for (const Lobes which : subsets_of(scatter.lobes() & smooth_lobes)) {
-    const bool reflection = (which & transmission_lobes) == 0;
-    if (!reflection && !std::has_single_bit(unsigned(which))) continue;  // the index of several lobes together is not known
-    const RelativeIndex index = reflection ? RelativeIndex() : RelativeIndex(trial, bound, which);
+  for (const Lobes lobes : subsets_of(scatter.lobes() & smooth_lobes)) {
+    const bool reflection = (lobes & transmission_lobes) == 0;
+    if (!reflection && !std::has_single_bit(unsigned(lobes))) continue;  // the index of several lobes together is not known
+    const RelativeIndex index = reflection ? RelativeIndex() : RelativeIndex(trial, bound, lobes);
     for (int i = trial.samples(300); i > 0; --i) {
-      const Pair pair = draw_pair(trial, scatter, which);
+      const Pair pair = draw_pair(trial, scatter, lobes);
       const Spectrum* known = reflection ? nullptr : index.from(dot(bound.point().normal, pair.a) > 0);
       if (!reflection && !known && !pair.sampled) continue;
       const Spectrum eta = known ? *known : Spectrum(pair.eta);
       // f times both cosines, to avoid divisions.
       const auto value = [&](const Vector3& a, const Vector3& b) {
-        return scatter.evaluate(a, b, Transport::radiance, which) * scatter.cosine(a);
+        return scatter.evaluate(a, b, {.lobes = lobes}) * scatter.cosine(a);
       };
       const Spectrum ab = value(pair.a, pair.b) * eta * eta, ba = value(pair.b, pair.a);
       trial.expect(agree(ab, ba, 3e-3f, pair.hero_alone || (!reflection && (!known || index.dispersive())),
@@ -86,7 +86,7 @@ void check_reciprocity(Trial& trial, const BoundShader& bound) {
                                   rounding_of([&](const Vector3& v) { return value(v, pair.a); }, pair.b);
                          }),
                    "f is reciprocal", [&] {
-                     return fmt::format("{}: {} one way, {} the other; a {}, b {}, relative index {}", lobe_names(which),
+                     return fmt::format("{}: {} one way, {} the other; a {}, b {}, relative index {}", lobe_names(lobes),
                                         text(ab), text(ba), bound.name(pair.a), bound.name(pair.b), text(eta));
                    });
     }
@@ -105,7 +105,7 @@ Connection connection(const Scatter& scatter, const Vector3& out, const Vector3&
   Connection c;
   for (int i = 0; i < tries; ++i) {
     const Point2 u{float(i * 389 % tries) / tries, float(i * 61 % tries) / tries};
-    const auto s = scatter.sample(out, (float(i) + 0.5f) / tries, u, Transport::radiance, lobe);
+    const auto s = scatter.sample(out, (float(i) + 0.5f) / tries, u, {.lobes = lobe});
     if (!s || length(s->direction - in) > 1e-3f) continue;
     c.power += double(s->weight[0] * square(s->eta)) / tries;
     c.eta = s->eta;
@@ -123,14 +123,14 @@ void check_specular(Trial& trial, const BoundShader& bound) {
       const Vector3 out = trial.direction();
       const float choice = trial.uniform();
       const Point2 u = trial.pair();
-      const auto s = scatter.sample(out, choice, u, Transport::radiance, lobe);
+      const auto s = scatter.sample(out, choice, u, {.lobes = lobe});
       if (!s) continue;
       const auto where = [&] {
         return fmt::format("{}: out {}, in {}", lobe_names(lobe), bound.name(out), bound.name(s->direction));
       };
       // At grazing angles rounding errors dominate.
       if (scatter.cosine(out) < 0.02f || scatter.cosine(s->direction) < 0.02f) continue;
-      if (const auto t = scatter.sample(out, choice, u, Transport::importance, lobe); t && !bound.turned())
+      if (const auto t = scatter.sample(out, choice, u, {Transport::importance, lobe}); t && !bound.turned())
         trial.expect(t->direction == s->direction &&
                          agree(s->weight * square(s->eta), t->weight, 2e-3f, s->dispersive, [] { return Spectrum(); }),
                      "radiance and importance differ by the squared index", [&] {

@@ -20,12 +20,12 @@ struct Drawn {
   int count = 0;
 };
 
-Drawn draw(Trial& trial, const Scatter& scatter, const Vector3& out, Lobes which, Transport transport, int count) {
+Drawn draw(Trial& trial, const Scatter& scatter, const Vector3& out, Lobes lobes, Transport transport, int count) {
   Drawn drawn;
   drawn.count = count;
   for (int i = 0; i < count; ++i) {
     const float choice = trial.uniform();
-    const auto s = scatter.sample(out, choice, trial.pair(), transport, which);
+    const auto s = scatter.sample(out, choice, trial.pair(), {transport, lobes});
     drawn.all.add(s ? double(s->weight[0]) : 0);
     for (int k = 0; k < spectrum_size; ++k) drawn.others[k].add(s ? double(s->weight[k]) : 0);
     drawn.dispersive |= s && s->dispersive;
@@ -36,8 +36,8 @@ Drawn draw(Trial& trial, const Scatter& scatter, const Vector3& out, Lobes which
   return drawn;
 }
 
-std::string where(const BoundShader& bound, const Vector3& out, Lobes which) {
-  return fmt::format("{}, out {}", lobe_names(which), bound.name(out));
+std::string where(const BoundShader& bound, const Vector3& out, Lobes lobes) {
+  return fmt::format("{}, out {}", lobe_names(lobes), bound.name(out));
 }
 
 /// The number of samples by which the cells are chosen, at any effort: too coarse cells would make the test meaningless.
@@ -50,12 +50,12 @@ struct Measured {
 };
 
 /// The chi-square test of samples against the pdf; returns the integrals for further tests.
-Measured check_pdf(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes which, Transport transport,
+Measured check_pdf(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes lobes, Transport transport,
                    const std::string& check) {
   const Scatter& scatter = *bound.scatter();
-  const SphereCells cells(draw(trial, scatter, out, which, transport, pilots).directions, cell_count);
+  const SphereCells cells(draw(trial, scatter, out, lobes, transport, pilots).directions, cell_count);
   Measured m;
-  m.drawn = draw(trial, scatter, out, which, transport, trial.samples(20000));
+  m.drawn = draw(trial, scatter, out, lobes, transport, trial.samples(20000));
   const int n = m.drawn.count;
   std::vector<double> expected, counts(cells.size());
   for (const Vector3& v : m.drawn.directions) ++counts[cells.cell_of(v)];
@@ -66,7 +66,7 @@ Measured check_pdf(Trial& trial, const BoundShader& bound, const Vector3& out, L
     const auto integrals = cells.integrate<2>(
         [&](const Vector3& local) -> std::array<double, 2> {
           const Vector3 in = scatter.frame().to_world(local);
-          const ScatterValue v = scatter.value_and_pdf(out, in, transport, which);
+          const ScatterValue v = scatter.value_and_pdf(out, in, {transport, lobes});
           return {double(v.pdf), double(v.value[0])};
         },
         tolerance, long(1e3 / tolerance));
@@ -82,7 +82,7 @@ Measured check_pdf(Trial& trial, const BoundShader& bound, const Vector3& out, L
     p = statistics::chi_square(counts, expected, 10, 1e-3 * n);
   }
   trial.expect(m.pdf <= 1.005, "the density integrates to at most 1",
-               [&] { return fmt::format("{}: {:.5f}", where(bound, out, which), m.pdf); });
+               [&] { return fmt::format("{}: {:.5f}", where(bound, out, lobes), m.pdf); });
   trial.expect(p > Trial::significance, check, [&] {
     size_t worst = 0;
     const auto off = [&](size_t i) { return std::abs(counts[i] - expected[i]) / std::sqrt(std::max(expected[i], 1.0)); };
@@ -93,7 +93,7 @@ Measured check_pdf(Trial& trial, const BoundShader& bound, const Vector3& out, L
     return fmt::format(
         "{}: p = {:.2g}; the density integrates to {:.4f}, {:.4f} of {} samples are smooth; worst: {} samples {}, "
         "expected {:.1f}",
-        where(bound, out, which), p, m.pdf, double(m.drawn.directions.size()) / n, n, counts[worst], place, expected[worst]);
+        where(bound, out, lobes), p, m.pdf, double(m.drawn.directions.size()) / n, n, counts[worst], place, expected[worst]);
   });
   return m;
 }
@@ -107,11 +107,11 @@ Transport conserved(const Trial& trial, const BoundShader& bound) {
 
 /// Whether these lobes are dispersive in any direction. Where the hero wavelength is not refracted, or is not deflected, no
 /// sample is marked as dispersive, but other wavelengths may carry more than the hero.
-bool ever_dispersive(Trial& trial, const Scatter& scatter, Lobes which) {
+bool ever_dispersive(Trial& trial, const Scatter& scatter, Lobes lobes) {
   for (int i = 0; i < 300; ++i) {
     const Vector3 out = trial.direction();
     const float choice = trial.uniform();
-    const auto s = scatter.sample(out, choice, trial.pair(), Transport::radiance, which);
+    const auto s = scatter.sample(out, choice, trial.pair(), {.lobes = lobes});
     if (s && s->dispersive) return true;
   }
   return false;
@@ -120,13 +120,13 @@ bool ever_dispersive(Trial& trial, const Scatter& scatter, Lobes which) {
 /// Checks that the shader's albedo is, within its stated error, the mean weight of samples. This is an unbiased estimate of the
 /// integral of f cos (plus specular lobes), with a known standard error. Fractions of power are compared, because the albedo is
 /// defined by power.
-void check_albedo(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes which, const Drawn& drawn) {
+void check_albedo(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes lobes, const Drawn& drawn) {
   const double angle = bound.angle(out), bias = double(trial.part<Shader>().albedo_error());
   if (angle > 85 && angle < 95) return;  // the error is not bounded there
   // The error is relative to the albedo of all lobes: for a lobe that scatters next to nothing the relative error may be large.
-  const Spectrum said = bound.scatter()->albedo(out, which), all = bound.scatter()->albedo(out);
+  const Spectrum said = bound.scatter()->albedo(out, lobes), all = bound.scatter()->albedo(out);
   // A dispersive path follows its hero wavelength, so its weights say nothing about the other wavelengths.
-  const bool hero_alone = drawn.dispersive || ever_dispersive(trial, *bound.scatter(), which);
+  const bool hero_alone = drawn.dispersive || ever_dispersive(trial, *bound.scatter(), lobes);
   for (int k = 0; k < (hero_alone ? 1 : spectrum_size); ++k) {
     const Mean& mean = drawn.others[k];
     // Tolerance for rounding, and for the tables of energy lost between microfacets, on which the weights depend as well.
@@ -137,30 +137,30 @@ void check_albedo(Trial& trial, const BoundShader& bound, const Vector3& out, Lo
         "the albedo is that of the samples", [&] {
           return fmt::format(
               "{}: said to be {:.5f} with an error of at most {:.3g} of the whole, samples have {:.5f} ± {:.5f}, at {:.0f} nm",
-              where(bound, out, which), said[k], bias, mean.mean(), mean.error(), bound.wavelengths()[k]);
+              where(bound, out, lobes), said[k], bias, mean.mean(), mean.error(), bound.wavelengths()[k]);
         });
   }
 }
 
 /// Tests samples, pdf and energy for one direction and set of lobes.
-void check_direction(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes which) {
+void check_direction(Trial& trial, const BoundShader& bound, const Vector3& out, Lobes lobes) {
   const Shader& shader = trial.part<Shader>();
   const Transport transport = conserved(trial, bound);
-  const Measured m = check_pdf(trial, bound, out, which, transport, "samples follow the density");
-  if (transport == Transport::radiance && (which & transmission_lobes & ~null_scattering)) return;
-  const double albedo = m.flux + bound.specular_fraction(out, which);
+  const Measured m = check_pdf(trial, bound, out, lobes, transport, "samples follow the density");
+  if (transport == Transport::radiance && (lobes & transmission_lobes & ~null_scattering)) return;
+  const double albedo = m.flux + bound.specular_fraction(out, lobes);
   const Mean& mean = m.drawn.all;
   const double margin = Trial::significant_errors * mean.error() + 10 * mean.largest() / m.drawn.count + 3e-3;
   trial.expect(std::abs(mean.mean() - albedo) < margin, "samples carry what evaluation says", [&] {
-    return fmt::format("{}: the mean weight is {:.5f} ± {:.5f}, f cos integrates to {:.5f}", where(bound, out, which),
+    return fmt::format("{}: the mean weight is {:.5f} ± {:.5f}, f cos integrates to {:.5f}", where(bound, out, lobes),
                        mean.mean(), mean.error(), albedo);
   });
   trial.expect(albedo < 1.005, "no more light leaves than arrives",
-               [&] { return fmt::format("{}: {:.5f}", where(bound, out, which), albedo); });
-  if (shader.lossless() && which == bound.scatter()->lobes())
+               [&] { return fmt::format("{}: {:.5f}", where(bound, out, lobes), albedo); });
+  if (shader.lossless() && lobes == bound.scatter()->lobes())
     trial.expect(albedo > 0.995, "a lossless shader absorbs nothing",
-                 [&] { return fmt::format("{}: {:.5f}", where(bound, out, which), albedo); });
-  check_albedo(trial, bound, out, which, m.drawn);
+                 [&] { return fmt::format("{}: {:.5f}", where(bound, out, lobes), albedo); });
+  check_albedo(trial, bound, out, lobes, m.drawn);
 }
 
 /// Whether a shader contains a stochastic one, whose values are estimates: then each evaluation needs very many of the inner
@@ -178,12 +178,12 @@ bool rests_on_estimates(const Component& shader) {
 
 /// For shaders that are not reciprocal: directions are sampled as for radiance, and weighted by the adjoint.
 void check_adjoint_samples(Trial& trial, const BoundShader& bound, const Vector3& out) {
-  const Lobes which = bound.scatter()->lobes() & smooth_lobes;
-  const Measured m = check_pdf(trial, bound, out, which, Transport::importance, "samples of importance follow the density");
+  const Lobes lobes = bound.scatter()->lobes() & smooth_lobes;
+  const Measured m = check_pdf(trial, bound, out, lobes, Transport::importance, "samples of importance follow the density");
   const Mean& mean = m.drawn.all;
   const double margin = Trial::significant_errors * mean.error() + 10 * mean.largest() / m.drawn.count + 3e-3;
   trial.expect(std::abs(mean.mean() - m.flux) < margin, "samples of importance carry what evaluation says", [&] {
-    return fmt::format("{}: the mean weight is {:.5f} ± {:.5f}, f cos integrates to {:.5f}", where(bound, out, which),
+    return fmt::format("{}: the mean weight is {:.5f} ± {:.5f}, f cos integrates to {:.5f}", where(bound, out, lobes),
                        mean.mean(), mean.error(), m.flux);
   });
 }
@@ -194,15 +194,15 @@ constexpr double angles[] = {0, 25, 50, 75, 86, 89.5, 95, 120, 155};
 
 void check_shader_sampling(Trial& trial, const BoundShader& plain, const BoundShader& tilted) {
   const auto azimuth = [&] { return 2 * M_PI * double(trial.uniform()); };
-  for (const Lobes which : subsets_of(plain.scatter()->lobes())) {
-    if (which == plain.scatter()->lobes()) {
-      for (const double angle : angles) check_direction(trial, plain, plain.at_angle(angle, azimuth()), which);
+  for (const Lobes lobes : subsets_of(plain.scatter()->lobes())) {
+    if (lobes == plain.scatter()->lobes()) {
+      for (const double angle : angles) check_direction(trial, plain, plain.at_angle(angle, azimuth()), lobes);
     } else {
       const double angle = 85 * double(trial.uniform());
       const bool behind = trial.uniform() < 0.5f;
-      check_direction(trial, plain, plain.at_angle(behind ? 180 - angle : angle, azimuth()), which);
+      check_direction(trial, plain, plain.at_angle(behind ? 180 - angle : angle, azimuth()), lobes);
       if (trial.effort() != Effort::quick)
-        check_direction(trial, plain, plain.at_angle(behind ? angle : 180 - angle, azimuth()), which);
+        check_direction(trial, plain, plain.at_angle(behind ? angle : 180 - angle, azimuth()), lobes);
     }
   }
   if (!trial.part<Shader>().reciprocal() && !plain.turned() && plain.scatter()->has(smooth_lobes))
@@ -220,10 +220,10 @@ void check_shader_estimates(Trial& trial, const BoundShader& bound) {
   const int share = rests_on_estimates(trial.part<Shader>()) ? 16 : 1;
   for (const double angle : angles) {
     const Vector3 out = bound.at_angle(angle, 2 * M_PI * double(trial.uniform()));
-    const Lobes which = scatter.lobes();
-    const Drawn pilot = draw(trial, scatter, out, which, transport, pilots);
+    const Lobes lobes = scatter.lobes();
+    const Drawn pilot = draw(trial, scatter, out, lobes, transport, pilots);
     const SphereCells cells(pilot.directions, 24);
-    const Drawn drawn = draw(trial, scatter, out, which, transport, trial.samples(40000 / share));
+    const Drawn drawn = draw(trial, scatter, out, lobes, transport, trial.samples(40000 / share));
     std::vector<Mean> weights(cells.size());
     for (size_t i = 0; i < drawn.directions.size(); ++i) weights[cells.cell_of(drawn.directions[i])].add(drawn.weights[i]);
     const int asked = trial.samples(3000 / share);
@@ -232,28 +232,28 @@ void check_shader_estimates(Trial& trial, const BoundShader& bound) {
       for (int i = 0; i < asked; ++i) {
         const Point2 u = trial.pair();
         const Vector3 in = scatter.frame().to_world(cells.uniform(cell, double(u.x), double(u.y)));
-        values.add(double(scatter.evaluate(out, in, transport, which)[0]) * cells.solid_angle(cell));
+        values.add(double(scatter.evaluate(out, in, {transport, lobes})[0]) * cells.solid_angle(cell));
       }
       Mean& w = weights[cell];
       w.add_zeros(drawn.count - w.count());
       const double margin = Trial::significant_errors * std::hypot(values.error(), w.error()) + 0.02 * values.mean() +
                             10 * (values.largest() / asked + drawn.all.largest() / drawn.count) + 1e-4;
       trial.expect(std::abs(values.mean() - w.mean()) < margin, "samples carry what evaluation says, on the average", [&] {
-        return fmt::format("{}, around {}: evaluate {:.5f} ± {:.5f}, samples {:.5f} ± {:.5f}", where(bound, out, which),
+        return fmt::format("{}, around {}: evaluate {:.5f} ± {:.5f}, samples {:.5f} ± {:.5f}", where(bound, out, lobes),
                            bound.name(scatter.frame().to_world(cells.middle(cell))), values.mean(), values.error(), w.mean(),
                            w.error());
       });
     }
-    if (transport == Transport::radiance && (which & transmission_lobes & ~null_scattering)) continue;
+    if (transport == Transport::radiance && (lobes & transmission_lobes & ~null_scattering)) continue;
     const double slack = Trial::significant_errors * drawn.all.error() + 5e-3;
     trial.expect(drawn.all.mean() < 1 + slack, "no more light leaves than arrives", [&] {
-      return fmt::format("{}: {:.5f} ± {:.5f}", where(bound, out, which), drawn.all.mean(), drawn.all.error());
+      return fmt::format("{}: {:.5f} ± {:.5f}", where(bound, out, lobes), drawn.all.mean(), drawn.all.error());
     });
     if (trial.part<Shader>().lossless())
       trial.expect(drawn.all.mean() > 1 - slack, "a lossless shader absorbs nothing", [&] {
-        return fmt::format("{}: {:.5f} ± {:.5f}", where(bound, out, which), drawn.all.mean(), drawn.all.error());
+        return fmt::format("{}: {:.5f} ± {:.5f}", where(bound, out, lobes), drawn.all.mean(), drawn.all.error());
       });
-    if (transport == Transport::importance) check_albedo(trial, bound, out, which, drawn);
+    if (transport == Transport::importance) check_albedo(trial, bound, out, lobes, drawn);
   }
 }
 

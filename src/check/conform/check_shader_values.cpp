@@ -25,9 +25,9 @@ void check_finite(Trial& trial, const BoundShader& bound) {
   for (const Vector3& out : directions) {
     for (const Vector3& in : directions)
       for (const Transport transport : {Transport::radiance, Transport::importance}) {
-        const ScatterValue v = scatter.value_and_pdf(out, in, transport);
-        const Spectrum e = scatter.evaluate(out, in, transport);
-        const float d = scatter.pdf(out, in, transport);
+        const ScatterValue v = scatter.value_and_pdf(out, in, {.transport = transport});
+        const Spectrum e = scatter.evaluate(out, in, {.transport = transport});
+        const float d = scatter.pdf(out, in, {.transport = transport});
         trial.expect(sane(v.value) && sane(e) && v.pdf >= 0 && v.pdf < infinity && d >= 0 && d < infinity, finite, [&] {
           return fmt::format("out {}, in {}, {}: value {}, density {}", bound.name(out), bound.name(in), name(transport),
                              text(e), d);
@@ -42,7 +42,7 @@ void check_finite(Trial& trial, const BoundShader& bound) {
       for (const float x : {0.0f, 0.5f, one_minus_epsilon})
         for (const float y : {0.0f, 0.5f, one_minus_epsilon})
           for (const Transport transport : {Transport::radiance, Transport::importance}) {
-            const auto s = scatter.sample(out, choice, {x, y}, transport);
+            const auto s = scatter.sample(out, choice, {x, y}, {.transport = transport});
             if (!s) continue;
             trial.expect(sane(s->weight) && s->pdf > 0 && s->pdf < infinity && std::abs(length(s->direction) - 1) < 1e-4f &&
                              s->eta > 0 && s->eta < infinity,
@@ -69,41 +69,40 @@ void check_masks(Trial& trial, const BoundShader& bound) {
     const Vector3 out = trial.direction(), in = partner(trial, scatter, out);
     const float choice = trial.uniform();
     const Point2 u = trial.pair();
-    trial.expect(scatter.evaluate(out, in, Transport::radiance, absent).black() &&
-                     scatter.pdf(out, in, Transport::radiance, absent) == 0 &&
-                     !scatter.sample(out, choice, u, Transport::radiance, absent) && scatter.albedo(out, absent).black(),
+    trial.expect(scatter.evaluate(out, in, {.lobes = absent}).black() && scatter.pdf(out, in, {.lobes = absent}) == 0 &&
+                     !scatter.sample(out, choice, u, {.lobes = absent}) && scatter.albedo(out, absent).black(),
                  "lobes that are absent give nothing", [&] {
                    return fmt::format("asked for {}: out {}, in {}", lobe_names(absent), bound.name(out), bound.name(in));
                  });
-    for (const Lobes which : subsets_of(scatter.lobes() & smooth_lobes)) {
-      const Spectrum whole = scatter.evaluate(out, in, Transport::radiance, which);
+    for (const Lobes lobes : subsets_of(scatter.lobes() & smooth_lobes)) {
+      const Spectrum whole = scatter.evaluate(out, in, {.lobes = lobes});
       Spectrum sum;
-      for (Lobes rest = which; rest != 0; rest &= Lobes(rest - 1))
-        sum += scatter.evaluate(out, in, Transport::radiance, rest & Lobes(-rest));
+      for (Lobes rest = lobes; rest != 0; rest &= Lobes(rest - 1))
+        sum += scatter.evaluate(out, in, {.lobes = Lobes(rest & Lobes(-rest))});
       trial.expect(agree(whole, sum, 1e-3f, false, [] { return Spectrum(); }), "lobes together are the sum of single lobes",
                    [&] {
-                     return fmt::format("{}: {} together, {} as a sum; out {}, in {}", lobe_names(which), text(whole),
+                     return fmt::format("{}: {} together, {} as a sum; out {}, in {}", lobe_names(lobes), text(whole),
                                         text(sum), bound.name(out), bound.name(in));
                    });
       const bool reflection = dot(bound.point().normal, out) * dot(bound.point().normal, in) > 0;
-      if ((which & (reflection ? reflection_lobes : transmission_lobes)) == 0)
-        trial.expect(whole.black() && scatter.pdf(out, in, Transport::radiance, which) == 0,
+      if ((lobes & (reflection ? reflection_lobes : transmission_lobes)) == 0)
+        trial.expect(whole.black() && scatter.pdf(out, in, {.lobes = lobes}) == 0,
                      "reflection and transmission keep to their sides",
-                     [&] { return fmt::format("{}: out {}, in {}", lobe_names(which), bound.name(out), bound.name(in)); });
+                     [&] { return fmt::format("{}: out {}, in {}", lobe_names(lobes), bound.name(out), bound.name(in)); });
     }
   }
 }
 
 /// Compares one sample with evaluation in its direction.
 void check_sample(Trial& trial, const BoundShader& bound, const Vector3& out, const ScatterSample& s, Transport transport,
-                  Lobes which) {
+                  Lobes lobes) {
   const Scatter& scatter = *bound.scatter();
   const auto where = [&] {
-    return fmt::format("asked for {}, {}: out {}, in {} by {}", lobe_names(which), name(transport), bound.name(out),
+    return fmt::format("asked for {}, {}: out {}, in {} by {}", lobe_names(lobes), name(transport), bound.name(out),
                        bound.name(s.direction), lobe_names(s.lobe));
   };
   const Normal3 n = bound.point().normal;
-  trial.expect(std::has_single_bit(unsigned(s.lobe)) && (s.lobe & which) != 0, "a sample is of one lobe that was asked for",
+  trial.expect(std::has_single_bit(unsigned(s.lobe)) && (s.lobe & lobes) != 0, "a sample is of one lobe that was asked for",
                where);
   const bool crossed = dot(n, out) * dot(n, s.direction) < 0;
   trial.expect(crossed == s.transmitted(), "reflection and transmission keep to their sides", where);
@@ -116,11 +115,11 @@ void check_sample(Trial& trial, const BoundShader& bound, const Vector3& out, co
                  [&] { return fmt::format("{}: {}", where(), s.pdf); });
     return;
   }
-  const auto value = [&](const Vector3& in) { return scatter.evaluate(out, in, transport, which); };
-  const auto pdf = [&](const Vector3& in) { return Spectrum(scatter.pdf(out, in, transport, which)); };
+  const auto value = [&](const Vector3& in) { return scatter.evaluate(out, in, {transport, lobes}); };
+  const auto pdf = [&](const Vector3& in) { return Spectrum(scatter.pdf(out, in, {transport, lobes})); };
   const Spectrum f = value(s.direction);
   const float p = pdf(s.direction)[0];
-  const ScatterValue both = scatter.value_and_pdf(out, s.direction, transport, which);
+  const ScatterValue both = scatter.value_and_pdf(out, s.direction, {transport, lobes});
   trial.expect(agree(both.value, f, 1e-3f, false, [&] { return rounding_of(value, s.direction); }) &&
                    agree(both.pdf, p, 1e-3f, true, [&] { return rounding_of(pdf, s.direction); }),
                "value_and_density is evaluate and density", [&] {
@@ -134,14 +133,14 @@ void check_sample(Trial& trial, const BoundShader& bound, const Vector3& out, co
                      [&] { return rounding_of(value, s.direction) + s.weight * rounding_of(pdf, s.direction); }),
                "a sample's weight is value over density",
                [&] { return fmt::format("{}: weight {} instead of {}", where(), text(s.weight), text(wanted / s.pdf)); });
-  const float reverse = scatter.pdf(s.direction, out, transport, which);
+  const float reverse = scatter.pdf(s.direction, out, {transport, lobes});
   trial.expect(reverse >= 0 && reverse < infinity, "the reverse density is finite",
                [&] { return fmt::format("{}: {}", where(), reverse); });
 }
 
 void check_samples(Trial& trial, const BoundShader& bound, bool estimates) {
   const Scatter& scatter = *bound.scatter();
-  for (const Lobes which : subsets_of(scatter.lobes()))
+  for (const Lobes lobes : subsets_of(scatter.lobes()))
     for (const Transport transport : {Transport::radiance, Transport::importance})
       for (int i = trial.samples(200); i > 0; --i) {
         const Vector3 out = trial.uniform() < 0.8f
@@ -149,12 +148,12 @@ void check_samples(Trial& trial, const BoundShader& bound, bool estimates) {
                                 : bound.at_angle(90 + 6 * (double(trial.uniform()) - 0.5), 6 * double(trial.uniform()));
         const float choice = trial.uniform();
         const Point2 u = trial.pair();
-        const auto s = scatter.sample(out, choice, u, transport, which);
+        const auto s = scatter.sample(out, choice, u, {transport, lobes});
         if (!s) continue;
         if (!trial.expect(sane(s->weight) && s->pdf > 0, "samples are finite, for extreme random numbers too",
                           [&] { return "out " + bound.name(out); }))
           continue;
-        if (!estimates) check_sample(trial, bound, out, *s, transport, which);
+        if (!estimates) check_sample(trial, bound, out, *s, transport, lobes);
       }
 }
 

@@ -138,7 +138,7 @@ class DirectRenderer final : public Renderer {
     for (const Lobe lobe : {specular_reflection, specular_transmission}) {
       if (!scatter.has(lobe)) continue;
       const float choice = sample.numbers.next();  // a surface may have several lobes of this kind
-      const auto next = scatter.sample(-branch.ray.direction, choice, sample.numbers.next_pair(), Transport::radiance, lobe);
+      const auto next = scatter.sample(-branch.ray.direction, choice, sample.numbers.next_pair(), {.lobes = lobe});
       if (!next || enters_subsurface(point, *next)) continue;
       RayBranch child = branch;
       child.throughput *= next->weight;
@@ -157,7 +157,7 @@ class DirectRenderer final : public Renderer {
   static std::optional<Spectrum> pass_straight(const SurfacePoint& point, const Scatter& scatter, Ray& ray,
                                                MediumStack* media) {
     if (!scatter.has(null_scattering)) return std::nullopt;
-    const auto straight = scatter.sample(-ray.direction, 0, {}, Transport::radiance, null_scattering);
+    const auto straight = scatter.sample(-ray.direction, 0, {}, {.lobes = null_scattering});
     if (!straight || straight->weight.black()) return std::nullopt;
     go_on(point, *straight, ray, media);
     return straight->weight;
@@ -177,7 +177,7 @@ class DirectRenderer final : public Renderer {
       const Point2 u = sample.numbers.next_pair();
       const LightChoice chosen = light_sampler->choose(point.position, point.normal, choice);
       if (!chosen.luminaire || !sample_luminaire(tree.scene, *chosen.luminaire, point, branch.wavelengths, u, light)) continue;
-      const ScatterValue f = scatter.value_and_pdf(out, light.direction, Transport::radiance, direct_lobes());
+      const ScatterValue f = scatter.value_and_pdf(out, light.direction, {.lobes = direct_lobes()});
       if (f.value.black()) continue;
       const bool rivalled = strategy == Strategy::both && !light.delta;
       const float weight =
@@ -199,7 +199,7 @@ class DirectRenderer final : public Renderer {
     SurfacePoint met;
     for (int i = 0; i < shader_samples && !sample.aborted(); ++i) {
       const float choice = std::min((float(i) + sample.numbers.next()) / n, one_minus_epsilon);
-      const auto next = scatter.sample(out, choice, sample.numbers.next_pair(), Transport::radiance, direct_lobes());
+      const auto next = scatter.sample(out, choice, sample.numbers.next_pair(), {.lobes = direct_lobes()});
       if (!next || enters_subsurface(point, *next)) continue;
       Wavelengths wavelengths = branch.wavelengths;
       Spectrum throughput = next->weight / n;

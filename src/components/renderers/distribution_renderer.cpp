@@ -147,7 +147,7 @@ class DistributionRenderer final : public Renderer {
         continue;
       }
       const float choice = sample.numbers.next();
-      const auto next = scatter->sample(out, choice, sample.numbers.next_pair(), Transport::radiance, lobes);
+      const auto next = scatter->sample(out, choice, sample.numbers.next_pair(), {.lobes = lobes});
       if (!next || enters_subsurface(place.point, *next)) return;
       branch.throughput *= next->weight;
       step(sample, branch, place, *next, next->pdf, 1);
@@ -182,14 +182,14 @@ class DistributionRenderer final : public Renderer {
       for (int i = 0; i < kind.count && !sample.aborted(); ++i) {
         const float choice = (float(i) + sample.numbers.next()) / float(kind.count);
         const auto next = place.scatter.sample(place.out, std::min(choice, one_minus_epsilon), sample.numbers.next_pair(),
-                                               Transport::radiance, kind.lobes);
+                                               {.lobes = kind.lobes});
         if (!next || enters_subsurface(place.point, *next)) continue;
         Branch child = branch;
         float pdf = float(kind.count) * next->pdf;  // N of a smooth lobe
         if (rivals == 0) {
           child.throughput *= next->weight / float(kind.count);
         } else {
-          const ScatterValue other = place.scatter.value_and_pdf(place.out, next->direction, Transport::radiance, kind.rivals);
+          const ScatterValue other = place.scatter.value_and_pdf(place.out, next->direction, {.lobes = kind.rivals});
           const Spectrum value = next->weight * next->pdf + other.value;
           pdf += float(rivals) * other.pdf;
           child.throughput *= value / pdf;
@@ -227,11 +227,11 @@ class DistributionRenderer final : public Renderer {
 
   /// f |cos| of the lobes that are followed (as `value`), and N (as `pdf`).
   ScatterValue lobe_rays(const Place& place, const Vector3& in) const {
-    if (!place.splits) return place.scatter.value_and_pdf(place.out, in, Transport::radiance, followed());
+    if (!place.splits) return place.scatter.value_and_pdf(place.out, in, {.lobes = followed()});
     ScatterValue sum;
     for (const auto& [lobes, count] : {std::pair(diffuse_lobes, diffuse_samples), std::pair(glossy_lobes, glossy_samples)}) {
       if (count == 0 || !place.scatter.has(lobes)) continue;
-      const ScatterValue kind = place.scatter.value_and_pdf(place.out, in, Transport::radiance, lobes);
+      const ScatterValue kind = place.scatter.value_and_pdf(place.out, in, {.lobes = lobes});
       sum.value += kind.value;
       sum.pdf += float(count) * kind.pdf;
     }
@@ -255,7 +255,7 @@ class DistributionRenderer final : public Renderer {
       const float pdf = float(count) * chosen.probability * light.pdf;
       const ScatterValue rivals = lobe_rays(place, light.direction);
       Spectrum f = rivals.value * weight_over_pdf(Heuristic::power, pdf, light.delta ? 0 : rivals.pdf);
-      if (place.scatter.has(alone)) f += place.scatter.evaluate(place.out, light.direction, Transport::radiance, alone) / pdf;
+      if (place.scatter.has(alone)) f += place.scatter.evaluate(place.out, light.direction, {.lobes = alone}) / pdf;
       if (f.black()) continue;
       const Spectrum direct = branch.throughput * (f * light.radiance *
                                                    shadow_transmittance(tree.scene, light.shadow, nullptr, branch.wavelengths,

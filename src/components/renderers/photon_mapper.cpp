@@ -181,7 +181,7 @@ class PhotonMapperProcess final : public PhotonProcess {
     if (!irradiance) return add_photons(walk, global_, settings_.nearest, settings_.farthest, PhotonKinds::all);
     // The irradiance is taken to arrive along the normal; for a diffuse surface the direction makes no difference.
     const Vector3 normal = on_side(Vector3(v.point.normal), v.out);
-    walk.add_light(1, v.scatter->evaluate(v.out, normal, Transport::radiance, v.lobes) * *irradiance);
+    walk.add_light(1, v.scatter->evaluate(v.out, normal, {.lobes = v.lobes}) * *irradiance);
   }
 
   /// Adds next event estimation and samples the next direction, from the photons too if `guided` (final gathering).

@@ -69,7 +69,7 @@ class SimplePathTracer final : public Renderer {
       add(T * direct, length + 1, luminaire);
 
       const float lobe = sample.numbers.next();
-      const std::optional<ScatterSample> next = scatter->sample(out, lobe, sample.numbers.next_pair(), Transport::radiance);
+      const std::optional<ScatterSample> next = scatter->sample(out, lobe, sample.numbers.next_pair());
       if (!next || enters_subsurface(x, *next)) break;
       T *= next->weight;  // f |cos| / p
       // A dispersive refraction has another direction for each wavelength: the path follows the hero, whose weight is
@@ -92,7 +92,7 @@ class SimplePathTracer final : public Renderer {
     SurfaceSample on = luminaire->sample_visible(x.position, u, x.time);
     if (!(on.pdf > 0)) return {};
     const Vector3 in = on.direction;
-    const Spectrum f_cos = scatter.evaluate(out, in, Transport::radiance, smooth_lobes);
+    const Spectrum f_cos = scatter.evaluate(out, in, {.lobes = smooth_lobes});
     const Spectrum emitted = luminaire->emission->radiance(on.point, -in, sample.wavelengths);
     if (f_cos.black() || emitted.black() || !scene.in_front(on.point, -in)) return {};
     const Ray shadow = on.infinite ? x.leave(in) : x.towards(on.point);

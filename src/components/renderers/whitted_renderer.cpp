@@ -89,7 +89,7 @@ class WhittedRenderer final : public Renderer {
       // Null scattering does not count as a segment, so the last segment may still pass null-scattering surfaces.
       if (!scatter->has(lobe) || (last && lobe != null_scattering)) continue;
       const float choice = sample.numbers.next();  // a surface may have several lobes of this kind
-      const auto next = scatter->sample(out, choice, sample.numbers.next_pair(), Transport::radiance, lobe);
+      const auto next = scatter->sample(out, choice, sample.numbers.next_pair(), {.lobes = lobe});
       if (!next || enters_subsurface(point, *next)) continue;
       RayBranch child = branch;
       child.throughput *= next->weight;
@@ -119,7 +119,7 @@ class WhittedRenderer final : public Renderer {
     for (const SceneObject* luminaire : tree.scene.luminaires()) {
       if (!luminaire->delta() || !sample_luminaire(tree.scene, *luminaire, point, branch.wavelengths, {0.5f, 0.5f}, light))
         continue;
-      const Spectrum f = scatter.evaluate(out, light.direction, Transport::radiance, smooth_lobes);
+      const Spectrum f = scatter.evaluate(out, light.direction, {.lobes = smooth_lobes});
       if (f.black()) continue;
       const Spectrum direct = branch.throughput * (f * light.radiance / light.pdf *
                                                    shadow_transmittance(tree.scene, light.shadow, nullptr, branch.wavelengths,

@@ -8,12 +8,12 @@ namespace etendue {
 template <class Model>
 class JointScatter : public ScatterModel<Model> {
  public:
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override = 0;
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const final {
-    return local_value_and_pdf(out, in, which).value;
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const = delete;  // the model's is called
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes lobes) const {
+    return this->model().local_value_and_pdf(out, in, lobes).value;
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes which) const final {
-    return local_value_and_pdf(out, in, which).pdf;
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
+    return this->model().local_value_and_pdf(out, in, lobes).pdf;
   }
 
  protected:

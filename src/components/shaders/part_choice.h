@@ -8,10 +8,10 @@ namespace etendue {
 /// The unnormalized probability with which a part is chosen for sampling: its share times its albedo, which is raised by 0.01
 /// because it is an estimate, and a part of estimated albedo 0 may still scatter. 0 if the part is null or has none of the
 /// lobes.
-inline float promise(const Scatter* part, float share, const Vector3& out, Lobes which) {
-  if (!part || !part->has(which)) return 0;
+inline float promise(const Scatter* part, float share, const Vector3& out, Lobes lobes) {
+  if (!part || !part->has(lobes)) return 0;
   constexpr float unforeseen = 0.01f;
-  return share * (part->albedo(out, which).average() + unforeseen);
+  return share * (part->albedo(out, lobes).average() + unforeseen);
 }
 
 /// `choice` rescaled to [0, 1) for reuse, after it has selected one of the intervals [0, split) and [split, 1).
@@ -28,7 +28,7 @@ inline ScatterSample straight_on(const Vector3& out, const Spectrum& weight, flo
 /// The fraction of light that a part transmits by null scattering.
 inline Spectrum straight_fraction(const Scatter* part, const Vector3& out, Transport transport) {
   if (!part || !part->has(null_scattering)) return {};
-  const auto straight = part->sample(out, 0, {}, transport, null_scattering);
+  const auto straight = part->sample(out, 0, {}, {transport, null_scattering});
   return straight ? straight->weight : Spectrum();
 }
 

@@ -24,16 +24,16 @@ class CoupledScatter final : public ScatterModel<CoupledScatter> {
   CoupledScatter(const SurfacePoint& p, Lobes lobes, Spectrum matte, Spectrum normal_reflectance)
       : ScatterModel(p, lobes), base_(matte * (Spectrum(1.0f) - normal_reflectance)), normal_reflectance_(normal_reflectance) {}
 
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    if (!(which & diffuse_reflection) || !(out.z * in.z > 0)) return {};
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes lobes) const {
+    if (!(lobes & diffuse_reflection) || !(out.z * in.z > 0)) return {};
     return base_ * (21 / (20 * pi) * passed(out) * passed(in));
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
-    if (!(which & diffuse_reflection) || !(out.z * in.z > 0)) return 0;
-    return (1 - mirror_probability(out, which)) * std::abs(in.z) * inverse_pi;
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
+    if (!(lobes & diffuse_reflection) || !(out.z * in.z > 0)) return 0;
+    return (1 - mirror_probability(out, lobes)) * std::abs(in.z) * inverse_pi;
   }
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
-    const float mirror = mirror_probability(out, which);
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
+    const float mirror = mirror_probability(out, lobes);
     if (choice < mirror) {
       s.in = {-out.x, -out.y, out.z};
       s.value = reflectance(out);
@@ -48,10 +48,10 @@ class CoupledScatter final : public ScatterModel<CoupledScatter> {
     if (out.z < 0) s.in.z = -s.in.z;
     return s.pdf > 0;
   }
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     Spectrum sum;
-    if (which & diffuse_reflection) sum += base_ * passed(out);
-    if (which & specular_reflection) sum += reflectance(out);
+    if (lobes & diffuse_reflection) sum += base_ * passed(out);
+    if (lobes & specular_reflection) sum += reflectance(out);
     return sum;
   }
 
@@ -59,9 +59,9 @@ class CoupledScatter final : public ScatterModel<CoupledScatter> {
   /// g: the transmittance of the coat over that at normal incidence.
   static float passed(const Vector3& v) { return 1 - schlick_growth(std::abs(v.z)); }
   Spectrum reflectance(const Vector3& v) const { return Spectrum(1.0f) - (Spectrum(1.0f) - normal_reflectance_) * passed(v); }
-  float mirror_probability(const Vector3& out, Lobes which) const {
-    if (!(which & specular_reflection)) return 0;
-    if (!(which & diffuse_reflection)) return 1;
+  float mirror_probability(const Vector3& out, Lobes lobes) const {
+    if (!(lobes & specular_reflection)) return 0;
+    if (!(lobes & diffuse_reflection)) return 1;
     const float mirror = reflectance(out).average(), matte = base_.average() * passed(out);
     return mirror / (mirror + matte);
   }

@@ -32,10 +32,10 @@ class DiffractionGratingScatter final : public ScatterModel<DiffractionGratingSc
         last_(int(efficiency.size()) - 1),
         single_(single) {}
 
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return {}; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const { return 0; }
 
-  bool local_sample(const Vector3& out, float choice, Point2, Lobes, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2, Lobes, LocalSample& s) const {
     const float total = propagating(out, steps_[0]);
     if (!(total > 0)) return false;
     float before = 0;
@@ -54,8 +54,8 @@ class DiffractionGratingScatter final : public ScatterModel<DiffractionGratingSc
     return true;  // reached by rounding only: the last order
   }
 
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    if (!(which & specular_reflection)) return {};
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
+    if (!(lobes & specular_reflection)) return {};
     return reflectance_ * map(steps_, [&](float step) { return propagating(out, step); });
   }
 

@@ -18,15 +18,15 @@ class DiffuseTransmitterScatter final : public ScatterModel<DiffuseTransmitterSc
     reflect_probability_ = r / (r + t);
   }
 
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
     return (out.z * in.z > 0 ? reflectance_ : transmittance_) * inverse_pi;
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
-    const float reflect = reflect_probability(which);
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
+    const float reflect = reflect_probability(lobes);
     return (out.z * in.z > 0 ? reflect : 1 - reflect) * std::abs(in.z) * inverse_pi;
   }
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
-    const float reflect = reflect_probability(which);
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
+    const float reflect = reflect_probability(lobes);
     const bool reflected = choice < reflect;
     s.in = warp::cosine_hemisphere(u);
     const float pdf = s.in.z * inverse_pi;
@@ -36,17 +36,17 @@ class DiffuseTransmitterScatter final : public ScatterModel<DiffuseTransmitterSc
     if ((out.z < 0) == reflected) s.in.z = -s.in.z;
     return s.pdf > 0;
   }
-  Spectrum local_albedo(const Vector3&, Lobes which) const override {
+  Spectrum local_albedo(const Vector3&, Lobes lobes) const {
     Spectrum sum;
-    if (which & diffuse_reflection) sum += reflectance_;
-    if (which & diffuse_transmission) sum += transmittance_;
+    if (lobes & diffuse_reflection) sum += reflectance_;
+    if (lobes & diffuse_transmission) sum += transmittance_;
     return sum;
   }
 
  private:
-  float reflect_probability(Lobes which) const {
-    if (!(which & diffuse_transmission)) return 1;
-    return which & diffuse_reflection ? reflect_probability_ : 0;
+  float reflect_probability(Lobes lobes) const {
+    if (!(lobes & diffuse_transmission)) return 1;
+    return lobes & diffuse_reflection ? reflect_probability_ : 0;
   }
 
   Spectrum reflectance_, transmittance_;

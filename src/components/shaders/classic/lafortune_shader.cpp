@@ -75,13 +75,13 @@ class LafortuneScatter final : public JointScatter<LafortuneScatter> {
                    Spectrum diffuse, const Colors& colors)
       : JointScatter(p, frame, lobes), list_(list.data()), count_(list.size()), diffuse_(diffuse), colors_(colors) {}
 
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
     if (!(out.z * in.z > 0)) return {};
-    return value_and_pdf_of(above(out), above(in), shares(above(out), which), which);
+    return value_and_pdf_of(above(out), above(in), shares(above(out), lobes), lobes);
   }
-  bool local_sample(const Vector3& out_, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out_, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
     const Vector3 out = above(out_);
-    const Shares share = shares(out, which);
+    const Shares share = shares(out, lobes);
     size_t chosen = 0;
     while (chosen < count_ && choice >= share[chosen]) choice -= share[chosen++];
     if (chosen < count_) {
@@ -96,21 +96,21 @@ class LafortuneScatter final : public JointScatter<LafortuneScatter> {
       s.in = Frame(Normal3(m / std::sqrt(m2))).to_world({r * cosine, r * sine, 1 - t});
       s.lobe = glossy_reflection;
     } else {
-      if (!(which & diffuse_reflection)) return false;  // all shares are 0
+      if (!(lobes & diffuse_reflection)) return false;  // all shares are 0
       s.in = warp::cosine_hemisphere(u);
       s.lobe = diffuse_reflection;
     }
     if (!(s.in.z > 0)) return false;
-    const ScatterValue both = value_and_pdf_of(out, s.in, share, which);
+    const ScatterValue both = value_and_pdf_of(out, s.in, share, lobes);
     s.value = both.value * s.in.z;
     s.pdf = both.pdf;
     if (out_.z < 0) s.in.z = -s.in.z;
     return s.pdf > 0;
   }
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     Spectrum sum;
-    if (which & diffuse_reflection) sum += diffuse_;
-    if (which & glossy_reflection)
+    if (lobes & diffuse_reflection) sum += diffuse_;
+    if (lobes & glossy_reflection)
       for (size_t i = 0; i < count_; ++i) sum += colors_[i] * list_[i].albedo(above(out));
     return sum;
   }
@@ -118,22 +118,22 @@ class LafortuneScatter final : public JointScatter<LafortuneScatter> {
  private:
   /// Probabilities of choosing each lobe, then the diffuse part.
   using Shares = std::array<float, most_lobes + 1>;
-  Shares shares(const Vector3& out, Lobes which) const {
+  Shares shares(const Vector3& out, Lobes lobes) const {
     Shares share{};
-    float sum = share[count_] = which & diffuse_reflection ? diffuse_.average() : 0;
-    if (which & glossy_reflection)
+    float sum = share[count_] = lobes & diffuse_reflection ? diffuse_.average() : 0;
+    if (lobes & glossy_reflection)
       for (size_t i = 0; i < count_; ++i) sum += share[i] = colors_[i].average() * list_[i].albedo(out);
     if (sum > 0)
       for (size_t i = 0; i <= count_; ++i) share[i] /= sum;
     return share;
   }
-  ScatterValue value_and_pdf_of(const Vector3& out, const Vector3& in, const Shares& share, Lobes which) const {
+  ScatterValue value_and_pdf_of(const Vector3& out, const Vector3& in, const Shares& share, Lobes lobes) const {
     ScatterValue r;
-    if (which & diffuse_reflection) {
+    if (lobes & diffuse_reflection) {
       r.value = diffuse_ * inverse_pi;
       r.pdf = share[count_] * in.z * inverse_pi;
     }
-    if (which & glossy_reflection)
+    if (lobes & glossy_reflection)
       for (size_t i = 0; i < count_; ++i) {
         const CosineLobe& lobe = list_[i];
         const Vector3 m = lobe.turned(out);

@@ -11,22 +11,22 @@ namespace {
 // so f cos / pdf = rho for every sample.
 class LambertianScatter final : public ScatterModel<LambertianScatter> {
  public:
-  LambertianScatter(const SurfacePoint& p, Spectrum reflectance)
-      : ScatterModel(p, diffuse_reflection), reflectance_(reflectance) {
-    has_choice_ = false;
-  }
+  static constexpr bool uses_choice = false;
 
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+  LambertianScatter(const SurfacePoint& p, Spectrum reflectance)
+      : ScatterModel(p, diffuse_reflection), reflectance_(reflectance) {}
+
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? reflectance_ * inverse_pi : Spectrum();
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
   }
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     if (!(out.z * in.z > 0)) return {};
     return {reflectance_ * inverse_pi, std::abs(in.z) * inverse_pi};
   }
-  bool local_sample(const Vector3& out, float, Point2 u, Lobes, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes, LocalSample& s) const {
     s.in = warp::cosine_hemisphere(u);
     s.pdf = s.in.z * inverse_pi;
     s.value = reflectance_ * s.pdf;
@@ -34,9 +34,7 @@ class LambertianScatter final : public ScatterModel<LambertianScatter> {
     if (out.z < 0) s.in.z = -s.in.z;
     return s.pdf > 0;
   }
-  Spectrum local_albedo(const Vector3&, Lobes which) const override {
-    return (which & diffuse_reflection) ? reflectance_ : Spectrum();
-  }
+  Spectrum local_albedo(const Vector3&, Lobes lobes) const { return (lobes & diffuse_reflection) ? reflectance_ : Spectrum(); }
 
  private:
   Spectrum reflectance_;

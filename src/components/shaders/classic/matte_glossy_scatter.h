@@ -16,51 +16,48 @@ namespace etendue {
 template <class Model>
 class MatteGlossyScatter : public JointScatter<Model> {
  public:
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
     if (!(out.z * in.z > 0)) return {};
     return combine(
-        in, glossy_probability(out, which), which, [&] { return model().matte(out, in); },
-        [&] { return model().glossy(out, in); });
+        in, glossy_probability(out, lobes), lobes, [&] { return this->model().matte(out, in); },
+        [&] { return this->model().glossy(out, in); });
   }
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     Spectrum sum;
-    if (which & diffuse_reflection) sum += model().matte_albedo(out);
-    if (which & glossy_reflection) sum += model().glossy_albedo(out);
+    if (lobes & diffuse_reflection) sum += this->model().matte_albedo(out);
+    if (lobes & glossy_reflection) sum += this->model().glossy_albedo(out);
     return sum;
   }
 
  protected:
   using JointScatter<Model>::JointScatter;
 
-  float glossy_probability(const Vector3& out, Lobes which) const {
-    if (!(which & glossy_reflection)) return 0;
-    if (!(which & diffuse_reflection)) return 1;
-    const float glossy = model().glossy_weight(out);
-    return glossy / (glossy + model().matte_weight(out));
+  float glossy_probability(const Vector3& out, Lobes lobes) const {
+    if (!(lobes & glossy_reflection)) return 0;
+    if (!(lobes & diffuse_reflection)) return 1;
+    const float glossy = this->model().glossy_weight(out);
+    return glossy / (glossy + this->model().matte_weight(out));
   }
   /// Value and pdf of base and lobe together, where the lobe is chosen with probability `probability`.
   template <class Matte, class Glossy>
-  static ScatterValue combine(const Vector3& in, float probability, Lobes which, const Matte& matte, const Glossy& glossy) {
+  static ScatterValue combine(const Vector3& in, float probability, Lobes lobes, const Matte& matte, const Glossy& glossy) {
     ScatterValue r;
-    if (which & diffuse_reflection) {
+    if (lobes & diffuse_reflection) {
       r.value = matte();
       r.pdf = (1 - probability) * std::abs(in.z) * inverse_pi;
     }
-    if (which & glossy_reflection) {
+    if (lobes & glossy_reflection) {
       const ScatterValue lobe = glossy();
       r.value += lobe.value;
       r.pdf += probability * lobe.pdf;
     }
     return r;
   }
-  static bool complete(Scatter::LocalSample& s, const ScatterValue& both) {
+  static bool complete(LocalSample& s, const ScatterValue& both) {
     s.value = both.value * std::abs(s.in.z);
     s.pdf = both.pdf;
     return s.pdf > 0;
   }
-
- private:
-  const Model& model() const { return static_cast<const Model&>(*this); }
 };
 
 /// A MatteGlossyScatter whose lobe is sampled by the half-vector: the model also defines sample_half(u), a half-vector with z >
@@ -68,9 +65,9 @@ class MatteGlossyScatter : public JointScatter<Model> {
 template <class Model>
 class HalfVectorScatter : public MatteGlossyScatter<Model> {
  public:
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, Scatter::LocalSample& s) const override {
-    const auto& model = static_cast<const Model&>(*this);
-    const float probability = this->glossy_probability(out, which);
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
+    const Model& model = this->model();
+    const float probability = this->glossy_probability(out, lobes);
     if (choice < probability) {
       s.in = mirrored_at(model.sample_half(u), above(out));
       s.lobe = glossy_reflection;
@@ -82,7 +79,7 @@ class HalfVectorScatter : public MatteGlossyScatter<Model> {
     if (out.z < 0) s.in.z = -s.in.z;
     return this->complete(
         s, this->combine(
-               s.in, probability, which, [&] { return model.matte(out, s.in); }, [&] { return model.glossy(out, s.in); }));
+               s.in, probability, lobes, [&] { return model.matte(out, s.in); }, [&] { return model.glossy(out, s.in); }));
   }
 
  protected:

@@ -52,13 +52,11 @@ class OrenNayarScatter final : public ScatterModel<OrenNayarScatter> {
         roughness_(roughness),
         uniform_(std::pow(roughness, 0.1f)) {}
 
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? lobe_.value(out, in) : Spectrum();
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
-    return out.z * in.z > 0 ? pdf_of(out, in) : 0;
-  }
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes, LocalSample& s) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const { return out.z * in.z > 0 ? pdf_of(out, in) : 0; }
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes, LocalSample& s) const {
     const float mu = std::abs(out.z);
     if (choice < uniform_share(mu)) {
       s.in = warp::hemisphere(u);
@@ -73,8 +71,8 @@ class OrenNayarScatter final : public ScatterModel<OrenNayarScatter> {
     s.lobe = diffuse_reflection;
     return true;
   }
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    return which & diffuse_reflection ? lobe_.albedo(out) : Spectrum();
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
+    return lobes & diffuse_reflection ? lobe_.albedo(out) : Spectrum();
   }
 
  private:

@@ -7,15 +7,15 @@ namespace {
 
 class PassThroughScatter final : public ScatterModel<PassThroughScatter> {
  public:
+  static constexpr bool uses_choice = false;
+
   // With the frame of the geometric normal: null scattering does not depend on shading normals, and no light may be lost where
   // these disagree with the surface.
-  explicit PassThroughScatter(const SurfacePoint& p) : ScatterModel(p, Frame(p.normal), null_scattering) {
-    has_choice_ = false;
-  }
+  explicit PassThroughScatter(const SurfacePoint& p) : ScatterModel(p, Frame(p.normal), null_scattering) {}
 
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
-  bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return {}; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const { return 0; }
+  bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const {
     s.in = -out;
     s.value = Spectrum(1.0f);
     s.pdf = 1;
@@ -23,9 +23,7 @@ class PassThroughScatter final : public ScatterModel<PassThroughScatter> {
     s.eta = 1;
     return true;
   }
-  Spectrum local_albedo(const Vector3&, Lobes which) const override {
-    return (which & null_scattering) ? Spectrum(1.0f) : Spectrum();
-  }
+  Spectrum local_albedo(const Vector3&, Lobes lobes) const { return (lobes & null_scattering) ? Spectrum(1.0f) : Spectrum(); }
 };
 
 class PassThrough final : public Shader {

@@ -29,8 +29,8 @@ class PhongScatter final : public MatteGlossyScatter<PhongScatter> {
         diffuse_weight_(diffuse.average()),
         specular_weight_(specular.average()) {}
 
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
-    const float probability = glossy_probability(out, which);
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
+    const float probability = glossy_probability(out, lobes);
     const Vector3 r = mirror(out);
     float power = 0;
     if (choice < probability) {
@@ -49,7 +49,7 @@ class PhongScatter final : public MatteGlossyScatter<PhongScatter> {
       if (s.in.z == 0) return false;
       power = lobe_power(length_squared(s.in - r));
     }
-    return complete(s, combine(s.in, probability, which, [&] { return matte(out, s.in); }, [&] { return lobe(power); }));
+    return complete(s, combine(s.in, probability, lobes, [&] { return matte(out, s.in); }, [&] { return lobe(power); }));
   }
 
  private:

@@ -75,11 +75,11 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
     return Lobes((l.d > 0 ? diffuse_reflection : 0) | (l.g > 0 ? glossy_reflection : 0) | (l.s > 0 ? specular_reflection : 0));
   }
 
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return out.z * in.z > 0 ? value_and_pdf_of(out, in, shares(out, which), which) : ScatterValue();
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
+    return out.z * in.z > 0 ? value_and_pdf_of(out, in, shares(out, lobes), lobes) : ScatterValue();
   }
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
-    const Shares share = shares(out, which);
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
+    const Shares share = shares(out, lobes);
     if (choice < share.specular) {
       s.in = {-out.x, -out.y, out.z};
       s.value = mirrored(std::abs(out.z));
@@ -98,17 +98,17 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
     }
     if (!(s.in.z > 0)) return false;
     if (out.z < 0) s.in.z = -s.in.z;
-    const ScatterValue both = value_and_pdf_of(out, s.in, share, which);
+    const ScatterValue both = value_and_pdf_of(out, s.in, share, lobes);
     s.value = both.value * std::abs(s.in.z);
     s.pdf = both.pdf;
     return s.pdf > 0;
   }
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     Spectrum sum;
     const float v = std::abs(out.z);
-    if (which & diffuse_reflection) sum += diffuse_albedo(v);
-    if (which & glossy_reflection) sum += glossy_albedo(top_, out) + through(v) * glossy_albedo(base_, out);
-    if (which & specular_reflection) sum += mirrored(v);
+    if (lobes & diffuse_reflection) sum += diffuse_albedo(v);
+    if (lobes & glossy_reflection) sum += glossy_albedo(top_, out) + through(v) * glossy_albedo(base_, out);
+    if (lobes & specular_reflection) sum += mirrored(v);
     return sum;
   }
 
@@ -116,16 +116,16 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
   struct Shares {
     float specular, glossy[2], diffuse;
   };
-  Shares shares(const Vector3& out, Lobes which) const {
+  Shares shares(const Vector3& out, Lobes lobes) const {
     Shares r{};
     const float v = std::abs(out.z);
-    if (which & specular_reflection) r.specular = mirrored(v).average();
-    if (which & glossy_reflection) {
+    if (lobes & specular_reflection) r.specular = mirrored(v).average();
+    if (lobes & glossy_reflection) {
       r.glossy[0] = std::max(glossy_albedo(top_, out).average(), 1e-4f * top_.g);
       // The floor keeps the probability from vanishing at grazing angles, where the transmittance is small.
       if (base_.g > 0) r.glossy[1] = (max(through(v), 0.05f) * glossy_albedo(base_, out)).average();
     }
-    if (which & diffuse_reflection) r.diffuse = std::max(diffuse_albedo(v).average(), 1e-4f);
+    if (lobes & diffuse_reflection) r.diffuse = std::max(diffuse_albedo(v).average(), 1e-4f);
     const float scale = 1 / std::max(r.specular + r.glossy[0] + r.glossy[1] + r.diffuse, 1e-30f);
     return {r.specular * scale, {r.glossy[0] * scale, r.glossy[1] * scale}, r.diffuse * scale};
   }
@@ -153,17 +153,17 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
     return top_.fresnel(growth) * top_.d + (Spectrum(1.0f) - top_.c) * base_.fresnel(growth) * (passed * base_.d);
   }
 
-  ScatterValue value_and_pdf_of(const Vector3& out, const Vector3& in, const Shares& share, Lobes which) const {
+  ScatterValue value_and_pdf_of(const Vector3& out, const Vector3& in, const Shares& share, Lobes lobes) const {
     const HalfVector half = half_vector(out, in);
     const float v_out = std::abs(out.z), v_in = std::abs(in.z), growth = schlick_growth(half.u);
     float top = 0, base = 0;
     ScatterValue r;
-    if (which & diffuse_reflection) {
+    if (lobes & diffuse_reflection) {
       top += top_.d * inverse_pi;
       base += base_.d * inverse_pi;
       r.pdf += share.diffuse * v_in * inverse_pi;
     }
-    if (which & glossy_reflection) {
+    if (lobes & glossy_reflection) {
       if (top_.g > 0) {
         top += top_.g * top_.lobe.value(v_out, v_in, half);
         r.pdf += share.glossy[0] * top_.lobe.pdf(half) / (4 * half.u);

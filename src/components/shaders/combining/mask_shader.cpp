@@ -12,46 +12,45 @@ namespace {
 // Sampling chooses between null scattering and the shader below, in proportion to 1 - a and a times the albedo below. Null
 // scattering by the shader below belongs to the second. If only null scattering is requested nothing is chosen: the weight is
 // the whole fraction, 1 - a + a t with t that of the shader below, on which shadow rays rely.
-class MaskScatter final : public ScatterCombination {
+class MaskScatter final : public Scatter {
  public:
   MaskScatter(const SurfacePoint& p, const Scatter* below, float opacity)
-      : ScatterCombination(p, Lobes((below ? below->lobes() : no_lobes) | null_scattering)), below_(below), opacity_(opacity) {
+      : Scatter(p, Lobes((below ? below->lobes() : no_lobes) | null_scattering)), below_(below), opacity_(opacity) {
     if (below) frame_ = below->frame();
   }
 
-  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
-    if (!below_ || !below_->has(which & smooth_lobes)) return {};
-    const ScatterValue v = below_->value_and_pdf(out, in, transport, which);
-    return {v.value * opacity_, v.pdf * (1 - straight_probability(out, which))};
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext context) const override {
+    if (!below_ || !below_->has(context.lobes & smooth_lobes)) return {};
+    const ScatterValue v = below_->value_and_pdf(out, in, context);
+    return {v.value * opacity_, v.pdf * (1 - straight_probability(out, context.lobes))};
   }
 
-  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                            Lobes which) const override {
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, ScatterContext context) const override {
     const float open = 1 - opacity_;
-    if (which == null_scattering)
-      return straight_on(out, Spectrum(open) + opacity_ * straight_fraction(below_, out, transport), 1);
-    const float straight = straight_probability(out, which);
+    if (context.lobes == null_scattering)
+      return straight_on(out, Spectrum(open) + opacity_ * straight_fraction(below_, out, context.transport), 1);
+    const float straight = straight_probability(out, context.lobes);
     if (choice < straight) return straight_on(out, Spectrum(open / straight), straight);
     if (!below_) return std::nullopt;
-    std::optional<ScatterSample> s = below_->sample(out, left_of_choice(choice, straight), u, transport, which);
+    std::optional<ScatterSample> s = below_->sample(out, left_of_choice(choice, straight), u, context);
     if (!s) return s;
     s->weight *= opacity_ / (1 - straight);
     s->pdf *= 1 - straight;
     return s;
   }
 
-  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum world_albedo(const Vector3& out, Lobes lobes) const override {
     Spectrum sum;
-    if (below_) sum = below_->albedo(out, which) * opacity_;
-    if (which & null_scattering) sum += Spectrum(1 - opacity_);
+    if (below_) sum = below_->albedo(out, lobes) * opacity_;
+    if (lobes & null_scattering) sum += Spectrum(1 - opacity_);
     return sum;
   }
 
  private:
-  float straight_probability(const Vector3& out, Lobes which) const {
-    if (!(which & null_scattering)) return 0;
+  float straight_probability(const Vector3& out, Lobes lobes) const {
+    if (!(lobes & null_scattering)) return 0;
     const float open = 1 - opacity_;
-    return open / (open + promise(below_, opacity_, out, which));
+    return open / (open + promise(below_, opacity_, out, lobes));
   }
 
   const Scatter* below_;  // null: black

@@ -9,7 +9,7 @@ namespace {
 // f = (1 - a) f1 + a f2. The mixture is evaluated: `bind` does not choose one of the two at random.
 //
 // Shading normals. The parts may have different ones (a bumped part). Each part's public calls return f |cos| by its own
-// normal, and these values are summed. The adjoint stays right, as it is linear in them (scatter_answers.h).
+// normal, and these values are summed. The adjoint stays right, as it is linear in them (scatter_corrections.h).
 //
 // Sampling. A part is chosen with probability P_k, in proportion to its share times its albedo, and samples a direction. Either
 // part could have sampled it, so the pdf is P_1 p_1 + P_2 p_2 and the weight
@@ -18,10 +18,10 @@ namespace {
 // its p_k is not the true pdf of its samples, and dividing by it would be wrong: a sample then counts for its own part alone,
 // with weight share * weight / P_k. The pdf returned is the same sum nevertheless: MIS weights only need the same function in
 // all places.
-class MixScatter final : public ScatterCombination {
+class MixScatter final : public Scatter {
  public:
   MixScatter(const SurfacePoint& p, const Scatter* first, const Scatter* second, float amount, bool stochastic)
-      : ScatterCombination(p, Lobes((first ? first->lobes() : no_lobes) | (second ? second->lobes() : no_lobes))),
+      : Scatter(p, Lobes((first ? first->lobes() : no_lobes) | (second ? second->lobes() : no_lobes))),
         parts_{first, second},
         shares_{1 - amount, amount},
         stochastic_(stochastic) {
@@ -29,39 +29,38 @@ class MixScatter final : public ScatterCombination {
     frame_ = first && (!second || !(first->frame().n == p.shading_normal)) ? first->frame() : second->frame();
   }
 
-  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
-    const float probability[2] = {first_probability(out, which), 1 - first_probability(out, which)};
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext context) const override {
+    const float probability[2] = {first_probability(out, context.lobes), 1 - first_probability(out, context.lobes)};
     ScatterValue sum;
     for (int k = 0; k < 2; ++k) {
-      if (!parts_[k] || !parts_[k]->has(which)) continue;
-      const ScatterValue v = parts_[k]->value_and_pdf(out, in, transport, which);
+      if (!parts_[k] || !parts_[k]->has(context.lobes)) continue;
+      const ScatterValue v = parts_[k]->value_and_pdf(out, in, context);
       sum.value += v.value * shares_[k];
       sum.pdf += probability[k] * v.pdf;
     }
     return sum;
   }
 
-  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                            Lobes which) const override {
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, ScatterContext context) const override {
     // Null scattering of both parts has the same direction: the sum is returned, without choosing.
-    if (which == null_scattering)
-      return straight_on(
-          out,
-          shares_[0] * straight_fraction(parts_[0], out, transport) + shares_[1] * straight_fraction(parts_[1], out, transport),
-          1);
-    const float first = first_probability(out, which);
+    if (context.lobes == null_scattering)
+      return straight_on(out,
+                         shares_[0] * straight_fraction(parts_[0], out, context.transport) +
+                             shares_[1] * straight_fraction(parts_[1], out, context.transport),
+                         1);
+    const float first = first_probability(out, context.lobes);
     const int k = choice < first ? 0 : 1;
     if (!parts_[k]) return std::nullopt;
-    std::optional<ScatterSample> s = parts_[k]->sample(out, left_of_choice(choice, first), u, transport, which);
+    std::optional<ScatterSample> s = parts_[k]->sample(out, left_of_choice(choice, first), u, context);
     if (!s) return s;
     const float probability = k == 0 ? first : 1 - first;
     const Scatter* other = parts_[1 - k];
-    if (s->specular() || !other || !other->has(which)) {
+    if (s->specular() || !other || !other->has(context.lobes)) {
       s->weight *= shares_[k] / probability;
       s->pdf *= probability;
       return s;
     }
-    const ScatterValue v = other->value_and_pdf(out, s->direction, transport, which);
+    const ScatterValue v = other->value_and_pdf(out, s->direction, context);
     const float pdf = probability * s->pdf + (1 - probability) * v.pdf;
     if (stochastic_)
       s->weight *= shares_[k] / probability;
@@ -71,16 +70,16 @@ class MixScatter final : public ScatterCombination {
     return s;
   }
 
-  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum world_albedo(const Vector3& out, Lobes lobes) const override {
     Spectrum sum;
     for (int k = 0; k < 2; ++k)
-      if (parts_[k]) sum += parts_[k]->albedo(out, which) * shares_[k];
+      if (parts_[k]) sum += parts_[k]->albedo(out, lobes) * shares_[k];
     return sum;
   }
 
  private:
-  float first_probability(const Vector3& out, Lobes which) const {
-    const float first = promise(parts_[0], shares_[0], out, which), second = promise(parts_[1], shares_[1], out, which);
+  float first_probability(const Vector3& out, Lobes lobes) const {
+    const float first = promise(parts_[0], shares_[0], out, lobes), second = promise(parts_[1], shares_[1], out, lobes);
     return first + second > 0 ? first / (first + second) : 0;
   }
 

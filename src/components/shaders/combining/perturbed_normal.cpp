@@ -18,12 +18,12 @@ namespace {
 // direction, the pdf is the mean of both, and the value is that of the facet visible from `in`. Values for importance are thus
 // the adjoint of those for radiance. Where values cannot be evaluated (delta lobes, null scattering, and shaders that are
 // `stochastic`), samples of the facet that is not visible have weight 0, and those of the visible one twice their weight.
-class TiltedScatter final : public ScatterCombination {
+class TiltedScatter final : public Scatter {
  public:
   /// `opposite` null: the perturbed normal is used from all directions.
   TiltedScatter(const SurfacePoint& p, const Normal3& tilted, const Scatter* own, const Scatter* opposite, float alpha2,
                 bool stochastic)
-      : ScatterCombination(p, Lobes(own->lobes() | (opposite ? opposite->lobes() : no_lobes))),
+      : Scatter(p, Lobes(own->lobes() | (opposite ? opposite->lobes() : no_lobes))),
         own_(own),
         opposite_(opposite),
         untilted_(p.shading_normal),
@@ -33,41 +33,40 @@ class TiltedScatter final : public ScatterCombination {
     frame_ = own->frame();
   }
 
-  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
-    const bool radiance = transport == Transport::radiance;
-    ScatterValue v = seen_from(radiance ? out : in).value_and_pdf(out, in, transport, which);
-    if (!radiance && opposite_) v.pdf = (own_->pdf(out, in, transport, which) + opposite_->pdf(out, in, transport, which)) / 2;
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext context) const override {
+    const bool radiance = context.transport == Transport::radiance;
+    ScatterValue v = seen_from(radiance ? out : in).value_and_pdf(out, in, context);
+    if (!radiance && opposite_) v.pdf = (own_->pdf(out, in, context) + opposite_->pdf(out, in, context)) / 2;
     v.value *= let_through(radiance ? in : out);
     return v;
   }
 
-  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                            Lobes which) const override {
-    const bool radiance = transport == Transport::radiance;
-    if (radiance || !opposite_ || which == null_scattering) {
-      const Scatter& part = radiance || which == null_scattering ? seen_from(out) : *own_;
-      std::optional<ScatterSample> s = part.sample(out, choice, u, transport, which);
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, ScatterContext context) const override {
+    const bool radiance = context.transport == Transport::radiance;
+    if (radiance || !opposite_ || context.lobes == null_scattering) {
+      const Scatter& part = radiance || context.lobes == null_scattering ? seen_from(out) : *own_;
+      std::optional<ScatterSample> s = part.sample(out, choice, u, context);
       if (s && s->lobe != null_scattering) s->weight *= let_through(radiance ? s->direction : out);
       return s;
     }
     const Scatter& part = choice < 0.5f ? *own_ : *opposite_;
-    std::optional<ScatterSample> s = part.sample(out, left_of_choice(choice, 0.5f), u, transport, which);
+    std::optional<ScatterSample> s = part.sample(out, left_of_choice(choice, 0.5f), u, context);
     if (!s) return s;
     const bool discrete = s->specular() || s->lobe == null_scattering;
     if (discrete || stochastic_) {
       if (&seen_from(s->direction) != &part) return std::nullopt;
       s->weight *= s->lobe == null_scattering ? 2 : 2 * let_through(out);
-      s->pdf = discrete ? s->pdf / 2 : world_value_and_pdf(out, s->direction, transport, which).pdf;
+      s->pdf = discrete ? s->pdf / 2 : world_value_and_pdf(out, s->direction, context).pdf;
       return s;
     }
-    const ScatterValue v = world_value_and_pdf(out, s->direction, transport, which);
+    const ScatterValue v = world_value_and_pdf(out, s->direction, context);
     if (!(v.pdf > 0)) return std::nullopt;
     s->weight = v.value / v.pdf;
     s->pdf = v.pdf;
     return s;
   }
 
-  Spectrum world_albedo(const Vector3& out, Lobes which) const override { return seen_from(out).albedo(out, which); }
+  Spectrum world_albedo(const Vector3& out, Lobes lobes) const override { return seen_from(out).albedo(out, lobes); }
 
  private:
   const Scatter& seen_from(const Vector3& v) const {

@@ -9,10 +9,10 @@ namespace {
 // Neither part transmits light, so a pair of directions lies on one side, and f is that of this side's part: nothing is chosen
 // at random, and pdfs and adjoints are those of the part. Sides are those of the geometric normal, whatever shading normals the
 // parts have.
-class TwoSidedScatter final : public ScatterCombination {
+class TwoSidedScatter final : public Scatter {
  public:
   TwoSidedScatter(const SurfacePoint& p, const Scatter* front, const Scatter* back)
-      : ScatterCombination(p, Lobes((front ? front->lobes() : no_lobes) | (back ? back->lobes() : no_lobes))),
+      : Scatter(p, Lobes((front ? front->lobes() : no_lobes) | (back ? back->lobes() : no_lobes))),
         towards_front_(p.normal),
         front_(front),
         back_(back) {
@@ -20,20 +20,19 @@ class TwoSidedScatter final : public ScatterCombination {
     frame_ = front && (!back || !(front->frame().n == p.shading_normal)) ? front->frame() : back->frame();
   }
 
-  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext context) const override {
     const Scatter* const part = seen_from(out);
-    return part ? part->value_and_pdf(out, in, transport, which) : ScatterValue{};
+    return part ? part->value_and_pdf(out, in, context) : ScatterValue{};
   }
 
-  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                            Lobes which) const override {
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, ScatterContext context) const override {
     const Scatter* const part = seen_from(out);
-    return part ? part->sample(out, choice, u, transport, which) : std::nullopt;
+    return part ? part->sample(out, choice, u, context) : std::nullopt;
   }
 
-  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum world_albedo(const Vector3& out, Lobes lobes) const override {
     const Scatter* const part = seen_from(out);
-    return part ? part->albedo(out, which) : Spectrum();
+    return part ? part->albedo(out, lobes) : Spectrum();
   }
 
  private:

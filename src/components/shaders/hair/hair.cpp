@@ -38,18 +38,18 @@ class HairScatter final : public JointScatter<HairScatter> {
         fibre_(fibre),
         round_(round),
         across_(std::isfinite(p.uv.y) ? clamp(-1 + 2 * p.uv.y, -1, 1) : 0),
-        absorption_(absorption) {
-    reciprocal_ = false;
-  }
+        absorption_(absorption) {}
 
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  static constexpr bool reciprocal() { return false; }
+
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     if (in.z == 0) return {};
     ScatterValue r = along_and_around(Angles(out), section(out), in);
     r.value /= std::abs(in.z);
     return r;
   }
 
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
     const Angles from(out);
     const HairFibre::Section across = section(out);
     const auto probability = probabilities(across);
@@ -61,7 +61,7 @@ class HairScatter final : public JointScatter<HairScatter> {
     const float phi = from.phi + fibre_.sample_azimuthal(int(p), across, choice);
     s.in = {sine, cosine * std::cos(phi), cosine * std::sin(phi)};
     s.lobe = s.in.z * out.z > 0 ? glossy_reflection : glossy_transmission;
-    if (!(which & s.lobe) || s.in.z == 0) return false;
+    if (!(lobes & s.lobe) || s.in.z == 0) return false;
     const ScatterValue r = along_and_around(from, across, s.in);
     s.value = r.value;
     s.pdf = r.pdf;
@@ -69,13 +69,13 @@ class HairScatter final : public JointScatter<HairScatter> {
   }
 
   // Exact: the side on which light leaves depends on phi alone.
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     const HairFibre::Section across = section(out);
     const float front_begins = out.z > 0 ? 0 : -pi;
     Spectrum sum;
     for (int p = 0; p < HairFibre::lobes; ++p) {
       const float reflected = fibre_.azimuthal_share(p, across, front_begins - Angles(out).phi);
-      const float asked = ((which & glossy_reflection) ? reflected : 0) + ((which & glossy_transmission) ? 1 - reflected : 0);
+      const float asked = ((lobes & glossy_reflection) ? reflected : 0) + ((lobes & glossy_transmission) ? 1 - reflected : 0);
       sum += across.attenuation[size_t(p)] * asked;
     }
     return sum;
@@ -128,42 +128,39 @@ class HairScatter final : public JointScatter<HairScatter> {
 // not block light: light that arrives from outside, and a camera path that arrives from inside, passes the wall by null
 // scattering of weight 1. Nothing is scattered towards a viewer inside. Light that arrives from outside is thus both scattered
 // and passed on in full, so the sum of the two is not a fraction.
-class WallScatter final : public ScatterCombination {
+class WallScatter final : public Scatter {
  public:
   static constexpr Lobes all = HairScatter::all | null_scattering;
 
-  WallScatter(const SurfacePoint& p, const HairScatter& fibre) : ScatterCombination(p, all), fibre_(fibre) {
-    frame_ = fibre.frame();
+  WallScatter(const SurfacePoint& p, const HairScatter& fibre) : Scatter(p, all), fibre_(fibre) { frame_ = fibre.frame(); }
+
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext context) const override {
+    if (!outside(context.transport == Transport::radiance ? out : in)) return {};
+    const ScatterValue v = fibre_.value_and_pdf(out, in, context);
+    return {v.value, v.pdf * (1 - straight_probability(out, context))};
   }
 
-  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
-    if (!outside(transport == Transport::radiance ? out : in)) return {};
-    const ScatterValue v = fibre_.value_and_pdf(out, in, transport, which);
-    return {v.value, v.pdf * (1 - straight_probability(out, transport, which))};
-  }
-
-  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                            Lobes which) const override {
-    const float straight = straight_probability(out, transport, which);
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, ScatterContext context) const override {
+    const float straight = straight_probability(out, context);
     if (choice < straight) return straight_on(out, Spectrum(1 / straight), straight);
-    if (transport == Transport::radiance && !outside(out)) return std::nullopt;
-    std::optional<ScatterSample> s = fibre_.sample(out, left_of_choice(choice, straight), u, transport, which);
-    if (!s || (transport == Transport::importance && !outside(s->direction))) return std::nullopt;
+    if (context.transport == Transport::radiance && !outside(out)) return std::nullopt;
+    std::optional<ScatterSample> s = fibre_.sample(out, left_of_choice(choice, straight), u, context);
+    if (!s || (context.transport == Transport::importance && !outside(s->direction))) return std::nullopt;
     s->weight /= 1 - straight;
     s->pdf *= 1 - straight;
     return s;
   }
 
-  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
-    if (outside(out)) return fibre_.albedo(out, which);
-    return which & null_scattering ? Spectrum(1.0f) : Spectrum();
+  Spectrum world_albedo(const Vector3& out, Lobes lobes) const override {
+    if (outside(out)) return fibre_.albedo(out, lobes);
+    return lobes & null_scattering ? Spectrum(1.0f) : Spectrum();
   }
 
  private:
   bool outside(const Vector3& v) const { return dot(normal_, v) > 0; }
-  float straight_probability(const Vector3& out, Transport transport, Lobes which) const {
-    if (!(which & null_scattering) || outside(out) == (transport == Transport::radiance)) return 0;
-    return transport == Transport::importance && which & glossy_lobes ? 0.5f : 1;
+  float straight_probability(const Vector3& out, ScatterContext context) const {
+    if (!(context.lobes & null_scattering) || outside(out) == (context.transport == Transport::radiance)) return 0;
+    return context.transport == Transport::importance && context.lobes & glossy_lobes ? 0.5f : 1;
   }
 
   const HairScatter& fibre_;

@@ -66,28 +66,28 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
     return Lobes(glossy_reflection | (parts.body > 0 ? diffuse_reflection : 0) | (parts.glass > 0 ? glossy_transmission : 0));
   }
 
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
     if (out.z == 0 || in.z == 0) return {};
-    if (turned(out)) return local_value_and_pdf(mirrored(out), mirrored(in), which);
-    const Chances chances = chances_of(out, which);
+    if (turned(out)) return local_value_and_pdf(mirrored(out), mirrored(in), lobes);
+    const Chances chances = chances_of(out, lobes);
     const bool front = out.z > 0;
     if (!front && !(d_.glass > 0)) return {};
-    if (out.z * in.z < 0) return refracted(out, in, which, chances);
+    if (out.z * in.z < 0) return refracted(out, in, lobes, chances);
     ScatterValue r;
     const Vector3 h = reflection_half_vector(out, in);
     const float u = std::abs(dot(out, h));
-    if (which & glossy_reflection) {
+    if (lobes & glossy_reflection) {
       const float f = fresnel_dielectric(u, towards(out));
       r.value += fresnel(f, u, front) * (d_.facets.D(h) * d_.facets.G2_through(out, in) / (4 * std::abs(out.z * in.z)));
-      r.pdf += chances.facets * reflect_chance(f, u, front, which) * d_.facets.visible_pdf(out, h) * reflection_jacobian(u);
+      r.pdf += chances.facets * reflect_chance(f, u, front, lobes) * d_.facets.visible_pdf(out, h) * reflection_jacobian(u);
     }
     if (!front) return r;
-    if (which & diffuse_reflection) {
+    if (lobes & diffuse_reflection) {
       r.value += d_.color * (d_.body * inverse_pi * disney::diffuse(out.z, in.z, u, d_.roughness, d_.flatness)) +
                  sheen() * schlick_growth(u);
       r.pdf += chances.diffuse * in.z * inverse_pi;
     }
-    if ((which & glossy_reflection) && d_.clearcoat > 0) {
+    if ((lobes & glossy_reflection) && d_.clearcoat > 0) {
       const MicrofacetDistribution masking(MicrofacetDistribution::ggx, 0.25f);
       r.value += Spectrum(0.25f * d_.clearcoat * disney::schlick(Spectrum(0.04f), u, d_.eta)[0] * coat_D(h) *
                           masking.G2_through(out, in));
@@ -97,14 +97,14 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
     return r;
   }
 
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
     if (turned(out)) {
-      const bool drawn = local_sample(mirrored(out), choice, u, which, s);
+      const bool drawn = local_sample(mirrored(out), choice, u, lobes, s);
       s.in = mirrored(s.in);
       return drawn;
     }
     if (out.z == 0 || (out.z < 0 && !(d_.glass > 0))) return false;
-    const Chances chances = chances_of(out, which);
+    const Chances chances = chances_of(out, lobes);
     s.lobe = glossy_reflection;
     if (choice < chances.diffuse) {
       s.in = warp::cosine_hemisphere(u);
@@ -122,7 +122,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
       const Vector3 m = d_.facets.sample_visible(out, u);
       float behind = 0;
       const float c = std::abs(dot(out, m)), f = fresnel_dielectric(c, towards(out), behind);
-      if (choice < reflect_chance(f, c, out.z > 0, which)) {
+      if (choice < reflect_chance(f, c, out.z > 0, lobes)) {
         s.in = reflect(out, m);
       } else {
         if (f >= 1) return false;
@@ -132,24 +132,22 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
       }
     }
     if ((s.in.z * out.z > 0) == (s.lobe == glossy_transmission)) return false;  // blocked by another facet
-    const ScatterValue both = local_value_and_pdf(out, s.in, which);
+    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
     s.value = both.value * std::abs(s.in.z);
     s.pdf = both.pdf;
     return s.pdf > 0;
   }
 
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    if (turned(out)) return local_albedo(mirrored(out), which);
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
+    if (turned(out)) return local_albedo(mirrored(out), lobes);
     const Shares a = shares(out, Near::middle);
     Spectrum sum;
-    if (which & diffuse_reflection) sum += a.diffuse;
-    if (which & glossy_reflection) sum += a.facets + Spectrum(a.coat);
-    if (which & glossy_transmission) sum += a.refracted;
+    if (lobes & diffuse_reflection) sum += a.diffuse;
+    if (lobes & glossy_reflection) sum += a.facets + Spectrum(a.coat);
+    if (lobes & glossy_transmission) sum += a.refracted;
     return out.z > 0 ? sum * scale_of(a) : sum;
   }
-  Spectrum relative_index(const Vector3& out, const Vector3& in) const override {
-    return Spectrum(out.z * in.z > 0 ? 1 : towards(out));
-  }
+  Spectrum relative_index(const Vector3& out, const Vector3& in) const { return Spectrum(out.z * in.z > 0 ? 1 : towards(out)); }
 
  private:
   /// What `shares` returns: upper bounds of the albedos, or the middle between the greatest and the least.
@@ -220,28 +218,28 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
     return Spectrum(x < y ? x : y);
   }
 
-  Chances chances_of(const Vector3& out, Lobes which) const {
+  Chances chances_of(const Vector3& out, Lobes lobes) const {
     const Shares a = shares(out);
     Chances c;
-    if (out.z > 0 && (which & diffuse_reflection)) c.diffuse = a.diffuse.average();
-    if (out.z > 0 && (which & glossy_reflection) && d_.clearcoat > 0) c.coat = std::max(a.coat, 0.02f * d_.clearcoat);
+    if (out.z > 0 && (lobes & diffuse_reflection)) c.diffuse = a.diffuse.average();
+    if (out.z > 0 && (lobes & glossy_reflection) && d_.clearcoat > 0) c.coat = std::max(a.coat, 0.02f * d_.clearcoat);
     c.facets =
-        ((which & glossy_reflection) ? a.facets.average() : 0) + ((which & glossy_transmission) ? a.refracted.average() : 0);
-    if (which & (glossy_reflection | glossy_transmission)) c.facets = std::max(c.facets, 0.02f);
+        ((lobes & glossy_reflection) ? a.facets.average() : 0) + ((lobes & glossy_transmission) ? a.refracted.average() : 0);
+    if (lobes & (glossy_reflection | glossy_transmission)) c.facets = std::max(c.facets, 0.02f);
     const float sum = c.diffuse + c.coat + c.facets;
     if (!(sum > 0)) return {};
     return {c.diffuse / sum, c.coat / sum, c.facets / sum};
   }
   /// The probability that a facet reflects rather than refracts.
-  float reflect_chance(float f, float u, bool front, Lobes which) const {
-    if (!(which & glossy_reflection)) return 0;
-    if (!(which & glossy_transmission) || f >= 1) return 1;
+  float reflect_chance(float f, float u, bool front, Lobes lobes) const {
+    if (!(lobes & glossy_reflection)) return 0;
+    if (!(lobes & glossy_transmission) || f >= 1) return 1;
     const float r = fresnel(f, u, front).average(), t = d_.glass * (1 - f) * root_.average();
     return r + t > 0 ? r / (r + t) : 1;
   }
 
-  ScatterValue refracted(const Vector3& out, const Vector3& in, Lobes which, const Chances& chances) const {
-    if (!(which & glossy_transmission)) return {};
+  ScatterValue refracted(const Vector3& out, const Vector3& in, Lobes lobes, const Chances& chances) const {
+    if (!(lobes & glossy_transmission)) return {};
     const float eta = towards(out);
     const Vector3 m = refraction_half_vector(out, in, eta);
     const float out_m = dot(out, m), in_m = dot(in, m);
@@ -252,7 +250,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
                        std::abs(out.z * in.z));
     r.value *= kept(out, in);
     r.pdf =
-        chances.facets * (1 - reflect_chance(f, std::abs(out_m), out.z > 0, which)) * d_.facets.visible_pdf(out, m) * jacobian;
+        chances.facets * (1 - reflect_chance(f, std::abs(out_m), out.z > 0, lobes)) * d_.facets.visible_pdf(out, m) * jacobian;
     return r;
   }
 

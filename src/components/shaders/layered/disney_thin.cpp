@@ -32,22 +32,22 @@ class SheetScatter final : public JointScatter<SheetScatter> {
                            (parts.clear < 1 && parts.through > 0 ? diffuse_transmission : 0))),
         d_(parts) {}
 
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
     if (out.z == 0 || in.z == 0) return {};
     const bool reflected = out.z * in.z > 0;
     const Vector3 v = above(out), w = above(in);
     const auto [h, u] = half_vector(v, w);
     const Lobe diffuse = reflected ? diffuse_reflection : diffuse_transmission;
     const Lobe glossy = reflected ? glossy_reflection : glossy_transmission;
-    const Shares chances = chances_of(v, which);
+    const Shares chances = chances_of(v, lobes);
     ScatterValue r;
-    if (which & diffuse) {
+    if (lobes & diffuse) {
       r.value += reflected ? d_.color * (body() * inverse_pi * disney::diffuse(v.z, w.z, u, d_.roughness, d_.flatness)) +
                                  sheen() * schlick_growth(u)
                            : d_.color * ((1 - d_.clear) * d_.through * inverse_pi);
       r.pdf += (reflected ? chances.diffuse : chances.diffuse_through)[0] * w.z * inverse_pi;
     }
-    if (which & glossy) {
+    if (lobes & glossy) {
       const MicrofacetDistribution& d = reflected ? d_.front : d_.behind;
       const float f = fresnel_dielectric(u, d_.eta);
       const Spectrum factor = reflected ? fresnel(f, u) : d_.color * (1 - f);
@@ -60,17 +60,17 @@ class SheetScatter final : public JointScatter<SheetScatter> {
     return r;
   }
 
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
     if (out.z == 0) return false;
     const Vector3 v = above(out);
-    const Shares c = chances_of(v, which);
+    const Shares c = chances_of(v, lobes);
     const float ends[] = {c.diffuse[0], c.diffuse_through[0], c.shine[0], c.shine_through[0]};
-    constexpr Lobe lobes[] = {diffuse_reflection, diffuse_transmission, glossy_reflection, glossy_transmission};
+    constexpr Lobe choices[] = {diffuse_reflection, diffuse_transmission, glossy_reflection, glossy_transmission};
     int k = 0;
     for (float rest = choice - ends[0]; rest >= 0 && k < 3; rest -= ends[k]) ++k;
     while (k > 0 && !(ends[k] > 0)) --k;  // by rounding
     if (!(ends[k] > 0)) return false;
-    s.lobe = lobes[k];
+    s.lobe = choices[k];
     if (k < 2) {
       s.in = warp::cosine_hemisphere(u);
     } else {
@@ -79,19 +79,19 @@ class SheetScatter final : public JointScatter<SheetScatter> {
     }
     if (k % 2) s.in.z = -s.in.z;
     if (out.z < 0) s.in.z = -s.in.z;
-    const ScatterValue both = local_value_and_pdf(out, s.in, which);
+    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
     s.value = both.value * std::abs(s.in.z);
     s.pdf = both.pdf;
     return s.pdf > 0;
   }
 
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     const Shares a = shares(above(out));
     Spectrum sum;
-    if (which & diffuse_reflection) sum += a.diffuse;
-    if (which & diffuse_transmission) sum += a.diffuse_through;
-    if (which & glossy_reflection) sum += a.shine;
-    if (which & glossy_transmission) sum += a.shine_through;
+    if (lobes & diffuse_reflection) sum += a.diffuse;
+    if (lobes & diffuse_transmission) sum += a.diffuse_through;
+    if (lobes & glossy_reflection) sum += a.shine;
+    if (lobes & glossy_transmission) sum += a.shine_through;
     return sum * scale_of(a);
   }
 
@@ -129,10 +129,10 @@ class SheetScatter final : public JointScatter<SheetScatter> {
     return map(a.diffuse + a.diffuse_through + a.shine + a.shine_through, [](float x) { return x > 1 ? 1 / x : 1; });
   }
   /// Probabilities of choosing the lobes, in element 0 of each spectrum.
-  Shares chances_of(const Vector3& v, Lobes which) const {
+  Shares chances_of(const Vector3& v, Lobes lobes) const {
     const Shares a = shares(v);
     const auto chance = [&](Lobe lobe, const Spectrum& share) {
-      return (which & lobe) ? std::max(share.average(), 0.01f) : 0.0f;
+      return (lobes & lobe) ? std::max(share.average(), 0.01f) : 0.0f;
     };
     const float p[] = {chance(diffuse_reflection, a.diffuse), chance(diffuse_transmission, a.diffuse_through),
                        chance(glossy_reflection, a.shine), chance(glossy_transmission, a.shine_through)};

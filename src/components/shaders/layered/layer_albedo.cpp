@@ -21,7 +21,7 @@ const LayerStack::Diffuse& LayerStack::diffuse(int which) const {
   const Scatter& s = face(which);
   const Frame frame(shading_normal_);
   const float up = which == 0 ? 1 : -1;
-  const auto through = s.sample(frame.to_world({0, 0, up}), 0.5f, {0.5f, 0.5f}, Transport::importance, transmission_lobes);
+  const auto through = s.sample(frame.to_world({0, 0, up}), 0.5f, {0.5f, 0.5f}, {Transport::importance, transmission_lobes});
   const float denser = through ? square(through->eta) : 1;
   Spectrum lost, some, some_clear;
   for (int i = 0; i < 4; ++i) {
@@ -53,7 +53,7 @@ LayerStack::Albedo LayerStack::albedo(const Vector3& out) const {
   Albedo result;
   const int near = side(out);
   const Scatter &entering = face(near), &behind = face(1 - near);
-  const auto inside = entering.sample(out, 0.5f, {0.5f, 0.5f}, Transport::importance, transmission_lobes);
+  const auto inside = entering.sample(out, 0.5f, {0.5f, 0.5f}, {Transport::importance, transmission_lobes});
   if (!inside) return result;
   const Vector3 w = inside->direction;
   const Diffuse &e = diffuse(near), &n = diffuse(1 - near);

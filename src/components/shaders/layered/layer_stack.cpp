@@ -86,7 +86,7 @@ void LayerStack::trace_back(const Vector3& in, Transport transport, HashedRandom
   const Transport back = adjoint(transport);
   int at = side(in);
   float choice = random.next();
-  std::optional<ScatterSample> s = face(at).sample(in, choice, random.next_pair(), back, reversible(at));
+  std::optional<ScatterSample> s = face(at).sample(in, choice, random.next_pair(), {back, reversible(at)});
   Spectrum carried(std::abs(dot(normal_, in)));
   float squared_index = 1;
   while (s) {
@@ -101,7 +101,7 @@ void LayerStack::trace_back(const Vector3& in, Transport transport, HashedRandom
     if (!survives(carried, squared_index, random)) return;
     const Vector3 from = -s->direction;
     choice = random.next();
-    s = face(at).sample(from, choice, random.next_pair(), back, specular_reflection);
+    s = face(at).sample(from, choice, random.next_pair(), {back, specular_reflection});
   }
 }
 
@@ -157,7 +157,7 @@ bool LayerStack::walk(const Vector3& out, const ScatterSample& entering, Transpo
     }
     if (walk.weight.black()) return false;
     const float choice = random.next();
-    const auto s = face(side(w)).sample(-w, choice, random.next_pair(), transport);
+    const auto s = face(side(w)).sample(-w, choice, random.next_pair(), {.transport = transport});
     if (!s) return false;
     walk.weight *= s->weight;
     walk.probability *= std::min(s->pdf, 1.0f);
@@ -186,9 +186,9 @@ Spectrum LayerStack::estimate(const Vector3& out, const Vector3& in, Transport t
   const bool evaluates = leaving.has(smooth_transmission);
   const auto leave = [&](const Spectrum& carried, const Vector3& w, float z, float pdf) {
     if (!evaluates || side(w) != exit) return;
-    Spectrum f = leaving.evaluate(-w, in, transport, transmission_lobes);
+    Spectrum f = leaving.evaluate(-w, in, {transport, transmission_lobes});
     if (f.black()) return;
-    const float back = pdf > 0 ? leaving.pdf(in, -w, adjoint(transport), reversible(exit)) : 0;
+    const float back = pdf > 0 ? leaving.pdf(in, -w, {adjoint(transport), reversible(exit)}) : 0;
     if (pdf > 0) f *= pdf / (pdf + back);
     sum += carried * f * transmittance(w, std::abs(float(exit) - z));
   };
@@ -202,12 +202,12 @@ Spectrum LayerStack::estimate(const Vector3& out, const Vector3& in, Transport t
     if (here.has(lobes & smooth_lobes))
       for (const Edge& edge : edges) {
         if (edge.end() != at) continue;
-        const ScatterValue v = here.value_and_pdf(from, -edge.direction, transport, lobes);
+        const ScatterValue v = here.value_and_pdf(from, -edge.direction, {transport, lobes});
         if (v.value.black()) continue;
         sum += carried * v.value * edge.carried * transmittance(edge.direction, 1) * edge.weight(v.pdf);
       }
     const float choice = random.next();
-    const auto s = here.sample(from, choice, random.next_pair(), transport, lobes);
+    const auto s = here.sample(from, choice, random.next_pair(), {transport, lobes});
     if (!s) return sum;
     carried *= s->weight;
     if (transport == Transport::radiance) squared_index *= s->eta * s->eta;
@@ -244,7 +244,7 @@ float LayerStack::pdf(const Vector3& out, const Vector3& in, Transport transport
   const bool through = side(out) != side(in);
   const float even = std::max(leaving.cosine(in), 1e-4f) * inverse_pi;
   float choice = random.next();
-  const auto from = entering.sample(out, choice, random.next_pair(), transport, transmission_lobes);
+  const auto from = entering.sample(out, choice, random.next_pair(), {transport, transmission_lobes});
   if (!from) return even;
   const auto fraction = [](const Scatter& s, const Vector3& v, Lobes part) {
     const float all = s.albedo(v).average();
@@ -254,14 +254,14 @@ float LayerStack::pdf(const Vector3& out, const Vector3& in, Transport transport
   const float share = std::max(fraction(behind, -from->direction, through ? transmission_lobes : reflection_lobes), 0.02f);
   float direct = 0;
   if (through && leaving.has(smooth_transmission)) {
-    direct = leaving.pdf(-from->direction, in, transport);
+    direct = leaving.pdf(-from->direction, in, {.transport = transport});
   } else {
     choice = random.next();
-    if (const auto to = leaving.sample(in, choice, random.next_pair(), adjoint(transport), transmission_lobes)) {
+    if (const auto to = leaving.sample(in, choice, random.next_pair(), {adjoint(transport), transmission_lobes})) {
       const float spread =
           std::abs(dot(normal_, in)) / (square(to->eta) * std::max(std::abs(dot(normal_, to->direction)), 1e-4f));
-      direct = through ? share * entering.pdf(out, -to->direction, transport, transmission_lobes)
-                       : behind.pdf(-from->direction, -to->direction, transport);
+      direct = through ? share * entering.pdf(out, -to->direction, {transport, transmission_lobes})
+                       : behind.pdf(-from->direction, -to->direction, {.transport = transport});
       direct *= spread;
     }
   }

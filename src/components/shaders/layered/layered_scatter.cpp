@@ -39,7 +39,7 @@ Lobes lobes_between(Lobes near, Lobes far, bool scatters) {
 
 LayeredScatter::LayeredScatter(const SurfacePoint& p, const LayerStack* const* front, const LayerStack* const* back, int stacks,
                                int walks, std::uint64_t seed, Lobes lobes)
-    : ScatterCombination(p, lobes), stacks_(stacks), walks_(walks), seed_(seed) {
+    : Scatter(p, lobes), stacks_(stacks), walks_(walks), seed_(seed) {
   for (int i = 0; i < stacks; ++i) {
     sides_[0][i] = front[i];
     sides_[1][i] = back[i];
@@ -48,12 +48,12 @@ LayeredScatter::LayeredScatter(const SurfacePoint& p, const LayerStack* const* f
   frame_ = top.n == p.shading_normal ? bottom : top;  // that of a layer with a perturbed shading normal, if there is one
 }
 
-LayeredScatter::Question::Question(const LayerStack& stack, const Vector3& out, Lobes which) {
+LayeredScatter::Question::Question(const LayerStack& stack, const Vector3& out, Lobes lobes) {
   const int side = stack.side(out);
   const Scatter& near = stack.face(side);
   possible = lobes_between(near.lobes(), stack.face(1 - side).lobes(), stack.medium().scatters());
-  between = possible & which;
-  face = Lobes((which & reflection_lobes) | (between ? transmission_lobes : no_lobes));
+  between = possible & lobes;
+  face = Lobes((lobes & reflection_lobes) | (between ? transmission_lobes : no_lobes));
 }
 
 HashedRandom LayeredScatter::numbers(Use use, const Vector3& out, const Vector3& other, Transport transport) const {
@@ -63,64 +63,64 @@ HashedRandom LayeredScatter::numbers(Use use, const Vector3& out, const Vector3&
   return random;
 }
 
-float LayeredScatter::pdf_between(const LayerStack& stack, Lobes asked, const Vector3& out, const Vector3& in,
-                                  Transport transport) const {
-  HashedRandom random = numbers(Use::pdf, out, in, transport);
+float LayeredScatter::pdf_between(const LayerStack& stack, const Vector3& out, const Vector3& in,
+                                  ScatterContext context) const {
+  HashedRandom random = numbers(Use::pdf, out, in, context.transport);
   const Scatter& near = stack.face(stack.side(out));
   float goes_in = 1;
-  if (near.has(asked & reflection_lobes)) {
-    const float all = near.albedo(out, asked).average();
+  if (near.has(context.lobes & reflection_lobes)) {
+    const float all = near.albedo(out, context.lobes).average();
     goes_in = std::max(all > 0 ? near.albedo(out, transmission_lobes).average() / all : 0, 0.01f);
   }
-  return goes_in * stack.pdf(out, in, transport, random);
+  return goes_in * stack.pdf(out, in, context.transport, random);
 }
 
-ScatterValue LayeredScatter::world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport,
-                                                 Lobes which) const {
+ScatterValue LayeredScatter::world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext context) const {
   const LayerStack* const* stacks = seen_from(out);
   const LayerStack& stack = *stacks[0];
   const Scatter& face = stack.face(stack.side(out));
-  const Question q(stack, out, which);
+  const Question q(stack, out, context.lobes);
   const bool same_side = stack.side(out) == stack.side(in);
   ScatterValue sum;
-  if (same_side && face.has(which & reflection_lobes & smooth_lobes)) {
-    sum.value = face.evaluate(out, in, transport, which & reflection_lobes);
-    sum.pdf = face.pdf(out, in, transport, q.face);
+  if (same_side && face.has(context.lobes & reflection_lobes & smooth_lobes)) {
+    sum.value = face.evaluate(out, in, {context.transport, Lobes(context.lobes & reflection_lobes)});
+    sum.pdf = face.pdf(out, in, {context.transport, q.face});
   }
   if (!(q.between & smooth_lobes & (same_side ? reflection_lobes : transmission_lobes))) return sum;
   Spectrum between;
   for (int i = 0; i < stacks_; ++i) {
-    HashedRandom random = numbers(Use::estimate, out, in, transport);
+    HashedRandom random = numbers(Use::estimate, out, in, context.transport);
     Spectrum estimate;
-    for (int walk = 0; walk < walks_; ++walk) estimate += stacks[i]->estimate(out, in, transport, random);
+    for (int walk = 0; walk < walks_; ++walk) estimate += stacks[i]->estimate(out, in, context.transport, random);
     if (i == 0)
       between = estimate;
     else
       between.set(i, estimate[0]);
   }
   sum.value += between / float(walks_);
-  sum.pdf += pdf_between(stack, q.face, out, in, transport);
+  sum.pdf += pdf_between(stack, out, in, {context.transport, q.face});
   if (!sum.value.finite()) sum.value = {};
   return sum;
 }
 
-std::optional<ScatterSample> LayeredScatter::world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                                          Lobes which) const {
+std::optional<ScatterSample> LayeredScatter::world_sample(const Vector3& out, float choice, Point2 u,
+                                                          ScatterContext context) const {
   const LayerStack& stack = *seen_from(out)[0];
   const int side = stack.side(out);
   const Scatter& face = stack.face(side);
-  if (which == null_scattering) {  // without a random choice, on which shadow rays rely
-    const Spectrum both = straight_fraction(&face, out, transport) * straight_fraction(&stack.face(1 - side), out, transport);
+  if (context.lobes == null_scattering) {  // without a random choice, on which shadow rays rely
+    const Spectrum both =
+        straight_fraction(&face, out, context.transport) * straight_fraction(&stack.face(1 - side), out, context.transport);
     return straight_on(out, both * stack.transmittance(out, 1), 1);
   }
-  const Question q(stack, out, which);
-  std::optional<ScatterSample> s = face.sample(out, choice, u, transport, q.face);
+  const Question q(stack, out, context.lobes);
+  std::optional<ScatterSample> s = face.sample(out, choice, u, {context.transport, q.face});
   if (!s) return s;
   const bool walked = s->transmitted();
   if (walked) {
-    HashedRandom random = numbers(Use::walk, out, {choice, u.x, u.y}, transport);
+    HashedRandom random = numbers(Use::walk, out, {choice, u.x, u.y}, context.transport);
     LayerWalk walk;
-    if (!stack.walk(out, *s, transport, random, walk) || !walk.weight.finite()) return std::nullopt;
+    if (!stack.walk(out, *s, context.transport, random, walk) || !walk.weight.finite()) return std::nullopt;
     const bool reflected = stack.side(walk.direction) == side;
     const Lobes one_side = reflected ? reflection_lobes : transmission_lobes;
     const Lobes smooth = q.possible & smooth_lobes & one_side;
@@ -132,17 +132,17 @@ std::optional<ScatterSample> LayeredScatter::world_sample(const Vector3& out, fl
   }
   if (!s->specular()) {
     const bool same_side = stack.side(s->direction) == side;
-    if (walked) s->pdf = same_side ? face.pdf(out, s->direction, transport, q.face) : 0;
+    if (walked) s->pdf = same_side ? face.pdf(out, s->direction, {context.transport, q.face}) : 0;
     if (q.between & smooth_lobes & (same_side ? reflection_lobes : transmission_lobes))
-      s->pdf += pdf_between(stack, q.face, out, s->direction, transport);
+      s->pdf += pdf_between(stack, out, s->direction, {context.transport, q.face});
   }
   return s;
 }
 
-Spectrum LayeredScatter::world_albedo(const Vector3& out, Lobes which) const {
+Spectrum LayeredScatter::world_albedo(const Vector3& out, Lobes lobes) const {
   const LayerStack& stack = *seen_from(out)[0];
-  const Question q(stack, out, which);
-  Spectrum sum = stack.face(stack.side(out)).albedo(out, which & reflection_lobes);
+  const Question q(stack, out, lobes);
+  Spectrum sum = stack.face(stack.side(out)).albedo(out, lobes & reflection_lobes);
   if (q.between == no_lobes) return sum;
   const LayerStack::Albedo a = stack.albedo(out);
   if (q.between & smooth_lobes & reflection_lobes) sum += a.smooth[0];
@@ -151,7 +151,7 @@ Spectrum LayeredScatter::world_albedo(const Vector3& out, Lobes which) const {
   // a.specular[1] contains null scattering, which is subtracted from it and added separately if requested.
   if (q.between & (specular_transmission | null_scattering)) {
     Spectrum straight;
-    if (q.possible & null_scattering) straight = world_sample(out, 0, {}, Transport::importance, null_scattering)->weight;
+    if (q.possible & null_scattering) straight = world_sample(out, 0, {}, {Transport::importance, null_scattering})->weight;
     if (q.between & null_scattering) sum += straight;
     if (q.between & specular_transmission) sum += max(a.specular[1] - straight, 0);
   }

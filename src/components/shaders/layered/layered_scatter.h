@@ -11,7 +11,7 @@ namespace etendue {
 Lobes lobes_between(Lobes near, Lobes far, bool scatters);
 
 /// One surface over another: reflection by the outer face, and light that was between the two. See layered_scatter.cpp.
-class LayeredScatter final : public ScatterCombination {
+class LayeredScatter final : public Scatter {
  public:
   /// `front` and `back`: the stacks as seen from the front and from behind. The first is bound for all of the path's
   /// wavelengths; if there are more, stack i is bound for wavelength i alone, because a dispersive layer refracts each
@@ -19,12 +19,11 @@ class LayeredScatter final : public ScatterCombination {
   LayeredScatter(const SurfacePoint& p, const LayerStack* const* front, const LayerStack* const* back, int stacks, int walks,
                  std::uint64_t seed, Lobes lobes);
 
-  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override;
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext context) const override;
 
-  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                            Lobes which) const override;
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, ScatterContext context) const override;
 
-  Spectrum world_albedo(const Vector3& out, Lobes which) const override;
+  Spectrum world_albedo(const Vector3& out, Lobes lobes) const override;
 
  private:
   /// The lobes involved for light from `out`.
@@ -32,7 +31,7 @@ class LayeredScatter final : public ScatterCombination {
     Lobes possible, between;  ///< lobes of light from between the layers: all, and the requested ones
     Lobes face;               ///< lobes to sample of the outer face
 
-    Question(const LayerStack&, const Vector3& out, Lobes which);
+    Question(const LayerStack&, const Vector3& out, Lobes lobes);
   };
 
   const LayerStack* const* seen_from(const Vector3& out) const { return sides_[dot(normal_, out) > 0 ? 0 : 1]; }
@@ -41,7 +40,7 @@ class LayeredScatter final : public ScatterCombination {
   enum class Use : std::uint8_t { estimate, walk, pdf };
   HashedRandom numbers(Use use, const Vector3& out, const Vector3& other, Transport transport) const;
   /// The approximate pdf [1/sr] of entering between the layers and leaving in direction `in`.
-  float pdf_between(const LayerStack& stack, Lobes asked, const Vector3& out, const Vector3& in, Transport transport) const;
+  float pdf_between(const LayerStack& stack, const Vector3& out, const Vector3& in, ScatterContext context) const;
 
   const LayerStack* sides_[2][spectrum_size];
   int stacks_, walks_;

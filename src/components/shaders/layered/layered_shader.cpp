@@ -13,10 +13,10 @@ class BlackScatter final : public ScatterModel<BlackScatter> {
  public:
   explicit BlackScatter(const SurfacePoint& p) : ScatterModel(p, no_lobes) {}
 
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
-  bool local_sample(const Vector3&, float, Point2, Lobes, LocalSample&) const override { return false; }
-  Spectrum local_albedo(const Vector3&, Lobes) const override { return {}; }
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return {}; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const { return 0; }
+  bool local_sample(const Vector3&, float, Point2, Lobes, LocalSample&) const { return false; }
+  Spectrum local_albedo(const Vector3&, Lobes) const { return {}; }
 };
 
 /// An object without geometry: represents the space between the layers, or no object, where an object is required.

@@ -63,7 +63,7 @@ PrincipledScatter::PrincipledScatter(const SurfacePoint& p, const Frame& frame, 
       colored_(disperses_ || layers.film > 0 || layers.reflect_eta.minimum() != layers.reflect_eta.maximum()),
       choosing_(disperses_ && !layers.single ? spectrum_size : 1) {
   if (!smooth_) prepare_multiple();
-  if (smooth_ && disperses_ && !layers.single) dispersed_ = specular_transmission;
+  if (smooth_ && disperses_ && !layers.single) dispersed_lobes_ = specular_transmission;
   matt_mean_ = matt_normalizer();
 }
 
@@ -184,9 +184,9 @@ void PrincipledScatter::thin_facets_at(float cosine, Facets& f) const {
   f.clear *= layers_.specular_color;
 }
 
-float PrincipledScatter::reflect_probability(const Facets& f, Lobes which) const {
-  const float r = (which & base_reflection()) ? f.reflected().average() : 0;
-  const float t = (which & base_transmission()) ? f.through.average() : 0;
+float PrincipledScatter::reflect_probability(const Facets& f, Lobes lobes) const {
+  const float r = (lobes & base_reflection()) ? f.reflected().average() : 0;
+  const float t = (lobes & base_transmission()) ? f.through.average() : 0;
   return r + t > 0 ? r / (r + t) : 1;
 }
 
@@ -253,35 +253,35 @@ PrincipledScatter::Facets PrincipledScatter::mean_facets(const Vector3& out) con
   return sum;
 }
 
-Spectrum PrincipledScatter::local_albedo(const Vector3& out, Lobes which) const {
+Spectrum PrincipledScatter::local_albedo(const Vector3& out, Lobes lobes) const {
   const PrincipledLayers& l = layers_;
   const float front = fronting(out), upper = upper_passed(out);
   const Spectrum coat = coat_absorption(2 * inverse_cosine_in_coat(out));
   Spectrum sum;
-  if (which & glossy_reflection) sum += l.fuzz_color * (front * (1 - fuzz_passed(out)));
-  if (which & coat_reflection()) sum += Spectrum(front * (1 - coat_passed(out)) * fuzz_passed(out));
-  if (which & diffuse_reflection) sum += matt_.albedo(out) * l.matt_darkening * coat * (l.opaque * matt_passed(out));
-  if (which & diffuse_transmission) sum += matt_through_.albedo(out) * l.matt_darkening * coat * (l.opaque * matt_passed(out));
+  if (lobes & glossy_reflection) sum += l.fuzz_color * (front * (1 - fuzz_passed(out)));
+  if (lobes & coat_reflection()) sum += Spectrum(front * (1 - coat_passed(out)) * fuzz_passed(out));
+  if (lobes & diffuse_reflection) sum += matt_.albedo(out) * l.matt_darkening * coat * (l.opaque * matt_passed(out));
+  if (lobes & diffuse_transmission) sum += matt_through_.albedo(out) * l.matt_darkening * coat * (l.opaque * matt_passed(out));
 
-  if (which & (base_reflection() | base_transmission())) {
+  if (lobes & (base_reflection() | base_transmission())) {
     const Facets f = mean_facets(out);
     const Spectrum above = coat * upper;
     const float missing = multiple_ ? multiple_->missing(out) : 0, sheet = l.thin_walled ? missing : 0;
     const float more = clear_more_ > 0 ? l.clear * clear_more_ * clear_multiple_->missing(out) : 0;
     const float share = clear_more_ > 0 ? clear_multiple_->transmitted_share(out) : 0;
-    if (which & base_reflection()) {
+    if (lobes & base_reflection()) {
       const Spectrum gloss =
           smooth_ || colored_ ? f.opaque : l.specular_color * l.gloss_darkening * (l.opaque * (1 - gloss_.passed(out)));
       sum += (f.metal * (1 - missing) + metal_more_ * (l.metal * missing) + gloss) * above;
       sum += (f.clear * (1 - sheet) + sheet_back_ * (l.clear * sheet) + Spectrum(more * (1 - share))) *
              (inside(out) ? Spectrum(1.0f) : above);
     }
-    if (which & base_transmission())
+    if (lobes & base_transmission())
       sum += (f.through * (1 - sheet) + (sheet_through_ * (l.clear * sheet) + l.transmission_color * (more * share)) * upper) *
              coat_absorption(inverse_cosine_in_coat(out));
   }
   sum *= l.opacity;
-  if (which & null_scattering) sum += Spectrum(1 - l.opacity);
+  if (lobes & null_scattering) sum += Spectrum(1 - l.opacity);
   return clamp(sum, 0, 1);
 }
 

@@ -41,37 +41,37 @@ Lobes PrincipledScatter::lobes_of(const PrincipledLayers& l) {
   return r;
 }
 
-PrincipledScatter::Plan PrincipledScatter::plan(const Vector3& out, Lobes which) const {
+PrincipledScatter::Plan PrincipledScatter::plan(const Vector3& out, Lobes lobes) const {
   const PrincipledLayers& l = layers_;
   const float front = fronting(out);
   Plan r;
-  if ((which & glossy_reflection) && l.fuzz > 0) r.fuzz = front * (1 - fuzz_passed(out)) * l.fuzz_color.average();
-  if ((which & coat_reflection()) && l.coat > 0) r.coat = front * (1 - coat_passed(out));
+  if ((lobes & glossy_reflection) && l.fuzz > 0) r.fuzz = front * (1 - fuzz_passed(out)) * l.fuzz_color.average();
+  if ((lobes & coat_reflection()) && l.coat > 0) r.coat = front * (1 - coat_passed(out));
   const float upper = upper_passed(out);
-  if (which & (base_reflection() | base_transmission())) {
+  if (lobes & (base_reflection() | base_transmission())) {
     const Facets f = facets_at(std::abs(out.z), inside(out));
     // A fraction that is 0 at this angle may be positive at a facet's angle.
     constexpr float unforeseen = 0.01f;
     const float reflected = f.metal.average() + f.opaque.average() + (l.metal + l.opaque + l.clear) * unforeseen;
     const float through = f.through.average() + l.clear * unforeseen;
-    if (which & base_reflection()) r.base = upper * reflected + (inside(out) ? 1 : upper) * f.clear.average();
-    if ((which & base_transmission()) && l.clear > 0) r.base += upper * through;
+    if (lobes & base_reflection()) r.base = upper * reflected + (inside(out) ? 1 : upper) * f.clear.average();
+    if ((lobes & base_transmission()) && l.clear > 0) r.base += upper * through;
   }
-  if ((which & diffuse_reflection) && l.opaque > 0) r.matt = matt_passed(out) * l.opaque * l.diffuse_color.average();
-  if ((which & diffuse_transmission) && l.opaque > 0)
+  if ((lobes & diffuse_reflection) && l.opaque > 0) r.matt = matt_passed(out) * l.opaque * l.diffuse_color.average();
+  if ((lobes & diffuse_transmission) && l.opaque > 0)
     r.through = matt_passed(out) * l.opaque * l.diffuse_through_color.average();
   if (multiple_) {
     const float missing = upper * multiple_->missing(out), sheet = l.clear * missing;
-    if (which & glossy_reflection) r.matt_glossy = l.metal * missing * metal_more_.average() + sheet * sheet_back_.average();
-    if (which & glossy_transmission) r.through_glossy = sheet * sheet_through_.average();
+    if (lobes & glossy_reflection) r.matt_glossy = l.metal * missing * metal_more_.average() + sheet * sheet_back_.average();
+    if (lobes & glossy_transmission) r.through_glossy = sheet * sheet_through_.average();
   }
   if (clear_more_ > 0) {
     const float missing = l.clear * clear_more_ * clear_multiple_->missing(out),
                 share = clear_multiple_->transmitted_share(out);
-    if (which & glossy_reflection) r.matt_glossy += missing * (1 - share);
-    if (which & glossy_transmission) r.through_glossy += missing * share;
+    if (lobes & glossy_reflection) r.matt_glossy += missing * (1 - share);
+    if (lobes & glossy_transmission) r.through_glossy += missing * share;
   }
-  if (which & null_scattering) r.straight = 1 - l.opacity;
+  if (lobes & null_scattering) r.straight = 1 - l.opacity;
 
   const float there = r.fuzz + r.coat + r.base + r.matt + r.matt_glossy + r.through + r.through_glossy;
   const float sum = there * l.opacity + r.straight;
@@ -82,23 +82,23 @@ PrincipledScatter::Plan PrincipledScatter::plan(const Vector3& out, Lobes which)
   return r;
 }
 
-ScatterValue PrincipledScatter::combine(const Vector3& out, const Vector3& in, Lobes which, const Plan& plan) const {
+ScatterValue PrincipledScatter::combine(const Vector3& out, const Vector3& in, Lobes lobes, const Plan& plan) const {
   ScatterValue r;
   if (out.z == 0 || in.z == 0) return r;
   if (out.z * in.z > 0)
-    reflection(out, in, which, plan, r);
+    reflection(out, in, lobes, plan, r);
   else
-    transmission(out, in, which, plan, r);
+    transmission(out, in, lobes, plan, r);
   r.value *= layers_.opacity;
   return r;
 }
 
-void PrincipledScatter::reflection(const Vector3& out, const Vector3& in, Lobes which, const Plan& plan,
+void PrincipledScatter::reflection(const Vector3& out, const Vector3& in, Lobes lobes, const Plan& plan,
                                    ScatterValue& r) const {
   const PrincipledLayers& l = layers_;
   const float front = fronting(out);
   const Spectrum upper = through_upper(out, in);
-  if (which & glossy_reflection) {
+  if (lobes & glossy_reflection) {
     const Vector3 m = reflection_half_vector(out, in);
     const float out_m = std::abs(dot(out, m)), jacobian = reflection_jacobian(out_m);
     if (l.fuzz > 0) {
@@ -115,26 +115,26 @@ void PrincipledScatter::reflection(const Vector3& out, const Vector3& in, Lobes 
       const Facets f = facets_at(out_m, inside(out));
       const Spectrum clear = inside(out) ? f.clear : f.clear * upper;
       r.value += ((f.metal + f.opaque) * upper + clear) * (l.facets.D(m) * l.facets.visibility(out, in));
-      r.pdf += plan.base * reflect_probability(f, which) * l.facets.visible_pdf(out, m) * jacobian;
+      r.pdf += plan.base * reflect_probability(f, lobes) * l.facets.visible_pdf(out, m) * jacobian;
       if (multiple_) r.value += (metal_more_ * l.metal + sheet_back_ * l.clear) * upper * multiple_->value(out, in);
       if (clear_more_ > 0)
         r.value += (inside(out) ? Spectrum(1.0f) : l.specular_color * upper) *
                    (l.clear * clear_more_ * clear_multiple_->value(out, in));
     }
   }
-  if ((which & diffuse_reflection) && l.opaque > 0) {
+  if ((lobes & diffuse_reflection) && l.opaque > 0) {
     const Spectrum coat = coat_absorption(inverse_cosine_in_coat(out) + inverse_cosine_in_coat(in));
     r.value += matt_.value(out, in) * l.matt_darkening * coat * (l.opaque * matt_passed(out) * matt_passed(in) / matt_mean_);
   }
   r.pdf += (plan.matt + plan.matt_glossy) * std::abs(in.z) * inverse_pi;
 }
 
-void PrincipledScatter::transmission(const Vector3& out, const Vector3& in, Lobes which, const Plan& plan,
+void PrincipledScatter::transmission(const Vector3& out, const Vector3& in, Lobes lobes, const Plan& plan,
                                      ScatterValue& r) const {
   const PrincipledLayers& l = layers_;
   r.pdf = (plan.through + plan.through_glossy) * std::abs(in.z) * inverse_pi;
-  if (l.thin_walled) return thin_transmission(out, in, which, plan, r);
-  if (smooth_ || !(which & glossy_transmission)) return;
+  if (l.thin_walled) return thin_transmission(out, in, lobes, plan, r);
+  if (smooth_ || !(lobes & glossy_transmission)) return;
 
   const Vector3& outside = out.z > 0 ? out : in;
   const float front = l.facets.G2_through(out, in) / std::abs(out.z * in.z);
@@ -152,7 +152,7 @@ void PrincipledScatter::transmission(const Vector3& out, const Vector3& in, Lobe
     else
       r.value = value;
     if (i < choosing_)
-      r.pdf += plan.base * (1 - reflect_probability(f, which)) * l.facets.visible_pdf(out, m) * jacobian / float(choosing_);
+      r.pdf += plan.base * (1 - reflect_probability(f, lobes)) * l.facets.visible_pdf(out, m) * jacobian / float(choosing_);
   }
   if (clear_more_ > 0)
     r.value += l.transmission_color * once_through_upper(outside, 1) *
@@ -162,29 +162,29 @@ void PrincipledScatter::transmission(const Vector3& out, const Vector3& in, Lobe
 
 // A sheet's rough transmission is modelled as its reflection mirrored at the sheet, for which facets lose no energy
 // (prepare_multiple). Two surfaces with independent facets would spread light by (eta - 1) / sqrt(2) of that.
-void PrincipledScatter::thin_transmission(const Vector3& out, const Vector3& in, Lobes which, const Plan& plan,
+void PrincipledScatter::thin_transmission(const Vector3& out, const Vector3& in, Lobes lobes, const Plan& plan,
                                           ScatterValue& r) const {
   const PrincipledLayers& l = layers_;
   const Vector3 turned{in.x, in.y, -in.z};
   const Spectrum coat = coat_absorption(inverse_cosine_in_coat(out) + inverse_cosine_in_coat(in));
-  if (!smooth_ && l.clear > 0 && (which & glossy_transmission)) {
+  if (!smooth_ && l.clear > 0 && (lobes & glossy_transmission)) {
     const Vector3 m = reflection_half_vector(out, turned);
     const float out_m = std::abs(dot(out, m));
     const Facets f = facets_at(out_m, false);
     r.value += (f.through * (l.facets.D(m) * l.facets.visibility(out, turned)) +
                 sheet_through_ * (l.clear * multiple_->value(out, turned))) *
                through_upper(out, turned);
-    r.pdf += plan.base * (1 - reflect_probability(f, which)) * l.facets.visible_pdf(out, m) * reflection_jacobian(out_m);
+    r.pdf += plan.base * (1 - reflect_probability(f, lobes)) * l.facets.visible_pdf(out, m) * reflection_jacobian(out_m);
   }
-  if ((which & diffuse_transmission) && l.opaque > 0)
+  if ((lobes & diffuse_transmission) && l.opaque > 0)
     r.value += matt_through_.value(out, turned) * l.matt_darkening * coat *
                (l.opaque * matt_passed(out) * matt_passed(in) / matt_mean_);
 }
 
-bool PrincipledScatter::local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const {
+bool PrincipledScatter::local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
   const PrincipledLayers& l = layers_;
   if (out.z == 0) return false;
-  const Plan plan = this->plan(out, which);
+  const Plan plan = this->plan(out, lobes);
   // Whether `choice` selects a strategy of this probability; the rest of it is rescaled to [0, 1) for further choices.
   const auto chosen = [&choice](float probability) {
     if (choice < probability) {
@@ -202,7 +202,7 @@ bool PrincipledScatter::local_sample(const Vector3& out, float choice, Point2 u,
     return true;
   }
   if (chosen(plan.base)) {
-    if (!sample_base(out, choice, u, which, plan, s)) return false;
+    if (!sample_base(out, choice, u, lobes, plan, s)) return false;
     if (smooth_) return s.pdf > 0;
   } else if (chosen(plan.coat)) {
     if (coat_smooth_) {
@@ -226,14 +226,14 @@ bool PrincipledScatter::local_sample(const Vector3& out, float choice, Point2 u,
                      : (is_glossy ? glossy_reflection : diffuse_reflection);
     if (through) s.eta = hero_index(out, s.in);
   }
-  const ScatterValue both = combine(out, s.in, which, plan);
+  const ScatterValue both = combine(out, s.in, lobes, plan);
   s.value = both.value * std::abs(s.in.z);
   s.pdf = both.pdf;
   return s.pdf > 0;
 }
 
 /// Samples the base: the whole sample for a smooth base, the direction and lobe for a rough one.
-bool PrincipledScatter::sample_base(const Vector3& out, float choice, Point2 u, Lobes which, const Plan& plan,
+bool PrincipledScatter::sample_base(const Vector3& out, float choice, Point2 u, Lobes lobes, const Plan& plan,
                                     LocalSample& s) const {
   const PrincipledLayers& l = layers_;
   int wavelength = 0;
@@ -245,9 +245,9 @@ bool PrincipledScatter::sample_base(const Vector3& out, float choice, Point2 u, 
   const Vector3 m = smooth_ ? Vector3{0, 0, 1} : l.facets.sample_visible(out, u);
   const float cosine = std::abs(dot(out, m));
   const Facets f = facets_at(cosine, inside(out));
-  const float reflect_p = reflect_probability(f, which);
+  const float reflect_p = reflect_probability(f, lobes);
   if (choice < reflect_p) {
-    if (!(which & base_reflection())) return false;  // only refraction was requested, and there is none
+    if (!(lobes & base_reflection())) return false;  // only refraction was requested, and there is none
     s.in = reflect(out, m);
     s.lobe = base_reflection();
     if (!smooth_) return s.in.z * out.z > 0;

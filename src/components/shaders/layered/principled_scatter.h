@@ -52,12 +52,12 @@ class PrincipledScatter final : public JointScatter<PrincipledScatter> {
   static Lobes lobes_of(const PrincipledLayers&);
   PrincipledScatter(const SurfacePoint& p, const Frame& frame, const PrincipledLayers&);
 
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return combine(out, in, which, plan(out, which));
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
+    return combine(out, in, lobes, plan(out, lobes));
   }
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample&) const override;
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override;
-  Spectrum relative_index(const Vector3& out, const Vector3& in) const override {
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample&) const;
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const;
+  Spectrum relative_index(const Vector3& out, const Vector3& in) const {
     if (out.z * in.z > 0 || layers_.thin_walled) return Spectrum(1.0f);
     return out.z > 0 ? layers_.eta : Spectrum(1.0f) / layers_.eta;
   }
@@ -89,12 +89,12 @@ class PrincipledScatter final : public JointScatter<PrincipledScatter> {
     float fuzz = 0, coat = 0, base = 0, matt = 0, matt_glossy = 0, through = 0, through_glossy = 0, straight = 0;
   };
 
-  Plan plan(const Vector3& out, Lobes which) const;
-  ScatterValue combine(const Vector3& out, const Vector3& in, Lobes which, const Plan&) const;
-  void reflection(const Vector3& out, const Vector3& in, Lobes which, const Plan&, ScatterValue&) const;
-  void transmission(const Vector3& out, const Vector3& in, Lobes which, const Plan&, ScatterValue&) const;
-  void thin_transmission(const Vector3& out, const Vector3& in, Lobes which, const Plan&, ScatterValue&) const;
-  bool sample_base(const Vector3& out, float choice, Point2 u, Lobes which, const Plan&, LocalSample&) const;
+  Plan plan(const Vector3& out, Lobes lobes) const;
+  ScatterValue combine(const Vector3& out, const Vector3& in, Lobes lobes, const Plan&) const;
+  void reflection(const Vector3& out, const Vector3& in, Lobes lobes, const Plan&, ScatterValue&) const;
+  void transmission(const Vector3& out, const Vector3& in, Lobes lobes, const Plan&, ScatterValue&) const;
+  void thin_transmission(const Vector3& out, const Vector3& in, Lobes lobes, const Plan&, ScatterValue&) const;
+  bool sample_base(const Vector3& out, float choice, Point2 u, Lobes lobes, const Plan&, LocalSample&) const;
 
   /// Index behind the boundary over index in front, seen from `out`.
   static float towards(const Vector3& out, float eta) { return out.z > 0 ? eta : 1 / eta; }
@@ -113,7 +113,7 @@ class PrincipledScatter final : public JointScatter<PrincipledScatter> {
   float dielectric_reflectance(float cosine, int i) const;
   Spectrum metal_reflectance(float cosine) const;
   /// The probability of choosing reflection at a facet, rather than transmission.
-  float reflect_probability(const Facets&, Lobes which) const;
+  float reflect_probability(const Facets&, Lobes lobes) const;
   Lobe base_reflection() const { return smooth_ ? specular_reflection : glossy_reflection; }
   Lobe base_transmission() const { return smooth_ ? specular_transmission : glossy_transmission; }
   Lobe coat_reflection() const { return coat_smooth_ ? specular_reflection : glossy_reflection; }

@@ -14,18 +14,16 @@ namespace {
 /// (2 pi).
 class SheenScatter final : public ScatterModel<SheenScatter> {
  public:
-  SheenScatter(const SurfacePoint& p, const Frame& frame, const SheenLobe& lobe, Spectrum color)
-      : ScatterModel(p, frame, glossy_reflection), lobe_(lobe), color_(color) {
-    has_choice_ = false;
-  }
+  static constexpr bool uses_choice = false;
 
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+  SheenScatter(const SurfacePoint& p, const Frame& frame, const SheenLobe& lobe, Spectrum color)
+      : ScatterModel(p, frame, glossy_reflection), lobe_(lobe), color_(color) {}
+
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? color_ * lobe_.value(out, in) : Spectrum();
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
-    return out.z * in.z > 0 ? warp::hemisphere_pdf : 0;
-  }
-  bool local_sample(const Vector3& out, float, Point2 u, Lobes, LocalSample& s) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const { return out.z * in.z > 0 ? warp::hemisphere_pdf : 0; }
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes, LocalSample& s) const {
     s.in = warp::hemisphere(u);
     if (out.z < 0) s.in.z = -s.in.z;
     s.value = color_ * (lobe_.value(out, s.in) * std::abs(s.in.z));
@@ -33,8 +31,8 @@ class SheenScatter final : public ScatterModel<SheenScatter> {
     s.lobe = glossy_reflection;
     return s.in.z != 0;
   }
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    return (which & glossy_reflection) ? color_ * lobe_.albedo(out) : Spectrum();
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
+    return (lobes & glossy_reflection) ? color_ * lobe_.albedo(out) : Spectrum();
   }
 
  private:
@@ -48,11 +46,11 @@ class SheenScatter final : public ScatterModel<SheenScatter> {
 // larger t has both properties for every base: a specular base allows for no more. Estevez & Kulla 2017 scale by T(in) and
 // T(out) as well. Fibres absorb nothing: the light that they do not reflect reaches the base, with its spectrum unchanged. A
 // base that scatters widely loses some light (a white Lambertian one 13 % by default), as if fibres blocked it.
-class CoveredScatter final : public ScatterCombination {
+class CoveredScatter final : public Scatter {
  public:
   CoveredScatter(const SurfacePoint& p, const SheenScatter& sheen, const SheenLobe& lobe, float weight, const Scatter& base,
                  bool stochastic)
-      : ScatterCombination(p, Lobes(sheen.lobes() | base.lobes())),
+      : Scatter(p, Lobes(sheen.lobes() | base.lobes())),
         sheen_(sheen),
         base_(base),
         lobe_(lobe),
@@ -61,19 +59,18 @@ class CoveredScatter final : public ScatterCombination {
     frame_ = base.frame();
   }
 
-  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, Transport transport, Lobes which) const override {
-    const float probability = sheen_probability(out, which);
-    const ScatterValue a = sheen_.value_and_pdf(out, in, transport, which);
-    const ScatterValue b = base_.value_and_pdf(out, in, transport, which);
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext context) const override {
+    const float probability = sheen_probability(out, context.lobes);
+    const ScatterValue a = sheen_.value_and_pdf(out, in, context);
+    const ScatterValue b = base_.value_and_pdf(out, in, context);
     return {a.value + b.value * through(out, in), lerp(probability, b.pdf, a.pdf)};
   }
 
-  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, Transport transport,
-                                            Lobes which) const override {
-    const float sheen = sheen_probability(out, which);
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, ScatterContext context) const override {
+    const float sheen = sheen_probability(out, context.lobes);
     const bool fibres = choice < sheen;
     const Scatter& chosen = fibres ? static_cast<const Scatter&>(sheen_) : base_;
-    std::optional<ScatterSample> s = chosen.sample(out, left_of_choice(choice, sheen), u, transport, which);
+    std::optional<ScatterSample> s = chosen.sample(out, left_of_choice(choice, sheen), u, context);
     if (!s) return s;
     const float probability = fibres ? sheen : 1 - sheen, t = through(out, s->direction);
     const float share = fibres ? 1 : t;
@@ -83,7 +80,7 @@ class CoveredScatter final : public ScatterCombination {
       return s;
     }
     const Scatter& other = fibres ? base_ : static_cast<const Scatter&>(sheen_);
-    const ScatterValue v = other.value_and_pdf(out, s->direction, transport, which);
+    const ScatterValue v = other.value_and_pdf(out, s->direction, context);
     const float pdf = probability * s->pdf + (1 - probability) * v.pdf;
     if (stochastic_)  // the base's pdf is not that of its samples: each sample counts for its own part only
       s->weight *= share / probability;
@@ -93,16 +90,16 @@ class CoveredScatter final : public ScatterCombination {
     return s;
   }
 
-  Spectrum world_albedo(const Vector3& out, Lobes which) const override {
-    return sheen_.albedo(out, which) + base_.albedo(out, which) * passed(out);
+  Spectrum world_albedo(const Vector3& out, Lobes lobes) const override {
+    return sheen_.albedo(out, lobes) + base_.albedo(out, lobes) * passed(out);
   }
 
  private:
   /// T(v).
   float passed(const Vector3& v) const { return 1 - weight_ * lobe_.albedo(frame_.to_local(v)); }
   float through(const Vector3& out, const Vector3& in) const { return std::min(passed(out), passed(in)); }
-  float sheen_probability(const Vector3& out, Lobes which) const {
-    const float a = promise(&sheen_, 1, out, which), b = promise(&base_, passed(out), out, which);
+  float sheen_probability(const Vector3& out, Lobes lobes) const {
+    const float a = promise(&sheen_, 1, out, lobes), b = promise(&base_, passed(out), out, lobes);
     return a + b > 0 ? a / (a + b) : 0;
   }
 

@@ -103,14 +103,14 @@ class MerlScatter final : public ScatterModel<MerlScatter> {
   MerlScatter(const SurfacePoint& p, const MerlData& data, const RgbSpace& space, const Wavelengths& w)
       : ScatterModel(p, glossy_reflection), data_(&data), space_(&space), wavelengths_(w) {}
 
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? value(upwards(out), upwards(in)) : Spectrum();
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? pdf_of(upwards(out), upwards(in)) : 0;
   }
 
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes, LocalSample& s) const {
     const Vector3 from = upwards(out);
     const Vector3 to = choice < cosine_share ? warp::cosine_hemisphere(u) : data_->sample(from, u);
     if (!(to.z > 0)) return false;
@@ -121,8 +121,8 @@ class MerlScatter final : public ScatterModel<MerlScatter> {
     return s.pdf > 0;
   }
 
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    return (which & glossy_reflection) ? spectrum(data_->albedo(upwards(out))) : Spectrum();
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
+    return (lobes & glossy_reflection) ? spectrum(data_->albedo(upwards(out))) : Spectrum();
   }
 
  private:

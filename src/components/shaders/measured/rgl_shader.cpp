@@ -20,18 +20,22 @@ namespace {
 class RglScatter final : public ScatterModel<RglScatter> {
  public:
   RglScatter(const SurfacePoint& p, const Frame& frame, const RglData& data, const Wavelengths& w, bool symmetric)
-      : ScatterModel(p, frame, glossy_reflection), data_(&data), wavelengths_(w), channels_(data.channels(w)) {
-    reciprocal_ = symmetric;
-  }
+      : ScatterModel(p, frame, glossy_reflection),
+        data_(&data),
+        wavelengths_(w),
+        channels_(data.channels(w)),
+        symmetric_(symmetric) {}
 
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+  bool reciprocal() const { return symmetric_; }
+
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? value(upwards(out), upwards(in)) / std::abs(in.z) : Spectrum();
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? pdf_of(upwards(out), upwards(in)) : 0;
   }
 
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes, LocalSample& s) const {
     const Vector3 from = upwards(out);
     const Vector3 to = choice < cosine_share ? warp::cosine_hemisphere(u) : data_->sample(from, u);
     if (!(to.z > 0)) return false;
@@ -43,8 +47,8 @@ class RglScatter final : public ScatterModel<RglScatter> {
     return s.pdf > 0;
   }
 
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    return (which & glossy_reflection) ? data_->albedo(upwards(out), channels_, wavelengths_) : Spectrum();
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
+    return (lobes & glossy_reflection) ? data_->albedo(upwards(out), channels_, wavelengths_) : Spectrum();
   }
 
  private:
@@ -54,7 +58,7 @@ class RglScatter final : public ScatterModel<RglScatter> {
   /// f cos(to)
   Spectrum value(const Vector3& from, const Vector3& to) const {
     const Spectrum there = data_->evaluate(from, to, channels_, wavelengths_);
-    if (!reciprocal_) return there;
+    if (!symmetric_) return there;
     return (there + data_->evaluate(to, from, channels_, wavelengths_)) * (to.z / (from.z + to.z));
   }
   float pdf_of(const Vector3& from, const Vector3& to) const {
@@ -66,6 +70,7 @@ class RglScatter final : public ScatterModel<RglScatter> {
   const RglData* data_;
   Wavelengths wavelengths_;
   RglChannels channels_;
+  bool symmetric_;
 };
 
 class RglShader final : public Shader {

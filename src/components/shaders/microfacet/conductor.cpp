@@ -33,22 +33,22 @@ struct BoundaryReflectance {
 
 class PolishedConductor final : public ScatterModel<PolishedConductor> {
  public:
-  PolishedConductor(const SurfacePoint& p, const BoundaryReflectance& boundary, Spectrum tint)
-      : ScatterModel(p, specular_reflection), boundary_(boundary), tint_(tint) {
-    has_choice_ = false;
-  }
+  static constexpr bool uses_choice = false;
 
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
-  bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {
+  PolishedConductor(const SurfacePoint& p, const BoundaryReflectance& boundary, Spectrum tint)
+      : ScatterModel(p, specular_reflection), boundary_(boundary), tint_(tint) {}
+
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return {}; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const { return 0; }
+  bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const {
     s.in = {-out.x, -out.y, out.z};
     s.value = tint_ * boundary_.at(std::abs(out.z));
     s.pdf = 1;
     s.lobe = specular_reflection;
     return true;
   }
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    return (which & specular_reflection) ? tint_ * boundary_.at(std::abs(out.z)) : Spectrum();
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
+    return (lobes & specular_reflection) ? tint_ * boundary_.at(std::abs(out.z)) : Spectrum();
   }
 
  private:
@@ -78,15 +78,15 @@ class RoughConductor final : public ScatterModel<RoughConductor> {
     multiple_over_single_ = multiple_.average() / std::max(mean.average(), 1e-6f);
   }
 
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes which) const override {
-    return local_value_and_pdf(out, in, which).value;
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes lobes) const {
+    return local_value_and_pdf(out, in, lobes).value;
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     if (!(out.z * in.z > 0)) return 0;
     const float multiple = has_choice_ ? probability_of_multiple(multiple_reflection_.missing(out)) : 0;
     return pdf(out, in, reflection_half_vector(out, in), multiple);
   }
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     if (!(out.z * in.z > 0)) return {};
     const Vector3 m = reflection_half_vector(out, in);
     Spectrum value = boundary_.at(std::abs(dot(out, m))) * (distribution_.D(m) * distribution_.visibility(out, in));
@@ -96,22 +96,22 @@ class RoughConductor final : public ScatterModel<RoughConductor> {
     return {tint_ * value, pdf(out, in, m, probability_of_multiple(missing))};
   }
 
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
     if (has_choice_ && choice < probability_of_multiple(multiple_reflection_.missing(out))) {
       s.in = warp::cosine_hemisphere(u);
       if (out.z < 0) s.in.z = -s.in.z;
     } else {
       s.in = reflect(out, distribution_.sample_visible(out, u));
     }
-    const ScatterValue both = local_value_and_pdf(out, s.in, which);
+    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
     s.value = both.value * std::abs(s.in.z);
     s.pdf = both.pdf;
     s.lobe = glossy_reflection;
     return s.pdf > 0;
   }
 
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
-    if (!(which & glossy_reflection)) return {};
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
+    if (!(lobes & glossy_reflection)) return {};
     const float missing = multiple_reflection_.missing(out);
     return tint_ * (boundary_.at(distribution_.typical_cosine(out)) * (1 - missing) + multiple_ * missing);
   }

@@ -26,20 +26,19 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
         varies_(varies),
         dispersive_(dispersive),
         tinted_(!tint.none()) {
-    has_total_internal_reflection_ = true;
-    if (dispersive) dispersed_ = specular_transmission;
+    if (dispersive) dispersed_lobes_ = specular_transmission;
   }
 
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return {}; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const { return 0; }
 
-  bool local_sample(const Vector3& out, float choice, Point2, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2, Lobes lobes, LocalSample& s) const {
     float cosine_behind = 0;
     const Spectrum reflected = reflectance(out, cosine_behind);
     const float hero = reflected[0];
     float reflect_probability = tinted_ ? tint_.probability(hero) : hero;
-    if (!(which & specular_transmission)) reflect_probability = 1;
-    if (!(which & specular_reflection)) reflect_probability = 0;
+    if (!(lobes & specular_transmission)) reflect_probability = 1;
+    if (!(lobes & specular_reflection)) reflect_probability = 0;
 
     if (choice < reflect_probability) {
       s.in = {-out.x, -out.y, out.z};
@@ -60,17 +59,17 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
     return true;
   }
 
-  bool total_internal_reflection(const Vector3& out) const override {
+  bool total_internal_reflection(const Vector3& out) const {
     float unused = 0;
     return fresnel_dielectric(std::abs(out.z), towards(out, eta_[0]), unused) >= 1;
   }
 
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     float unused = 0;
     const Spectrum reflected = reflectance(out, unused);
     Spectrum sum;
-    if (which & specular_reflection) sum += tint_.reflected * reflected;
-    if (which & specular_transmission) sum += tint_.transmitted * (Spectrum(1.0f) - reflected);
+    if (lobes & specular_reflection) sum += tint_.reflected * reflected;
+    if (lobes & specular_transmission) sum += tint_.transmitted * (Spectrum(1.0f) - reflected);
     return sum;
   }
 

@@ -101,15 +101,15 @@ class LossyPlasticScatter final : public JointScatter<LossyPlasticScatter> {
     shine_weight_ = shine.average();
   }
 
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
     if (!(out.z * in.z > 0)) return {};
-    const float through = coat_.lets_through(out), coat_probability = probability_of_coat(out, through, which);
+    const float through = coat_.lets_through(out), coat_probability = probability_of_coat(out, through, lobes);
     ScatterValue r;
-    if (which & diffuse_reflection) {
+    if (lobes & diffuse_reflection) {
       r.value = body_ * (through * coat_.lets_through(in) * inverse_pi);
       r.pdf = (1 - coat_probability) * std::abs(in.z) * inverse_pi;
     }
-    if (which & glossy_reflection) {
+    if (lobes & glossy_reflection) {
       const MicrofacetDistribution& d = coat_.distribution;
       const Vector3 m = reflection_half_vector(out, in);
       const float cosine = std::abs(dot(out, m));
@@ -120,10 +120,10 @@ class LossyPlasticScatter final : public JointScatter<LossyPlasticScatter> {
     return r;
   }
 
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
-    const float through = coat_.lets_through(out), coat_probability = probability_of_coat(out, through, which);
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
+    const float through = coat_.lets_through(out), coat_probability = probability_of_coat(out, through, lobes);
     if (choice < coat_probability) {
-      if (which & specular_reflection) {
+      if (lobes & specular_reflection) {
         s.in = {-out.x, -out.y, out.z};
         s.value = shine_ * coat_.throws_back(out);
         s.pdf = coat_probability;
@@ -137,23 +137,23 @@ class LossyPlasticScatter final : public JointScatter<LossyPlasticScatter> {
       if (out.z < 0) s.in.z = -s.in.z;
       s.lobe = diffuse_reflection;
     }
-    const ScatterValue both = local_value_and_pdf(out, s.in, which);
+    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
     s.value = both.value * std::abs(s.in.z);
     s.pdf = both.pdf;
     return s.pdf > 0;
   }
 
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     Spectrum sum;
-    if (which & diffuse_reflection) sum += body_ * (coat_.lets_through(out) * coat_.through_mean);
-    if (which & (glossy_reflection | specular_reflection)) sum += shine_ * coat_.throws_back(out);
+    if (lobes & diffuse_reflection) sum += body_ * (coat_.lets_through(out) * coat_.through_mean);
+    if (lobes & (glossy_reflection | specular_reflection)) sum += shine_ * coat_.throws_back(out);
     return sum;
   }
 
  private:
-  float probability_of_coat(const Vector3& out, float through, Lobes which) const {
-    if (!(which & diffuse_reflection)) return 1;
-    if (!(which & (glossy_reflection | specular_reflection))) return 0;
+  float probability_of_coat(const Vector3& out, float through, Lobes lobes) const {
+    if (!(lobes & diffuse_reflection)) return 1;
+    if (!(lobes & (glossy_reflection | specular_reflection))) return 0;
     const float coat = std::max(coat_.throws_back(out), 0.01f) * shine_weight_;
     return coat / (coat + through * body_weight_);
   }

@@ -11,18 +11,16 @@ class PerfectSpecularScatter final : public ScatterModel<PerfectSpecularScatter>
   PerfectSpecularScatter(const SurfacePoint& p, Spectrum reflectance)
       : ScatterModel(p, specular_reflection), reflectance_(reflectance) {}
 
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
-  bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const override {
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return {}; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const { return 0; }
+  bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const {
     s.in = {-out.x, -out.y, out.z};
     s.value = reflectance_;
     s.pdf = 1;
     s.lobe = specular_reflection;
     return true;
   }
-  Spectrum local_albedo(const Vector3&, Lobes which) const override {
-    return (which & specular_reflection) ? reflectance_ : Spectrum();
-  }
+  Spectrum local_albedo(const Vector3&, Lobes lobes) const { return (lobes & specular_reflection) ? reflectance_ : Spectrum(); }
 
  private:
   Spectrum reflectance_;

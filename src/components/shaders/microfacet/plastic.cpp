@@ -50,15 +50,15 @@ class PlasticScatter final : public JointScatter<PlasticScatter> {
     body_weight_ = body_albedo_.average();
   }
 
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
     if (!(out.z * in.z > 0)) return {};
-    const float through = coat_.through(out), coat_probability = probability_of_coat(through, which);
+    const float through = coat_.through(out), coat_probability = probability_of_coat(through, lobes);
     ScatterValue r;
-    if (which & diffuse_reflection) {
+    if (lobes & diffuse_reflection) {
       r.value = body_ * (through * coat_.through(in) * inverse_pi);
       r.pdf = (1 - coat_probability) * std::abs(in.z) * inverse_pi;
     }
-    if (which & glossy_reflection) {
+    if (lobes & glossy_reflection) {
       const Vector3 m = reflection_half_vector(out, in);
       const float cosine = std::abs(dot(out, m));
       r.value += Spectrum(fresnel_dielectric(cosine, coat_.eta) * distribution_.D(m) * distribution_.visibility(out, in));
@@ -67,10 +67,10 @@ class PlasticScatter final : public JointScatter<PlasticScatter> {
     return r;
   }
 
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
-    const float through = coat_.through(out), coat_probability = probability_of_coat(through, which);
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
+    const float through = coat_.through(out), coat_probability = probability_of_coat(through, lobes);
     if (choice < coat_probability) {
-      if (which & specular_reflection) {
+      if (lobes & specular_reflection) {
         s.in = {-out.x, -out.y, out.z};
         s.value = Spectrum(1 - through);
         s.pdf = coat_probability;
@@ -84,24 +84,24 @@ class PlasticScatter final : public JointScatter<PlasticScatter> {
       if (out.z < 0) s.in.z = -s.in.z;
       s.lobe = diffuse_reflection;
     }
-    const ScatterValue both = local_value_and_pdf(out, s.in, which);
+    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
     s.value = both.value * std::abs(s.in.z);
     s.pdf = both.pdf;
     return s.pdf > 0;
   }
 
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     const float through = coat_.through(out);
     Spectrum sum;
-    if (which & diffuse_reflection) sum += body_albedo_ * through;
-    if (which & (glossy_reflection | specular_reflection)) sum += Spectrum(1 - through);
+    if (lobes & diffuse_reflection) sum += body_albedo_ * through;
+    if (lobes & (glossy_reflection | specular_reflection)) sum += Spectrum(1 - through);
     return sum;
   }
 
  private:
-  float probability_of_coat(float through, Lobes which) const {
-    if (!(which & diffuse_reflection)) return 1;
-    if (!(which & (glossy_reflection | specular_reflection))) return 0;
+  float probability_of_coat(float through, Lobes lobes) const {
+    if (!(lobes & diffuse_reflection)) return 1;
+    if (!(lobes & (glossy_reflection | specular_reflection))) return 0;
     return (1 - through) / (1 - through + through * body_weight_);
   }
 

@@ -61,11 +61,11 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
     return d.smooth() || std::max(d.alpha_x, d.alpha_y) * bend < 3e-4f;
   }
 
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes which) const override {
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
     if (out.z == 0 || in.z == 0) return {};
-    ScatterValue r = out.z * in.z > 0 ? reflection(out, in, which) : transmission(out, in, which);
+    ScatterValue r = out.z * in.z > 0 ? reflection(out, in, lobes) : transmission(out, in, lobes);
     if (multiple_) {
-      const float missing = multiple_refraction_.missing(out), through = through_probability(out, which);
+      const float missing = multiple_refraction_.missing(out), through = through_probability(out, lobes);
       const float side = out.z * in.z > 0 ? 1 - through : through;
       const float more = multiple_refraction_.value(out, in);
       r.value += side_factor(out, in) * more;
@@ -75,12 +75,12 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
     return r;
   }
 
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
     if (out.z == 0) return false;
     const float missing = multiple_ ? multiple_refraction_.missing(out) : 0;
     if (choice < missing) {
       s.in = warp::cosine_hemisphere(u);
-      const bool below = choice < missing * through_probability(out, which);
+      const bool below = choice < missing * through_probability(out, lobes);
       if (below == (out.z > 0)) s.in.z = -s.in.z;
     } else {
       choice = (choice - missing) / (1 - missing) * float(choosing_);
@@ -90,13 +90,13 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
       const Vector3 m = distribution_.sample_visible(out, u);
       float cosine_behind = 0;
       const float reflected = fresnel_dielectric(std::abs(dot(out, m)), eta, cosine_behind);
-      const bool reflects = choice < reflect_probability(reflected, which);
+      const bool reflects = choice < reflect_probability(reflected, lobes);
       if (!reflects && reflected >= 1) return false;  // only refraction was requested, and reflection is total
       s.in = reflects ? reflect(out, m) : refract(out, m, eta, cosine_behind);
       if ((s.in.z * out.z > 0) != reflects) return false;  // blocked by another facet
     }
     const bool above = s.in.z * out.z > 0;
-    const ScatterValue both = local_value_and_pdf(out, s.in, which);
+    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
     s.value = both.value * std::abs(s.in.z);
     s.pdf = both.pdf;
     s.lobe = above ? glossy_reflection : glossy_transmission;
@@ -106,7 +106,7 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
 
   // Single reflection, and the energy that single scattering misses, are tabulated for isotropic distributions. For anisotropic
   // ones a weighted mean of the values for the alphas along and across `out` is used.
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     Spectrum reflected, refracted;
     float missing = 0;
     for (int i = 0; i < (varies_ ? spectrum_size : 1); ++i) {
@@ -121,11 +121,11 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
     }
     const float through = missing > 0 ? missing * multiple_refraction_.transmitted_share(out) : 0;
     Spectrum sum;
-    if (which & glossy_reflection) sum += tint_.reflected * (reflected + Spectrum(missing - through));
-    if (which & glossy_transmission) sum += tint_.transmitted * (refracted + side_factor(out, -out) * through);
+    if (lobes & glossy_reflection) sum += tint_.reflected * (reflected + Spectrum(missing - through));
+    if (lobes & glossy_transmission) sum += tint_.transmitted * (refracted + side_factor(out, -out) * through);
     return sum;
   }
-  Spectrum relative_index(const Vector3& out, const Vector3& in) const override {
+  Spectrum relative_index(const Vector3& out, const Vector3& in) const {
     if (out.z * in.z > 0) return Spectrum(1.0f);
     return out.z > 0 ? eta_ : Spectrum(1.0f) / eta_;
   }
@@ -179,16 +179,16 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
     if (!varies_ || out.z * in.z > 0) return Spectrum(1.0f);
     return relative_index(out, in) / towards(out, eta_[0]);
   }
-  static float reflect_probability(float reflected, Lobes which) {
-    if (!(which & glossy_transmission)) return 1;
-    return (which & glossy_reflection) ? reflected : 0;
+  static float reflect_probability(float reflected, Lobes lobes) {
+    if (!(lobes & glossy_transmission)) return 1;
+    return (lobes & glossy_reflection) ? reflected : 0;
   }
-  float through_probability(const Vector3& out, Lobes which) const {
-    if (!(which & glossy_transmission)) return 0;
-    return (which & glossy_reflection) ? multiple_refraction_.transmitted_share(out) : 1;
+  float through_probability(const Vector3& out, Lobes lobes) const {
+    if (!(lobes & glossy_transmission)) return 0;
+    return (lobes & glossy_reflection) ? multiple_refraction_.transmitted_share(out) : 1;
   }
 
-  ScatterValue reflection(const Vector3& out, const Vector3& in, Lobes which) const {
+  ScatterValue reflection(const Vector3& out, const Vector3& in, Lobes lobes) const {
     const Vector3 m = reflection_half_vector(out, in);
     const float out_m = std::abs(dot(out, m));
     const float front = distribution_.D(m) * distribution_.visibility(out, in);
@@ -197,14 +197,14 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
     for (int i = 0; i < (varies_ ? spectrum_size : 1); ++i) {
       const float reflected = fresnel_dielectric(out_m, towards(out, eta_[i]));
       r.value.set(i, front * reflected);
-      if (i < choosing_) probability += reflect_probability(reflected, which) / float(choosing_);
+      if (i < choosing_) probability += reflect_probability(reflected, lobes) / float(choosing_);
     }
     if (!varies_) r.value = Spectrum(r.value[0]);
     r.pdf = probability * distribution_.visible_pdf(out, m) * reflection_jacobian(out_m);
     return r;
   }
 
-  ScatterValue transmission(const Vector3& out, const Vector3& in, Lobes which) const {
+  ScatterValue transmission(const Vector3& out, const Vector3& in, Lobes lobes) const {
     const float front = distribution_.G2_through(out, in) / std::abs(out.z * in.z);
     ScatterValue r;
     for (int i = 0; i < (varies_ ? spectrum_size : 1); ++i) {
@@ -215,7 +215,7 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
       const float reflected = fresnel_dielectric(std::abs(out_m), eta), jacobian = refraction_jacobian(out_m, in_m, eta);
       r.value.set(i, front * (1 - reflected) * distribution_.D(m) * std::abs(out_m) * jacobian);
       if (i < choosing_)
-        r.pdf += (1 - reflect_probability(reflected, which)) * distribution_.visible_pdf(out, m) * jacobian / float(choosing_);
+        r.pdf += (1 - reflect_probability(reflected, lobes)) * distribution_.visible_pdf(out, m) * jacobian / float(choosing_);
     }
     if (!varies_) r.value = Spectrum(r.value[0]);
     return r;

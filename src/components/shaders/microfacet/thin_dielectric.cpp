@@ -32,13 +32,13 @@ class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
         clear_(passage.minimum() >= 1),
         flat_(eta.minimum() == eta.maximum() && passage.minimum() == passage.maximum()) {}
 
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return {}; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const { return 0; }
 
-  bool local_sample(const Vector3& out, float choice, Point2, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2, Lobes lobes, LocalSample& s) const {
     const Slab slab = tinted(slab_at(std::abs(out.z)));
-    const float reflected = (which & specular_reflection) ? slab.reflected.average() : 0;
-    const float transmitted = (which & null_scattering) ? slab.transmitted.average() : 0;
+    const float reflected = (lobes & specular_reflection) ? slab.reflected.average() : 0;
+    const float transmitted = (lobes & null_scattering) ? slab.transmitted.average() : 0;
     if (!(reflected + transmitted > 0)) return false;
     const float probability = transmitted > 0 ? reflected / (reflected + transmitted) : 1;
     if (choice < probability) {
@@ -55,11 +55,11 @@ class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
     return true;
   }
 
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     const Slab slab = tinted(slab_at(std::abs(out.z)));
     Spectrum sum;
-    if (which & specular_reflection) sum += slab.reflected;
-    if (which & null_scattering) sum += slab.transmitted;
+    if (lobes & specular_reflection) sum += slab.reflected;
+    if (lobes & null_scattering) sum += slab.transmitted;
     return sum;
   }
 

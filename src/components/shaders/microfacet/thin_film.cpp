@@ -29,17 +29,17 @@ class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
   ThinFilmScatter(const SurfacePoint& p, const Layers& layers)
       : ScatterModel(p, Lobes(specular_reflection | (layers.through ? Lobes(specular_transmission) : no_lobes))),
         layers_(layers) {
-    if (layers.dispersive && layers.through) dispersed_ = specular_transmission;
+    if (layers.dispersive && layers.through) dispersed_lobes_ = specular_transmission;
   }
 
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return {}; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const { return 0; }
 
-  bool local_sample(const Vector3& out, float choice, Point2, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2, Lobes lobes, LocalSample& s) const {
     const Spectrum reflected = reflectance(out);
     float reflect_probability = reflected.average();
-    if (!(which & specular_transmission)) reflect_probability = 1;
-    if (!(which & specular_reflection)) reflect_probability = 0;
+    if (!(lobes & specular_transmission)) reflect_probability = 1;
+    if (!(lobes & specular_reflection)) reflect_probability = 0;
     if (choice < reflect_probability) {
       s.in = {-out.x, -out.y, out.z};
       s.value = reflected;
@@ -58,11 +58,11 @@ class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
     return s.pdf > 0;
   }
 
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     const Spectrum reflected = reflectance(out);
     Spectrum sum;
-    if (which & specular_reflection) sum += reflected;
-    if (which & specular_transmission) sum += Spectrum(1.0f) - reflected;
+    if (lobes & specular_reflection) sum += reflected;
+    if (lobes & specular_transmission) sum += Spectrum(1.0f) - reflected;
     return sum;
   }
 

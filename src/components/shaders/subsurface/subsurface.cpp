@@ -35,14 +35,14 @@ class BoundaryScatter final : public ScatterModel<BoundaryScatter> {
   BoundaryScatter(const SurfacePoint& p, Spectrum eta)
       : ScatterModel(p, specular_reflection | specular_transmission), eta_(eta) {}
 
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const override { return {}; }
-  float local_pdf(const Vector3&, const Vector3&, Lobes) const override { return 0; }
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return {}; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const { return 0; }
 
-  bool local_sample(const Vector3& out, float choice, Point2, Lobes which, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float choice, Point2, Lobes lobes, LocalSample& s) const {
     const Spectrum reflected = reflectance_of(std::abs(out.z), eta_);
     float probability = reflected.average();
-    if (!(which & specular_transmission)) probability = 1;
-    if (!(which & specular_reflection)) probability = 0;
+    if (!(lobes & specular_transmission)) probability = 1;
+    if (!(lobes & specular_reflection)) probability = 0;
     if (choice < probability) {
       s.in = {-out.x, -out.y, out.z};
       s.value = reflected;
@@ -56,11 +56,11 @@ class BoundaryScatter final : public ScatterModel<BoundaryScatter> {
     }
     return true;
   }
-  Spectrum local_albedo(const Vector3& out, Lobes which) const override {
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     const Spectrum reflected = reflectance_of(std::abs(out.z), eta_);
     Spectrum sum;
-    if (which & specular_reflection) sum += reflected;
-    if (which & specular_transmission) sum += Spectrum(1.0f) - reflected;
+    if (lobes & specular_reflection) sum += reflected;
+    if (lobes & specular_transmission) sum += Spectrum(1.0f) - reflected;
     return sum;
   }
 
@@ -71,20 +71,20 @@ class BoundaryScatter final : public ScatterModel<BoundaryScatter> {
 /// Light that leaves the body: f = (1 - F(in)) / (c pi) [1/sr], sampled with the pdf cos / pi.
 class ExitScatter final : public ScatterModel<ExitScatter> {
  public:
+  static constexpr bool uses_choice = false;
+
   ExitScatter(const SurfacePoint& p, Spectrum eta)
       : ScatterModel(p, diffuse_reflection),
         eta_(eta),
-        scale_(map(eta, [](float e) { return 1 / (1 - mean_fresnel_dielectric(e)); })) {
-    has_choice_ = false;
-  }
+        scale_(map(eta, [](float e) { return 1 / (1 - mean_fresnel_dielectric(e)); })) {}
 
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const override {
+  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? passed(std::abs(in.z)) * inverse_pi : Spectrum();
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const override {
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
   }
-  bool local_sample(const Vector3& out, float, Point2 u, Lobes, LocalSample& s) const override {
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes, LocalSample& s) const {
     s.in = warp::cosine_hemisphere(u);
     s.pdf = s.in.z * inverse_pi;
     s.value = passed(s.in.z) * s.pdf;
@@ -92,8 +92,8 @@ class ExitScatter final : public ScatterModel<ExitScatter> {
     if (out.z < 0) s.in.z = -s.in.z;
     return s.pdf > 0;
   }
-  Spectrum local_albedo(const Vector3&, Lobes which) const override {
-    return (which & diffuse_reflection) ? Spectrum(1.0f) : Spectrum();
+  Spectrum local_albedo(const Vector3&, Lobes lobes) const {
+    return (lobes & diffuse_reflection) ? Spectrum(1.0f) : Spectrum();
   }
 
  private:
