@@ -2,13 +2,13 @@
 
 #include "components/shaders/fresnel.h"
 #include "components/shaders/joint_scatter.h"
+#include "components/shaders/layered/principled_scatter.h"
 #include "components/shaders/microfacet/roughness.h"
 #include "components/shaders/reflectance.h"
 #include "components/shaders/tangent_frame.h"
 #include "disney_lobes.h"
 #include "etendue/core/warp.h"
 #include "etendue/transport/medium_stack.h"
-#include "principled_scatter.h"
 
 namespace etendue {
 namespace {

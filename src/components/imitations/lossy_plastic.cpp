@@ -4,10 +4,10 @@
 
 #include "components/shaders/fresnel.h"
 #include "components/shaders/joint_scatter.h"
+#include "components/shaders/microfacet/microfacet_quadrature.h"
+#include "components/shaders/microfacet/roughness.h"
 #include "components/shaders/reflectance.h"
 #include "etendue/core/warp.h"
-#include "microfacet_quadrature.h"
-#include "roughness.h"
 
 namespace etendue {
 namespace {
