@@ -132,10 +132,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
       }
     }
     if ((s.in.z * out.z > 0) == (s.lobe == glossy_transmission)) return false;  // blocked by another facet
-    const ScatterValue both = local_value_and_pdf(out, s.in, which);
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
-    return s.pdf > 0;
+    return complete(s, local_value_and_pdf(out, s.in, which));
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {

@@ -53,11 +53,6 @@ class MatteGlossyScatter : public JointScatter<Model> {
     }
     return r;
   }
-  static bool complete(Scatter::LocalSample& s, const ScatterValue& both) {
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
-    return s.pdf > 0;
-  }
 
  private:
   const Model& model() const { return static_cast<const Model&>(*this); }

@@ -98,10 +98,7 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
     }
     if (!(s.in.z > 0)) return false;
     if (out.z < 0) s.in.z = -s.in.z;
-    const ScatterValue both = value_and_pdf_of(out, s.in, share, which);
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
-    return s.pdf > 0;
+    return complete(s, value_and_pdf_of(out, s.in, share, which));
   }
   Spectrum local_albedo(const Vector3& out, Lobes which) const override {
     Spectrum sum;

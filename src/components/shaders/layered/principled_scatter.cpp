@@ -226,10 +226,7 @@ bool PrincipledScatter::local_sample(const Vector3& out, float choice, Point2 u,
                      : (is_glossy ? glossy_reflection : diffuse_reflection);
     if (through) s.eta = hero_index(out, s.in);
   }
-  const ScatterValue both = combine(out, s.in, which, plan);
-  s.value = both.value * std::abs(s.in.z);
-  s.pdf = both.pdf;
-  return s.pdf > 0;
+  return complete(s, combine(out, s.in, which, plan));
 }
 
 /// Samples the base: the whole sample for a smooth base, the direction and lobe for a rough one.

@@ -96,12 +96,9 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
       if ((s.in.z * out.z > 0) != reflects) return false;  // blocked by another facet
     }
     const bool above = s.in.z * out.z > 0;
-    const ScatterValue both = local_value_and_pdf(out, s.in, which);
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
     s.lobe = above ? glossy_reflection : glossy_transmission;
     if (!above) s.eta = towards(out, eta_[0]);
-    return s.pdf > 0;
+    return complete(s, local_value_and_pdf(out, s.in, which));
   }
 
   // Single reflection, and the energy that single scattering misses, are tabulated for isotropic distributions. For anisotropic
