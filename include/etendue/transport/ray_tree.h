@@ -58,17 +58,17 @@ struct LuminaireSample {
 /// Samples a point on a luminaire as seen from a surface point; false: no light arrives from there.
 inline bool sample_luminaire(const Scene& scene, const SceneObject& luminaire, const SurfacePoint& point,
                              const Wavelengths& wavelengths, Point2 u, LuminaireSample& light) {
-  SurfaceSample s = luminaire.sample_visible(point.position, u, point.time);
-  if (!(s.pdf > 0)) return false;
-  light.radiance = luminaire.emission->radiance(s.point, -s.direction, wavelengths);
-  if (light.radiance.black() || !scene.in_front(s.point, -s.direction)) return false;
-  if (s.infinite)
-    point.leave(s.direction, light.shadow);
+  SurfaceSample sampled = luminaire.sample_visible(point.position, u, point.time);
+  if (!(sampled.pdf > 0)) return false;
+  light.radiance = luminaire.emission->radiance(sampled.point, -sampled.direction, wavelengths);
+  if (light.radiance.black() || !scene.in_front(sampled.point, -sampled.direction)) return false;
+  if (sampled.infinite)
+    point.leave(sampled.direction, light.shadow);
   else
-    point.towards(s.point, light.shadow);
-  light.direction = s.direction;
-  light.pdf = s.pdf;
-  light.delta = s.delta;
+    point.towards(sampled.point, light.shadow);
+  light.direction = sampled.direction;
+  light.pdf = sampled.pdf;
+  light.delta = sampled.delta;
   return true;
 }
 
@@ -88,7 +88,8 @@ struct RayBranch {
     return crossings <= most_crossings;
   }
 
-  RayBranch(const Scene& scene, const Ray& camera_ray, const Wavelengths& w) : ray(camera_ray), wavelengths(w) {
+  RayBranch(const Scene& scene, const Ray& camera_ray, const Wavelengths& wavelengths_)
+      : ray(camera_ray), wavelengths(wavelengths_) {
     tracked = media_around(scene, ray, media) != nullptr;
   }
   MediumStack* around() { return tracked ? &media : nullptr; }
