@@ -57,9 +57,9 @@ class EmissionShader : public Component {
 
   /// Whether the side of the surface that the direction is on emits. A point without a normal, on a delta light, emits in all
   /// directions.
-  bool emits(const SurfacePoint& p, const Vector3& direction) const {
-    if (sides == Sides::both || p.normal == Normal3{}) return true;
-    return (dot(p.normal, direction) > 0) == (sides == Sides::front);
+  bool emits(const SurfacePoint& point, const Vector3& direction) const {
+    if (sides == Sides::both || point.normal == Normal3{}) return true;
+    return (dot(point.normal, direction) > 0) == (sides == Sides::front);
   }
 
   Sides sides = Sides::front;

@@ -89,9 +89,9 @@ class Scene : public SceneObject {
   /// Whether any surface has null scattering, so that shadow rays may have to continue through surfaces.
   bool has_null_surfaces() const { return has_null_surfaces_; }
   /// Whether a point may lie inside an object that paths can enter: a quick conservative test by bounding boxes.
-  bool maybe_inside(const Point3& p) const {
+  bool maybe_inside(const Point3& position) const {
     for (const Bounds3& box : interiors_)
-      if (box.contains(p)) return interior_tree_.empty() || in_interior_tree(p);
+      if (box.contains(position)) return interior_tree_.empty() || in_interior_tree(position);
     return false;
   }
   /// The object whose interior fills all space outside of other objects (SceneObject::surrounds); null: vacuum.

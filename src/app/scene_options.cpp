@@ -56,6 +56,13 @@ void SceneOptions::add_overrides_to(CLI::App& command) {
   command.add_option("--fps", fps, "Frames in a second of 'time' [24]")->type_name("F");
 }
 
+void add_description_output(CLI::App& command, std::string& output) {
+  command
+      .add_option("-o,--output", output, "The file to write: .etd, or JSON if its name ends in .json; - for standard output")
+      ->required()
+      ->type_name("FILE");
+}
+
 double SceneOptions::frames_per_second() const {
   if (fps.empty()) return default_fps;
   double value = 0;

@@ -57,6 +57,9 @@ struct SceneOptions {
   void apply_sets(Job&) const;
 };
 
+/// Adds the option that names the description to be written.
+void add_description_output(CLI::App& command, std::string& output);
+
 /// The text, in single quotes if it has characters that are special to a shell.
 std::string shell_quoted(const std::string& text);
 

@@ -98,7 +98,7 @@ struct Registry::State {
   }
 };
 
-Registry::Registry() : s(new State) {}
+Registry::Registry() : state_(new State) {}
 
 Registry& Registry::instance() {
   static Registry* registry = new Registry;  // never destroyed: components of plugins may outlive main
@@ -134,7 +134,7 @@ std::string note_defaults(const std::vector<ClassInfo*>& added) {
 }  // namespace
 
 void Registry::adopt() {
-  const std::lock_guard lock(s->mutex);
+  const std::lock_guard lock(state_->mutex);
   const std::lock_guard libraries(libraries_guard());  // all classes of a library, or none
   if (!pending) return;
   std::unordered_map<std::type_index, RegistrationNode*> waiting;
@@ -144,27 +144,27 @@ void Registry::adopt() {
     const auto where = [](const std::string& provider) {
       return provider.empty() ? std::string("this program") : "'" + provider + "'";
     };
-    faults += first_provider == s->provider
-                  ? fmt::format("\n  {}: {} defines this class twice", name, where(s->provider))
+    faults += first_provider == state_->provider
+                  ? fmt::format("\n  {}: {} defines this class twice", name, where(state_->provider))
                   : fmt::format("\n  {}: there already is a class of this name: both {} and {} define it", name,
-                                where(first_provider), where(s->provider));
+                                where(first_provider), where(state_->provider));
   };
   for (RegistrationNode* n = take_pending(); n; n = n->next) {
-    if (const auto known = s->by_type.find(n->type); known != s->by_type.end())
+    if (const auto known = state_->by_type.find(n->type); known != state_->by_type.end())
       defined_twice(known->second->name, known->second->provider);
     else if (!waiting.try_emplace(n->type, n).second)
-      defined_twice(detail::bare_class_name(n->type), s->provider);
+      defined_twice(detail::bare_class_name(n->type), state_->provider);
   }
 
   // Parents come before children: a class starts with its parent's members.
   const std::function<const ClassInfo*(const std::type_info&)> take = [&](const std::type_info& type) -> const ClassInfo* {
-    if (const auto known = s->by_type.find(type); known != s->by_type.end()) return known->second;
+    if (const auto known = state_->by_type.find(type); known != state_->by_type.end()) return known->second;
     const auto node = waiting.find(type);
     if (node == waiting.end()) return nullptr;
     auto info = std::make_unique<ClassInfo>();
     info->name = detail::bare_class_name(type);
     info->type = type;
-    info->provider = s->provider;
+    info->provider = state_->provider;
     info->create = node->second->create;
     if (node->second->parent != typeid(void)) {
       info->parent = take(node->second->parent);
@@ -184,11 +184,11 @@ void Registry::adopt() {
     }
     if (const std::string wrong = fault(*info); !wrong.empty()) faults += "\n  " + info->name + ": " + wrong;
     ClassInfo* raw = info.get();
-    if (!s->by_name.try_emplace(info->name, std::move(info)).second) {
-      defined_twice(detail::bare_class_name(type), s->by_name.find(detail::bare_class_name(type))->second->provider);
+    if (!state_->by_name.try_emplace(info->name, std::move(info)).second) {
+      defined_twice(detail::bare_class_name(type), state_->by_name.find(detail::bare_class_name(type))->second->provider);
       return nullptr;
     }
-    s->by_type[type] = raw;
+    state_->by_type[type] = raw;
     added.push_back(raw);
     return raw;
   };
@@ -197,48 +197,48 @@ void Registry::adopt() {
   if (faults.empty()) faults = note_defaults(added);
   if (faults.empty()) return;
   for (const ClassInfo* info : added) {
-    s->by_type.erase(info->type);
-    s->by_name.erase(info->name);
+    state_->by_type.erase(info->type);
+    state_->by_name.erase(info->name);
   }
   throw Error("classes that cannot be used:" + faults);
 }
 
 const ClassInfo* Registry::find(std::string_view name) const {
   const_cast<Registry*>(this)->adopt();
-  const std::lock_guard lock(s->mutex);
-  auto found = s->by_name.find(name);
+  const std::lock_guard lock(state_->mutex);
+  auto found = state_->by_name.find(name);
   // Names of classes begin with a capital; the parser looks up every other name of a scene, too.
   const bool capital = !name.empty() && name[0] >= 'A' && name[0] <= 'Z';
-  if (found == s->by_name.end() && capital && load_format_library()) {
+  if (found == state_->by_name.end() && capital && load_format_library()) {
     const_cast<Registry*>(this)->adopt();
-    found = s->by_name.find(name);
+    found = state_->by_name.find(name);
   }
-  return found == s->by_name.end() ? nullptr : found->second.get();
+  return found == state_->by_name.end() ? nullptr : found->second.get();
 }
 
 const ClassInfo* Registry::find(std::type_index type) const {
   const_cast<Registry*>(this)->adopt();
-  const std::lock_guard lock(s->mutex);
-  const auto found = s->by_type.find(type);
-  return found == s->by_type.end() ? nullptr : found->second;
+  const std::lock_guard lock(state_->mutex);
+  const auto found = state_->by_type.find(type);
+  return found == state_->by_type.end() ? nullptr : found->second;
 }
 
 std::vector<const ClassInfo*> Registry::all() const {
-  const std::lock_guard lock(s->mutex);
+  const std::lock_guard lock(state_->mutex);
   load_format_library();
   const_cast<Registry*>(this)->adopt();
-  return s->creatable();
+  return state_->creatable();
 }
 
 std::vector<const ClassInfo*> Registry::subclasses(const ClassInfo& of) const {
   const_cast<Registry*>(this)->adopt();
-  const std::lock_guard lock(s->mutex);
-  std::vector<const ClassInfo*> list = s->creatable();
+  const std::lock_guard lock(state_->mutex);
+  std::vector<const ClassInfo*> list = state_->creatable();
   const auto unrelated = [&](const ClassInfo* c) { return c->abstract() || !c->is_a(of); };
   std::erase_if(list, unrelated);
   if (!list.empty() || !load_format_library()) return list;
   const_cast<Registry*>(this)->adopt();  // none of the interface's classes was loaded
-  list = s->creatable();
+  list = state_->creatable();
   std::erase_if(list, unrelated);
   return list;
 }
@@ -255,48 +255,48 @@ Ref<Component> Registry::create(std::string_view name) const {
 }
 
 std::vector<std::string> Registry::plugins() const {
-  const std::lock_guard lock(s->mutex);
+  const std::lock_guard lock(state_->mutex);
   std::vector<std::string> list;
-  for (const auto& [path, handle] : s->plugins) list.push_back(path);
+  for (const auto& [path, handle] : state_->plugins) list.push_back(path);
   return list;
 }
 
 void Registry::load_plugin(const std::string& path) {
   {
     // First, so that a plugin that defines a class of that library again is refused here, and for that reason.
-    const std::lock_guard lock(s->mutex);
+    const std::lock_guard lock(state_->mutex);
     load_format_library();
     adopt();
   }
   const std::string file = find_plugin(path);
   note_input(file);
   {
-    const std::lock_guard lock(s->mutex);
-    if (s->plugins.contains(file)) return;
-    if (const auto known = s->refused.find(file); known != s->refused.end()) throw Error(known->second);
+    const std::lock_guard lock(state_->mutex);
+    if (state_->plugins.contains(file)) return;
+    if (const auto known = state_->refused.find(file); known != state_->refused.end()) throw Error(known->second);
   }
   const auto named = [&] { return Error("plugin '" + file + "': " + thrown_text()); };
   try {
     // Without the lock, since the child process could not lock it again.
     check_plugin(file, [&] {
-      s->provider = file;
+      state_->provider = file;
       adopt();
     });
   } catch (...) {
     throw named();
   }
-  const std::lock_guard lock(s->mutex);
-  s->provider = file;
+  const std::lock_guard lock(state_->mutex);
+  state_->provider = file;
   try {
-    s->plugins[file] = open_plugin(file);  // its static nodes enlist themselves; their functions are not called yet
+    state_->plugins[file] = open_plugin(file);  // its static nodes enlist themselves; their functions are not called yet
     adopt();
-    s->provider.clear();
+    state_->provider.clear();
   } catch (...) {
-    s->provider.clear();
-    s->plugins.erase(file);
+    state_->provider.clear();
+    state_->plugins.erase(file);
     take_pending();
     const Error reason = named();
-    s->refused[file] = reason.what();
+    state_->refused[file] = reason.what();
     throw reason;
   }
 }

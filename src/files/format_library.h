@@ -1,6 +1,7 @@
 #pragma once
-// The library of foreign formats: importers, exporters and what only they use (libetendue_formats.so, src/components/importers
-// and exporters). It is loaded when a file of another program is read or written, a part of such a file is opened
+// The library of foreign formats: importers, exporters, imitations of other programs' models and what only they use
+// (libetendue_formats.so; src/components/importers, exporters and imitations). It is loaded when a file of another program is
+// read or written, a part of such a file is opened
 // ("model.glb#images[3].png"), or a class of it is looked up by name. So rendering a description of our own neither waits for
 // it nor is built with it.
 

@@ -47,7 +47,7 @@ std::vector<GuideSample> GuidedDirections::learned(std::span<const SubpathVertex
     for (size_t m = k + 1; m < walk.size(); ++m) {
       distance_met +=
           walk[m].kind == PathVertex::Kind::escape ? infinity : distance(walk[m - 1].point.position, walk[m].point.position);
-      if (!walk[m].specular) break;
+      if (!walk[m].leaves_specularly) break;
     }
     s.nearness = 1 / distance_met;
     samples.push_back(s);

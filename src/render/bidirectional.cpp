@@ -3,41 +3,6 @@
 #include "etendue/guiding/guided_directions.h"
 
 namespace etendue {
-namespace {
-
-/// The sum of the contributions of one sample.
-class Sum {
- public:
-  Sum(const BidirectionalSettings& settings, const BidirectionalSubpaths& paths, SampleContext& sample, bool trains)
-      : settings_(settings), paths_(paths), sample_(sample), trains_(trains) {}
-
-  void add(const PathContribution& c) {
-    if (!settings_.uses(c.s, c.t)) return;
-    if (!settings_.strategies.connecting() && !paths_.has_specular_prefix(c.t)) return;
-    add_contribution(sample_, paths_.light_wavelengths(), c, radiance);
-    if (!trains_ || c.t < 2) return;
-    if (by_camera_vertices.size() <= size_t(c.t)) by_camera_vertices.resize(size_t(c.t) + 1);
-    by_camera_vertices[size_t(c.t)] += c.light * c.weight;
-  }
-  void add(const std::optional<PathContribution>& c) {
-    if (c) add(*c);
-  }
-  void add(std::span<const PathContribution> all) {
-    for (const PathContribution& c : all) add(c);
-  }
-
-  Spectrum radiance;
-  std::vector<Spectrum> by_camera_vertices;  ///< the same by t, if the sample trains a guide
-
- private:
-  const BidirectionalSettings& settings_;
-  const BidirectionalSubpaths& paths_;
-  SampleContext& sample_;
-  const bool trains_;
-};
-
-}  // namespace
-
 Spectrum bidirectional_radiance(const RenderContext& context, const LightSampler& lights, const Ray& ray, SampleContext& sample,
                                 const BidirectionalSettings& settings, const PhotonProcess::Photons* photons,
                                 const LearnedGuide* guide) {
@@ -50,7 +15,16 @@ Spectrum bidirectional_radiance(const RenderContext& context, const LightSampler
 
   BidirectionalSubpaths paths(context, lights, sample,
                               {settings.heuristic, settings.weighted, photons ? photons->merging : Merging{}});
-  Sum sum(settings, paths, sample, trains);
+  std::vector<Spectrum> by_camera_vertices;  // the radiance by t, if the sample trains a guide
+  ContributionSum sum(sample, paths, [&](const PathContribution& c) {
+    if (!settings.uses(c.s, c.t)) return false;
+    if (!use.connecting() && !paths.has_specular_prefix(c.t)) return false;
+    if (trains && c.t >= 2) {
+      if (by_camera_vertices.size() <= size_t(c.t)) by_camera_vertices.resize(size_t(c.t) + 1);
+      by_camera_vertices[size_t(c.t)] += c.light * c.weight;
+    }
+    return true;
+  });
   if (use.from_camera()) paths.from_camera(ray, {k, settings.roulette_depth, directions ? &*directions : nullptr});
   if (use.emitter_hits) sum.add(paths.segment_emission());
   if (use.connecting()) paths.from_luminaire(ray.time, {k - 1, settings.roulette_depth});
@@ -76,7 +50,7 @@ Spectrum bidirectional_radiance(const RenderContext& context, const LightSampler
       if (settings.uses(s, 1) && paths.light_vertex(s).connectable()) sum.add(paths.connect_to_lens(s));
 
   if (trains)
-    for (const GuideSample& each : directions->learned(paths.camera_subpath(), sum.by_camera_vertices))
+    for (const GuideSample& each : directions->learned(paths.camera_subpath(), by_camera_vertices))
       sample.sink.records.add(each);
   paths.record();
   return sum.radiance;

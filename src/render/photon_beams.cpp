@@ -40,7 +40,8 @@ struct BeamEvents final : SegmentEvents {
     if (!medium.volume->homogeneous() || int(walk.size()) < walks.fewest_in_media ||
         (walks.kept < 1 && double(kept) >= walks.kept))
       return;
-    const bool caustic = walk.size() > 1 && std::all_of(walk.begin() + 1, walk.end(), [](const auto& v) { return v.specular; });
+    const bool caustic =
+        walk.size() > 1 && std::all_of(walk.begin() + 1, walk.end(), [](const auto& v) { return v.leaves_specularly; });
     if (walks.kinds != PhotonKinds::all && caustic != (walks.kinds == PhotonKinds::caustics)) return;
     const float least = least_extinction(medium.coefficients(ray.origin, ray.time, wavelengths));
     if (!(least > 0)) return;

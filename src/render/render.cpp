@@ -36,18 +36,19 @@ bool WithinStep::of(const Render::Members& m) { return within == &m; }
 
 // ---- construction ----------------------------------------------------------------------------------------------------------
 
-Render::Render(Ref<Job> job, RenderSettings settings) : m(std::make_unique<Members>(std::move(job), std::move(settings))) {
-  if (!m->job) throw Error("there is no job to render");
-  prepare_tree(*m->job);
-  m->film = std::make_unique<Film>(*m->job->image, m->job->renderer->estimator());
-  m->step_size = m->samples_per_step();
+Render::Render(Ref<Job> job, RenderSettings settings)
+    : members_(std::make_unique<Members>(std::move(job), std::move(settings))) {
+  if (!members_->job) throw Error("there is no job to render");
+  prepare_tree(*members_->job);
+  members_->film = std::make_unique<Film>(*members_->job->image, members_->job->renderer->estimator());
+  members_->step_size = members_->samples_per_step();
 }
 Render::~Render() = default;
 
-const Job& Render::job() const { return *m->job; }
-const RenderSettings& Render::settings() const { return m->settings; }
-Film& Render::film() { return *m->film; }
-const Film& Render::film() const { return *m->film; }
+const Job& Render::job() const { return *members_->job; }
+const RenderSettings& Render::settings() const { return members_->settings; }
+Film& Render::film() { return *members_->film; }
+const Film& Render::film() const { return *members_->film; }
 
 std::uint32_t Render::Members::samples_per_step() const {
   const std::uint32_t usual = etendue::samples_per_step(job->image->area());
@@ -55,8 +56,8 @@ std::uint32_t Render::Members::samples_per_step() const {
 }
 
 std::uint32_t Render::samples_per_step() const {
-  const std::shared_lock sharing(m->description);
-  return m->samples_per_step();
+  const std::shared_lock sharing(members_->description);
+  return members_->samples_per_step();
 }
 
 IndexRange Render::Members::wanted() const {
@@ -94,9 +95,9 @@ void Render::Members::empty() {
 }
 
 void Render::restart(std::optional<std::uint64_t> seed) {
-  const BetweenSteps alone(*m, true);
-  if (seed) m->job->seed = *seed;
-  m->empty();
+  const BetweenSteps alone(*members_, true);
+  if (seed) members_->job->seed = *seed;
+  members_->empty();
 }
 
 // ---- one step --------------------------------------------------------------------------------------------------------------
@@ -188,10 +189,10 @@ struct Forgotten {
 }  // namespace
 
 std::optional<Ended> Render::step() {
-  const Forgotten forgotten{*m};
-  if (m->stop.load()) return Ended::interrupted;
-  ParallelSchedule schedule(*m->film, m->settings.threads, m->give_up);
-  return m->step(schedule);
+  const Forgotten forgotten{*members_};
+  if (members_->stop.load()) return Ended::interrupted;
+  ParallelSchedule schedule(*members_->film, members_->settings.threads, members_->give_up);
+  return members_->step(schedule);
 }
 
 // ---- all steps -------------------------------------------------------------------------------------------------------------
@@ -209,61 +210,62 @@ std::optional<Ended> Render::Members::reason_to_stop() {
 }
 
 Ended Render::run() {
-  const Forgotten forgotten{*m};
-  const bool keeps = !m->settings.checkpoint_file.empty();
+  const Forgotten forgotten{*members_};
+  const bool keeps = !members_->settings.checkpoint_file.empty();
   {
-    const std::shared_lock sharing(m->description);
-    m->wanted();
+    const std::shared_lock sharing(members_->description);
+    members_->wanted();
     if (keeps) {
-      m->identity.reset();  // hashes the files as they are now
-      m->identity_now();
-      remove_leftovers(m->settings.checkpoint_file);
+      members_->identity.reset();  // hashes the files as they are now
+      members_->identity_now();
+      remove_leftovers(members_->settings.checkpoint_file);
     }
   }
   using Clock = std::chrono::steady_clock;
   Clock::time_point shown = Clock::now(), kept = shown;
   const auto report = [&](bool finished) {
-    if (!m->settings.on_progress || (!finished && seconds_since(shown) < m->settings.progress_interval)) return;
+    if (!members_->settings.on_progress || (!finished && seconds_since(shown) < members_->settings.progress_interval)) return;
     shown = Clock::now();
     Progress p = progress();
     p.finished = finished;
-    m->settings.on_progress(p);
+    members_->settings.on_progress(p);
   };
-  ParallelSchedule schedule(*m->film, m->settings.threads, m->give_up, [&](std::uint64_t item, std::uint64_t count) {
-    const WithinStep no_edits(*m);
-    {
-      const std::lock_guard lock(m->counts);
-      m->part_at_hand = double(item) / double(count);
-    }
-    report(false);
-  });
+  ParallelSchedule schedule(*members_->film, members_->settings.threads, members_->give_up,
+                            [&](std::uint64_t item, std::uint64_t count) {
+                              const WithinStep no_edits(*members_);
+                              {
+                                const std::lock_guard lock(members_->counts);
+                                members_->part_at_hand = double(item) / double(count);
+                              }
+                              report(false);
+                            });
   std::optional<Ended> ended;
   bool written = false;
   if (!samples_done().empty()) {
-    ended = m->reason_to_stop();
-    written = keeps && m->loaded_from == m->settings.checkpoint_file;
+    ended = members_->reason_to_stop();
+    written = keeps && members_->loaded_from == members_->settings.checkpoint_file;
   }
   while (!ended) {
-    ended = m->step(schedule);
+    ended = members_->step(schedule);
     if (ended == Ended::aborted) return *ended;
     if (ended) break;
     written = false;
-    ended = m->reason_to_stop();
-    if (keeps && !ended && seconds_since(kept) >= m->settings.checkpoint_interval) {
-      m->keep();
+    ended = members_->reason_to_stop();
+    if (keeps && !ended && seconds_since(kept) >= members_->settings.checkpoint_interval) {
+      members_->keep();
       kept = Clock::now();
       written = true;
     }
   }
-  if (keeps && !written) m->keep();
+  if (keeps && !written) members_->keep();
   report(true);
   return *ended;
 }
 
-void Render::stop() { m->stop.store(true); }
+void Render::stop() { members_->stop.store(true); }
 void Render::abort() {
-  m->abort.store(true);
-  m->give_up.store(true);
+  members_->abort.store(true);
+  members_->give_up.store(true);
 }
 
 }  // namespace etendue

@@ -44,36 +44,36 @@ void Render::edit(const Component& component, const std::string& member, const V
 }
 
 void Render::edit(std::span<const Edit> edits) {
-  const std::lock_guard one_at_a_time(m->editing);
-  if (!m->holders) m->holders = std::make_unique<Holders>(*m->job);
+  const std::lock_guard one_at_a_time(members_->editing);
+  if (!members_->holders) members_->holders = std::make_unique<Holders>(*members_->job);
   Consequences consequences;
   for (const Edit& edit : edits) {
-    if (!edit.component || !m->holders->knows(*edit.component))
+    if (!edit.component || !members_->holders->knows(*edit.component))
       throw Error("what is to be edited is no part of the job that is rendered");
     const Member* member = edit.component->class_info().find(edit.member);
     if (!member) get(*edit.component, edit.member);  // throws Error with the list of members
-    consequences.note(*m->holders, editable(edit), *member, edit.value);
+    consequences.note(*members_->holders, editable(edit), *member, edit.value);
   }
 
   std::optional<BetweenSteps> alone;
-  if (consequences.effect() != Effect::retone) alone.emplace(*m, consequences.effect() >= Effect::rerender);
-  const std::unique_lock unseen(m->look);
+  if (consequences.effect() != Effect::retone) alone.emplace(*members_, consequences.effect() >= Effect::rerender);
+  const std::unique_lock unseen(members_->look);
   Changes changes(edits);
-  if (alone) m->park_process();
+  if (alone) members_->park_process();
   try {
-    consequences.prepare(*m->job, *m->holders);
-    m->follow(consequences);
+    consequences.prepare(*members_->job, *members_->holders);
+    members_->follow(consequences);
   } catch (...) {
     const std::exception_ptr reason = std::current_exception();
     try {
       changes.put_back();
-      consequences.prepare(*m->job, *m->holders);
+      consequences.prepare(*members_->job, *members_->holders);
     } catch (const std::exception& e) {
-      m->broken = std::string("an edit that failed could not be undone: ") + e.what();
+      members_->broken = std::string("an edit that failed could not be undone: ") + e.what();
     }
     std::rethrow_exception(reason);
   }
-  if (consequences.structure()) m->holders.reset();
+  if (consequences.structure()) members_->holders.reset();
 }
 
 /// Continues or starts over after an edit. Throws before any collected samples are lost.

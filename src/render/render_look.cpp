@@ -41,34 +41,36 @@ std::shared_lock<std::shared_mutex> share(const Render::Members& m) {
 }  // namespace
 
 Progress Render::progress() const {
-  const std::shared_lock sharing = share(*m);
-  const std::lock_guard lock(m->counts);
-  return m->progress_now();
+  const std::shared_lock sharing = share(*members_);
+  const std::lock_guard lock(members_->counts);
+  return members_->progress_now();
 }
 
 RenderSnapshot Render::snapshot() const {
-  const std::shared_lock sharing = share(*m);
-  const std::lock_guard lock(m->counts);
-  return {m->film->snapshot(), m->progress_now(), picture_metadata(*m->job, count(m->done))};
+  const std::shared_lock sharing = share(*members_);
+  const std::lock_guard lock(members_->counts);
+  return {members_->film->snapshot(), members_->progress_now(), picture_metadata(*members_->job, count(members_->done))};
 }
 
 std::vector<IndexRange> Render::samples_done() const {
-  const std::lock_guard lock(m->counts);
-  return m->done;
+  const std::lock_guard lock(members_->counts);
+  return members_->done;
 }
 
 Image Render::display(const Image& picture) const {
-  const std::shared_lock sharing(m->look);
-  return m->job->tone_map ? m->job->tone_map->apply(picture) : picture;
+  const std::shared_lock sharing(members_->look);
+  return members_->job->tone_map ? members_->job->tone_map->apply(picture) : picture;
 }
 
 std::vector<std::string> Render::write_outputs(const std::string& default_stem) const {
   const Image picture = this->picture();
-  const std::shared_lock sharing(m->look);
+  const std::shared_lock sharing(members_->look);
   std::vector<std::string> written;
-  for (const Ref<Output>& output : m->job->outputs) written.push_back(write_output(*m->job, *output, picture, default_stem));
+  for (const Ref<Output>& output : members_->job->outputs)
+    written.push_back(write_output(*members_->job, *output, picture, default_stem));
   std::vector<Error> errors;
-  for (std::string& path : write_denoised(*m->job, m->job->outputs, picture, default_stem, m->settings.threads, errors))
+  for (std::string& path :
+       write_denoised(*members_->job, members_->job->outputs, picture, default_stem, members_->settings.threads, errors))
     written.push_back(std::move(path));
   if (!errors.empty()) throw Errors(std::move(errors));
   return written;
@@ -94,20 +96,20 @@ std::unique_ptr<RenderProcess> Render::Members::process_at(std::uint32_t sample)
 }
 
 std::unique_ptr<RenderProcess> Render::start_at(std::uint32_t sample) const {
-  const BetweenSteps alone(*m, false);
-  return m->process_at(sample);
+  const BetweenSteps alone(*members_, false);
+  return members_->process_at(sample);
 }
 
 Point2 Render::replay(int x, int y, std::uint32_t sample, PathRecord& record) const {
-  const BetweenSteps alone(*m, false);
-  if (!m->job->image->sampled_area().contains(x, y))
+  const BetweenSteps alone(*members_, false);
+  if (!members_->job->image->sampled_area().contains(x, y))
     throw Error("there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in the picture");
-  const std::unique_ptr<RenderProcess> process = m->process_at(sample);
+  const std::unique_ptr<RenderProcess> process = members_->process_at(sample);
   Arena arena;
   PathSink sink;
   sink.record = &record;
-  const Point2 film = rendering(*m->job, [&] { return process->sample(x, y, sample, arena, sink); }).film;
-  record.count_from_world(m->job->world_centre());
+  const Point2 film = rendering(*members_->job, [&] { return process->sample(x, y, sample, arena, sink); }).film;
+  record.count_from_world(members_->job->world_centre());
   return film;
 }
 

@@ -45,18 +45,18 @@ void Render::Members::keep() {
 }
 
 std::string Render::checkpoint_failure() const {
-  const std::lock_guard lock(m->counts);
-  return m->checkpoint_failure;
+  const std::lock_guard lock(members_->counts);
+  return members_->checkpoint_failure;
 }
 
 void Render::save(std::ostream& to) const {
-  const BetweenSteps alone(*m, false);
-  write_checkpoint(m->state_now(), to);
+  const BetweenSteps alone(*members_, false);
+  write_checkpoint(members_->state_now(), to);
 }
 
 void Render::save(const std::string& file) const {
-  const BetweenSteps alone(*m, false);
-  write_checkpoint(m->state_now(), file);
+  const BetweenSteps alone(*members_, false);
+  write_checkpoint(members_->state_now(), file);
 }
 
 // ---- loading ----------------------------------------------------------------------------------------------------------------
@@ -85,30 +85,30 @@ void Render::Members::take_over(Checkpoint&& from) {
 
 void Render::load(std::istream& stream) {
   Checkpoint from = read_checkpoint(stream);
-  const BetweenSteps alone(*m, true);
-  m->require_continuable(from, "this state");
-  m->take_over(std::move(from));
+  const BetweenSteps alone(*members_, true);
+  members_->require_continuable(from, "this state");
+  members_->take_over(std::move(from));
 }
 
 void Render::load(const std::string& file) {
   Checkpoint from = read_checkpoint(file);
-  const BetweenSteps alone(*m, true);
-  m->identity.reset();  // hashes the files as they are now
-  m->require_continuable(from, "'" + file + "'");
-  m->take_over(std::move(from));
-  m->loaded_from = file;
+  const BetweenSteps alone(*members_, true);
+  members_->identity.reset();  // hashes the files as they are now
+  members_->require_continuable(from, "'" + file + "'");
+  members_->take_over(std::move(from));
+  members_->loaded_from = file;
 }
 
 void Render::add(std::istream& stream) {
   const Checkpoint from = read_checkpoint(stream);
-  const BetweenSteps alone(*m, false);
-  std::string reason = mismatch(from, "the state", m->checkpoint(), "this job");
-  if (reason.empty() && (m->job->renderer->steps_depend() || !from.state.renderer.empty()))
-    reason = m->job->renderer->class_info().name + " learns from one pass to the next, so its passes belong together";
+  const BetweenSteps alone(*members_, false);
+  std::string reason = mismatch(from, "the state", members_->checkpoint(), "this job");
+  if (reason.empty() && (members_->job->renderer->steps_depend() || !from.state.renderer.empty()))
+    reason = members_->job->renderer->class_info().name + " learns from one pass to the next, so its passes belong together";
   std::vector<IndexRange> all;
   {
-    const std::lock_guard lock(m->counts);
-    all = m->done;
+    const std::lock_guard lock(members_->counts);
+    all = members_->done;
   }
   for (const IndexRange& range : from.done) {
     if (const std::vector<IndexRange> fresh = missing(all, range); reason.empty() && fresh != std::vector{range})
@@ -116,12 +116,12 @@ void Render::add(std::istream& stream) {
     insert(all, range);
   }
   if (!reason.empty()) throw Error("cannot add this state: " + reason);
-  const std::lock_guard lock(m->counts);
-  m->film->add_state(from.state.image);
-  m->done = std::move(all);
-  m->seconds += from.seconds;
-  m->loaded_from.clear();
-  m->before_short_step.reset();
+  const std::lock_guard lock(members_->counts);
+  members_->film->add_state(from.state.image);
+  members_->done = std::move(all);
+  members_->seconds += from.seconds;
+  members_->loaded_from.clear();
+  members_->before_short_step.reset();
 }
 
 }  // namespace etendue

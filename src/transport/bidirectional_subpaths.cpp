@@ -57,7 +57,7 @@ void BidirectionalSubpaths::from_luminaire(float time, const SubpathLimits& limi
 
 bool BidirectionalSubpaths::has_specular_prefix(int t) const {
   for (int i = 2; i < t; ++i)
-    if (!camera_vertex(i).specular) return false;
+    if (!camera_vertex(i).leaves_specularly) return false;
   return true;
 }
 

@@ -57,7 +57,9 @@ class Strategies {
   // Vertex i of the whole path, whether it can be connected (the two vertices of the connection that was made can), and its
   // pdfs.
   const SubpathVertex& vertex(int i) const { return i < path_.s ? path_.light[i] : path_.camera[path_.s + path_.t - 1 - i]; }
-  bool connectable(int i) const { return i == 0 || (i == path_.s - 1 && !merges_) || i == path_.s || !vertex(i).specular; }
+  bool connectable(int i) const {
+    return i == 0 || (i == path_.s - 1 && !merges_) || i == path_.s || !vertex(i).leaves_specularly;
+  }
   double from_light(int i) const {
     if (i == 0) return path_.pdf_emission_origin;
     if (i < path_.s) return path_.light[i].pdf_forward;
@@ -87,7 +89,8 @@ PhotonWeight photon_weight(const ConnectedPath& path, float pdf_forward, Heurist
   const Strategies strategies(path, heuristic, true);
   PhotonWeight w;
   w.pdf_forward = pdf_forward;
-  w.connecting = path.s == 1 || !path.light[path.s - 1].specular ? float(strategies.raised(strategies.first(path.s))) : 0;
+  w.connecting =
+      path.s == 1 || !path.light[path.s - 1].leaves_specularly ? float(strategies.raised(strategies.first(path.s))) : 0;
   w.others = strategies.before(1);
   return w;
 }

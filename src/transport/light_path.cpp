@@ -29,7 +29,7 @@ double LightPath::camera_angle(int i) const {
 
 double LightPath::light_angle(int i) const {
   const ChainVertex &b = x[size_t(i)], &before = x[size_t(i) - 1];
-  if (!before.specular) return cosine(b, before.out) / squared_distance(b.point.position, before.point.position);
+  if (!before.leaves_specularly) return cosine(b, before.out) / squared_distance(b.point.position, before.point.position);
   const ChainVertex& a = x[size_t(smooth_before(i))];
   double J = cosine(b, before.out) / cosine(a, a.out);
   for (int j = i - 1; specular(j); --j) J *= x[size_t(j)].beam;
@@ -126,7 +126,7 @@ bool PathSpace::complete(LightPath& path) const {
   for (int i = 1; i < k; ++i) {
     const ChainVertex& from = at(i - 1);
     double p = 0;
-    if (from.specular) {
+    if (from.leaves_specularly) {
       p = from.lobe_from_light;
     } else if (i == 1) {
       p = double(luminaire.emission->pdf(from.point, from.out));
@@ -154,7 +154,7 @@ bool PathSpace::complete(LightPath& path) const {
   Spectrum f = luminaire.emission->radiance(at(0).point, at(0).out, path.wavelengths);
   for (int i = k - 2; i >= 0; --i) {
     const ChainVertex& from = at(i + 1);
-    if (from.specular) {
+    if (from.leaves_specularly) {
       at(i).from_camera = from.lobe_from_camera;
       f *= from.fraction;
     } else {

@@ -81,7 +81,7 @@ bool choose_luminaire(const LightSampler& lights, float which, float time, Emitt
   const LightChoice choice = lights.choose(which);
   if (!choice.luminaire || !(choice.probability > 0)) return false;
   light.luminaire = choice.luminaire;
-  light.choice = choice.probability;
+  light.probability = choice.probability;
   light.infinite = light.placed = false;
   light.ray = {};
   light.ray.time = time;
@@ -101,18 +101,18 @@ bool sample_emitted_light(const Scene& scene, const LightSampler& lights, const 
     const Frame frame(Normal3(-s.direction));
     const Point2 across = front.sample(position);
     const Point3 through = front.centre() + across.x * frame.s + across.y * frame.t;
-    light.direction = s.pdf;
-    light.position = front.pdf(through, s.direction);
+    light.pdf_direction = s.pdf;
+    light.pdf_position = front.pdf(through, s.direction);
     if (!emit_from_infinity(scene, through, s, w, light)) return false;
   } else {
     const SurfaceSample s = luminaire.sample_area(position, time);
     if (!(s.pdf > 0)) return false;
     light.placed = true;
     light.point = s.point;
-    light.position = s.pdf;
+    light.pdf_position = s.pdf;
     const DirectionSample d = luminaire.emission->sample(s.point, direction);
     if (!(d.pdf > 0)) return false;
-    light.direction = d.pdf;
+    light.pdf_direction = d.pdf;
     emit_from_point(scene, s, d.direction, w, light);
   }
   return !light.radiance.black();

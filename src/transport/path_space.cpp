@@ -85,7 +85,7 @@ std::optional<Vector3> PathSpace::follow_lobes(Walk& walk, const Vector3& direct
     if (!follow(walk.back(), way, y, to)) return {};
     const auto s = follow_specular(to, to.out, transport, lobe);
     if (!s) return {};
-    to.specular = true;
+    to.leaves_specularly = true;
     to.lobe = lobe;
     way = s->direction;
     walk.push_back(to);
@@ -152,7 +152,7 @@ bool PathSpace::walk(Walk& walk, int count, Transport transport, ChoiceNumbers& 
       const auto s = specular_one ? follow_specular(from, out, transport, Lobe(lobe_groups[chosen]))
                                   : from.scatter->sample(out, next(choices), next_pair(choices), {transport, smooth_lobes});
       if (!s || enters_subsurface(from.point, *s)) return false;
-      from.specular = specular_one;
+      from.leaves_specularly = specular_one;
       from.lobe = Lobe(s->lobe);
       way = s->direction;
     }
@@ -195,13 +195,13 @@ bool PathSpace::joined(LightPath& y, const Walk& light, int b, const Walk& camer
   // The last vertex of each walk is connected here, so it does not count as specular.
   if (b == 0) {
     if (!is_luminaire(y.x.front())) return false;
-    y.x.front().specular = false;
+    y.x.front().leaves_specularly = false;
     y.x.front().kind = PathVertex::Kind::luminaire;
     return complete(y);
   }
   for (const int end : {b - 1, b}) {
     ChainVertex& v = y.x[size_t(end)];
-    v.specular = false;
+    v.leaves_specularly = false;
     if (v.on_surface() && !v.scatters_smoothly()) return false;
   }
   return complete(y) && visible(y, b - 1);

@@ -4,20 +4,20 @@
 
 namespace etendue {
 
-Spectrum carried(const Spectrum& light, bool hero_only, const Carrying& to) {
-  if (!to.hero_only) return light;
-  const int lane = std::max(to.lane, 0);
+Spectrum in_wavelengths(const Spectrum& light, bool hero_only, const GatheringWavelengths& walk) {
+  if (!walk.hero_only) return light;
+  const int lane = std::max(walk.lane, 0);
   Spectrum one;
   one.set(0, light[lane]);
-  if (hero_only) one *= lane == 0 ? to.branches / float(spectrum_size) : 0;
+  if (hero_only) one *= lane == 0 ? walk.branches / float(spectrum_size) : 0;
   return one;
 }
 
-Spectrum scattered_from_photon(const PathVertex& at, const Photon& photon, const Carrying& to) {
-  const Spectrum light = carried(photon, to);
+Spectrum scattered_from_photon(const PathVertex& at, const Photon& photon, const GatheringWavelengths& walk) {
+  const Spectrum light = in_wavelengths(photon, walk);
   if (at.in_medium()) {
     if (!photon.in_medium) return {};
-    const Spectrum s = at.medium.coefficients(at.point.position, at.point.time, to.wavelengths).scattering;
+    const Spectrum s = at.medium.coefficients(at.point.position, at.point.time, walk.wavelengths).scattering;
     const float phase = at.medium.phase(at.point.position, at.point.time, at.out, photon.out);
     Spectrum scattered;
     for (int i = 0; i < spectrum_size; ++i) scattered.set(i, s[i] > 0 ? phase * light[i] / s[i] : 0);
@@ -102,7 +102,7 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
     for (size_t i = 1; i < walk.size(); ++i) {
       const SubpathVertex& v = walk[i];
       const bool caustic = i > 1 && specular;
-      specular = specular && v.specular;
+      specular = specular && v.leaves_specularly;
       const bool wanted = kinds == PhotonKinds::all || caustic == (kinds == PhotonKinds::caustics);
       if (!wanted || !v.connectable() || int(i) < (v.in_medium() ? fewest_in_media : fewest_vertices) ||
           (v.in_medium() && !in_homogeneous_media && v.medium.volume->homogeneous()) ||

@@ -132,15 +132,15 @@ bool ProjectionMap::sample_emitted_light(const Scene& scene, const LightSampler&
   if (luminaire.infinite()) {
     const SurfaceSample s = luminaire.sample_visible(scene.centre(), v, time);
     if (!(s.pdf > 0)) return false;
-    light.direction = s.pdf;
-    const Point3 through = place(u, s.direction, light.position);
-    if (!(light.position > 0) || !emit_from_infinity(scene, through, s, w, light)) return false;
+    light.pdf_direction = s.pdf;
+    const Point3 through = place(u, s.direction, light.pdf_position);
+    if (!(light.pdf_position > 0) || !emit_from_infinity(scene, through, s, w, light)) return false;
   } else {
     const SurfaceSample s = luminaire.sample_area(u, time);
     if (!(s.pdf > 0)) return false;
-    light.position = s.pdf;
-    const Vector3 to = direction(s.point, v, light.direction);
-    if (!(light.direction > 0)) return false;
+    light.pdf_position = s.pdf;
+    const Vector3 to = direction(s.point, v, light.pdf_direction);
+    if (!(light.pdf_direction > 0)) return false;
     emit_from_point(scene, s, to, w, light);
   }
   return !light.radiance.black();

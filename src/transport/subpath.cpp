@@ -40,8 +40,8 @@ struct StoringEvents : NoEvents {
 /// pdf_reverse of the vertex `before` v: its pdf for a subpath from the other end, which comes to v from the direction `next`.
 float reverse_pdf(const SubpathVertex& v, const SubpathVertex& before, const Vector3& next, Transport transport,
                   const CameraDirections* directions, const EmissionPlane& front) {
-  float back = v.specular ? 1 : scattering_pdf(v, next, v.out, adjoint(transport));
-  if (transport == Transport::importance && !v.specular) back = camera_pdf(directions, v, next, v.out, back);
+  float back = v.leaves_specularly ? 1 : scattering_pdf(v, next, v.out, adjoint(transport));
+  if (transport == Transport::importance && !v.leaves_specularly) back = camera_pdf(directions, v, next, v.out, back);
   return vertex_pdf(back, v, before, v.out, v.mean_transmittance, front);
 }
 
@@ -68,8 +68,8 @@ void grow(Growing& walk, float pdf, const SubpathLimits& limits, std::vector<Sub
     const auto& next = way.next;
     if (!next || (v.on_surface() && enters_subsurface(v.point, *next))) return;
     walk.leave(*next);
-    v.specular = walk.specular;
-    pdf = v.specular ? 1 : next->pdf;
+    v.leaves_specularly = walk.arrived_specularly;
+    pdf = v.leaves_specularly ? 1 : next->pdf;
     if (limits.reverse_pdfs) {
       SubpathVertex& before = subpath[subpath.size() - 2];
       before.pdf_reverse = reverse_pdf(v, before, next->direction, walk.transport, limits.directions, front);
@@ -140,7 +140,7 @@ bool generate_light_subpath(const Scene& scene, const LightSampler& lights, floa
   first.kind = PathVertex::Kind::luminaire;
   first.infinite = light.infinite;
   first.point = light.point;
-  first.pdf_forward = light.choice * (light.infinite ? light.direction : light.position);
+  first.pdf_forward = light.probability * (light.infinite ? light.pdf_direction : light.pdf_position);
   if (!leaves) return false;
   Growing walk(scene, sample, light.ray, limits.longest, Transport::importance, light.throughput());
   if (scene.has_interiors() && !light.infinite) {
@@ -160,7 +160,7 @@ bool generate_light_subpath(const Scene& scene, const LightSampler& lights, floa
   }
   // For a luminaire at infinity the pdf of the next vertex is that of the ray on the emission plane (vertex_pdf): the factor of
   // the direction is 1.
-  grow(walk, light.infinite ? 1 : light.direction, limits, subpath, events);
+  grow(walk, light.infinite ? 1 : light.pdf_direction, limits, subpath, events);
   return true;
 }
 
@@ -198,7 +198,7 @@ void record_subpath(std::vector<PathRecord::Vertex>& vertices, std::span<const S
     v.normal = w.point.normal;
     v.throughput = w.throughput;
     v.pdf = w.pdf_forward;
-    if (w.specular) v.lobe = "specular";
+    if (w.leaves_specularly) v.lobe = "specular";
     if (w.hero_only) v.note = "the hero wavelength alone";
     vertices.push_back(std::move(v));
   }

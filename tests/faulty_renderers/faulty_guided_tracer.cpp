@@ -33,7 +33,7 @@ class FaultyGuidedTracer final : public Renderer {
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
     CameraWalk<false> walk(context.scene, sample, ray, max_depth);
     const auto met = [&](const SurfacePoint& luminaire) {
-      if (walk.specular) return 1.0f;
+      if (walk.arrived_specularly) return 1.0f;
       return heuristic_weight(
           Heuristic::power, walk.direction_pdf,
           next_event_direction_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire));

@@ -37,7 +37,7 @@ class FaultyLightTracer final : public Renderer {
       MediumStack scratch;
       Spectrum value = i > 0 ? v.throughput * scattering(v, v.out, lens->direction, Transport::importance).value
                              : v.point.object->emission->radiance(v.point, lens->direction, sample.wavelengths) *
-                                   (std::abs(dot(v.point.normal, lens->direction)) / (light.choice * light.position));
+                                   (std::abs(dot(v.point.normal, lens->direction)) / (light.probability * light.pdf_position));
       value *= (lens->importance / lens->pdf) *
                shadow_transmittance(context.scene, lens_ray(v, *lens), media_towards(v, lens->direction, scratch),
                                     sample.wavelengths, numbers, sample.arena, Transport::importance);

@@ -67,7 +67,7 @@ class FaultyPathTracer final : public Renderer {
   Spectrum met(const Walk<false>& walk) const {
     const SurfacePoint& p = walk.vertex.point;
     const Spectrum light = walk.throughput * p.object->emission->radiance(p, -walk.ray.direction, walk.sample.wavelengths);
-    if (walk.specular || light.black() || fault == Fault::luminaire_twice) return light;
+    if (walk.arrived_specularly || light.black() || fault == Fault::luminaire_twice) return light;
     const float weight =
         heuristic_weight(Heuristic::power, walk.direction_pdf,
                          next_event_direction_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, p));

@@ -22,7 +22,7 @@ class ScaledPathTracer final : public Renderer {
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
     CameraWalk walk(context.scene, sample, ray, max_depth);
     const auto weight = [&](const SurfacePoint& luminaire) {
-      if (walk.specular) return 1.0f;
+      if (walk.arrived_specularly) return 1.0f;
       const float sampled =
           next_event_direction_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire);
       return walk.direction_pdf / (walk.direction_pdf + sampled);

@@ -62,7 +62,8 @@ TEST(GltfExport, MakesTheSamePictureWhenReadBack) {
       "Rectangle { corner: [-1, 4, -1] m, edge_u: [2, 0, 0] m, edge_v: [0, 0, 2] m, sides: front, emission: DiffuseEmission {"
       " radiance: rgb(4, 3, 2), power: 90 W } },"
       "Point { position: [0, 2, 5] m, emission: DiffuseEmission { radiance: rgb(20, 30, 40) } },"
-      "Point { position: [3, 3, 3] m, emission: SpotEmission { radiance: rgb(60, 50, 40), axis: [-1, -1, -1], outer_angle: 30 "
+      "Point { position: [3, 3, 3] m, emission: ForeignSpotEmission { radiance: rgb(60, 50, 40), axis: [-1, -1, -1], "
+      "outer_angle: 30 "
       "deg, inner_angle: 10 deg, edge: square } }",
       // A mirror under a distant light, and triangles with holes.
       "Distant { direction: [0.3, -1, -0.4], emission: DiffuseEmission { radiance: rgb(3, 3, 2.5) } },"

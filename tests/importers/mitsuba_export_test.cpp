@@ -64,7 +64,7 @@ TEST(MitsubaExport, MakesTheSamePictureWhenReadBack) {
       "0.7 } }",
       // Pictures (slides) in front of lamps.
       "Rectangle { corner: [-2, -2, 0] m, edge_u: [4, 0, 0] m, edge_v: [0, 4, 0] m, shader: Lambertian { color: 0.8 } },"
-      "Point { transform: translate(0.5, 0, 4) * rotate(180 deg, \"y\"), emission: SpotEmission { radiance: "
+      "Point { transform: translate(0.5, 0, 4) * rotate(180 deg, \"y\"), emission: ForeignSpotEmission { radiance: "
       "illuminant(\"D65\"), edge: linear, picture: CheckerMap { first: rgb(0.9, 0.2, 0.1), second: 0.1 } } },"
       "Point { position: [0, 0, 4] m, transform: translate(-0.5, 0, 8) * rotate(180 deg, \"y\"), emission: ProjectorEmission { "
       "fov: 50, scale: 12, picture: CheckerMap { first: 0.1, second: 0.9 } } }",

@@ -112,6 +112,8 @@ TEST(Words, OfMembers) {
   EXPECT_EQ(said("Sphere { center: [0, 0, 0] }"), " Sphere has no member 'center' (here it is 'centre')");
   EXPECT_EQ(said("Metaballs { centers: [[0, 0, 0]] }"), " Metaballs has no member 'centers' (here it is 'centres')");
   EXPECT_EQ(said("Conductor { roughness_y: 0.1 }"), " Conductor has no member 'roughness_y' (here it is 'roughness_v')");
+  EXPECT_EQ(said("SpotEmission { edge: linear }"),
+            " SpotEmission has no member 'edge' (here it is 'ForeignSpotEmission' with 'edge', unless it is smooth)");
   EXPECT_EQ(said("PathTracer { spp: 1 }"), " PathTracer has no member 'spp' (here it is 'samples')");
   EXPECT_EQ(said("PathTracer { maxDepth: 1 }"), " PathTracer has no member 'maxDepth' (did you mean 'max_depth'?)");
   EXPECT_EQ(said("PathTracer { rr_depth: 1 }"),

@@ -22,7 +22,7 @@ class StudentTracer final : public Renderer {
     // The weight of an emitter hit. After a specular vertex it is 1, since next event estimation cannot find such paths;
     // elsewhere both strategies find the same light and are combined by the balance heuristic.
     const auto weight = [&](const SurfacePoint& luminaire) {
-      if (walk.specular) return 1.0f;
+      if (walk.arrived_specularly) return 1.0f;
       const float sampled =
           next_event_direction_pdf(*light_sampler, walk.from, walk.from_normal, walk.ray.direction, luminaire);
       return walk.direction_pdf / (walk.direction_pdf + sampled);

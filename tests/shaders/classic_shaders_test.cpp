@@ -3,10 +3,12 @@
 #include "components/shaders/tangent_frame.h"
 #include "etendue/object_map.h"
 #include "support/component_test_support.h"
+#include "support/shader_formulas_support.h"
 
 namespace etendue {
 namespace {
 
+using formulas_test::flat_point;
 using test::create;
 
 /// A direction by its angle from z and its azimuth from x, both in degrees.
@@ -15,18 +17,6 @@ Vector3 direction(double angle, double azimuth) {
   return {float(std::sin(t) * std::cos(p)), float(std::sin(t) * std::sin(p)), float(std::cos(t))};
 }
 Vector3 mirrored(const Vector3& v) { return {v.x, v.y, -v.z}; }
-
-/// A point of a square whose u is x and whose normal is z, so that world directions equal local ones.
-SurfacePoint flat_point() {
-  static test::TestSquare* const square = [] {
-    auto* made = new test::TestSquare;
-    made->reference();
-    return made;
-  }();
-  SurfacePoint p = test::surface_point({0, 0, 1});
-  p.object = square;
-  return p;
-}
 
 class Bound {
  public:

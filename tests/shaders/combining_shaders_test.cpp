@@ -10,16 +10,13 @@
 #include "etendue/shader.h"
 #include "etendue/volume_shader.h"
 #include "support/component_test_support.h"
+#include "support/shader_test_support.h"
 
 namespace etendue {
 namespace {
 
+using test::at_angle;
 using test::create;
-
-Vector3 at_angle(const Frame& frame, double angle, double azimuth = 0.7) {
-  const double t = angle * M_PI / 180;
-  return frame.to_world({float(std::sin(t) * std::cos(azimuth)), float(std::sin(t) * std::sin(azimuth)), float(std::cos(t))});
-}
 
 /// A grey image of 16 bits, used for a map or a shader.
 std::string image_file(const std::string& name, int width, int height, int channels,

@@ -6,16 +6,13 @@
 #include "etendue/shader.h"
 #include "etendue/volume_shader.h"
 #include "support/component_test_support.h"
+#include "support/shader_test_support.h"
 
 namespace etendue {
 namespace {
 
+using test::at_angle;
 using test::create;
-
-Vector3 at_angle(const Frame& frame, double angle, double azimuth = 0.7) {
-  const double t = angle * M_PI / 180;
-  return frame.to_world({float(std::sin(t) * std::cos(azimuth)), float(std::sin(t) * std::sin(azimuth)), float(std::cos(t))});
-}
 
 Ref<Shader> layered(const Ref<Shader>& top, const Ref<Shader>& bottom, std::vector<test::Setting> settings = {}) {
   settings.insert(settings.begin(), {{"top", top}, {"bottom", bottom}});

@@ -5,10 +5,12 @@
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
 #include "support/component_test_support.h"
+#include "support/shader_test_support.h"
 
 namespace etendue {
 namespace {
 
+using test::at_angle;
 using test::create;
 using test::Setting;
 using Settings = std::vector<Setting>;
@@ -17,12 +19,6 @@ Setting thin_walled() {
   Setting s("thin_walled", 1.0);
   s.value = Value(true);
   return s;
-}
-
-/// A direction on the front of a frame, by polar angle [deg] and azimuth [rad].
-Vector3 at_angle(const Frame& frame, double angle, double azimuth = 0.7) {
-  const double t = angle * M_PI / 180;
-  return frame.to_world({float(std::sin(t) * std::cos(azimuth)), float(std::sin(t) * std::sin(azimuth)), float(std::cos(t))});
 }
 
 /// A shader bound to a point, at wavelengths from 450 nm on.

@@ -50,10 +50,10 @@ struct MadeUp {
     for (int i = 0; i < s; ++i) light.push_back(vertex(i, from_light[size_t(i)], from_camera[size_t(i)]));
     for (int i = last; i >= s; --i) camera.push_back(vertex(i, from_camera[size_t(i)], from_light[size_t(i)]));
     // The reverse pdfs that a connection replaces are set to -1 in the subpaths, since the weight must not read them there. The
-    // `specular` flags of the last vertices belong to the sampled continuations and must not be read either, so they are
-    // flipped.
-    if (!merge && s > 0) light.back().specular = !light.back().specular;
-    camera.back().specular = !camera.back().specular;
+    // `leaves_specularly` flags of the last vertices belong to the sampled continuations and must not be read either, so they
+    // are flipped.
+    if (!merge && s > 0) light.back().leaves_specularly = !light.back().leaves_specularly;
+    camera.back().leaves_specularly = !camera.back().leaves_specularly;
     for (std::vector<SubpathVertex>* walk : {&light, &camera})
       for (size_t k = 0; k < 2 && k < walk->size(); ++k)
         if (!merge || walk == &camera || k == 0) (*walk)[walk->size() - 1 - k].pdf_reverse = -1;
@@ -86,7 +86,7 @@ struct MadeUp {
   SubpathVertex vertex(int i, float pdf_forward, float pdf_reverse) const {
     SubpathVertex v;
     v.kind = i == 0 ? PathVertex::Kind::luminaire : i == last ? PathVertex::Kind::camera : PathVertex::Kind::surface;
-    v.specular = specular[size_t(i)];
+    v.leaves_specularly = specular[size_t(i)];
     v.pdf_forward = pdf_forward;
     v.pdf_reverse = pdf_reverse;
     return v;

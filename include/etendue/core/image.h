@@ -17,8 +17,11 @@ struct Image {
   std::map<std::string, std::string> metadata;
 
   Image() = default;
-  Image(int w, int h, std::vector<std::string> names)
-      : width(w), height(h), channels(std::move(names)), values(size_t(w) * size_t(h) * channels.size()) {}
+  Image(int width_, int height_, std::vector<std::string> names)
+      : width(width_),
+        height(height_),
+        channels(std::move(names)),
+        values(size_t(width_) * size_t(height_) * channels.size()) {}
   double& at(int x, int y, size_t c) { return values[(size_t(y) * size_t(width) + size_t(x)) * channels.size() + c]; }
   double at(int x, int y, size_t c) const { return values[(size_t(y) * size_t(width) + size_t(x)) * channels.size() + c]; }
 };

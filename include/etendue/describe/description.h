@@ -22,12 +22,12 @@ struct Wanted {
   enum class Kind : std::uint8_t { boolean, number, text } kind;
   double number = 0;  ///< or the boolean
   std::string_view text = {};
-  Wanted(bool v) : kind(Kind::boolean), number(v) {}
-  Wanted(double v) : kind(Kind::number), number(v) {}
-  Wanted(float v) : kind(Kind::number), number(double(v)) {}
-  Wanted(int v) : kind(Kind::number), number(v) {}
-  Wanted(const char* v) : kind(Kind::text), text(v) {}
-  Wanted(const std::string& v) : kind(Kind::text), text(v) {}
+  Wanted(bool value) : kind(Kind::boolean), number(value) {}
+  Wanted(double value) : kind(Kind::number), number(value) {}
+  Wanted(float value) : kind(Kind::number), number(double(value)) {}
+  Wanted(int value) : kind(Kind::number), number(value) {}
+  Wanted(const char* value) : kind(Kind::text), text(value) {}
+  Wanted(const std::string& value) : kind(Kind::text), text(value) {}
 };
 Condition condition(std::string_view member, std::initializer_list<Wanted> values, bool unless);
 }  // namespace detail
@@ -97,8 +97,8 @@ struct Convert;  // undefined for types that the language does not have
 template <>
 struct Convert<bool> {
   static constexpr Kind kind = Kind::boolean;
-  static void read(const Value& v, const Member&, bool& out) { out = to_bool(v); }
-  static Value write(bool v, const Member&) { return Value(v); }
+  static void read(const Value& value, const Member&, bool& out) { out = to_bool(value); }
+  static Value write(bool value, const Member&) { return Value(value); }
 };
 
 template <class T>
@@ -107,38 +107,38 @@ struct Convert<T> {
   static constexpr Kind kind = Kind::integer;
   static constexpr std::int64_t low = std::is_signed_v<T> ? std::int64_t(std::numeric_limits<T>::min()) : 0;
   static constexpr std::int64_t high = sizeof(T) == 8 ? (std::int64_t(1) << 53) : std::int64_t(std::numeric_limits<T>::max());
-  static void read(const Value& v, const Member& m, T& out) { out = T(to_integer(v, m, low, high)); }
-  static Value write(T v, const Member&) { return Value(Number{double(v)}); }
+  static void read(const Value& value, const Member& member, T& out) { out = T(to_integer(value, member, low, high)); }
+  static Value write(T value, const Member&) { return Value(Number{double(value)}); }
 };
 
 template <class T>
   requires std::is_floating_point_v<T>
 struct Convert<T> {
   static constexpr Kind kind = Kind::number;
-  static void read(const Value& v, const Member& m, T& out) { out = T(to_number(v, m)); }
-  static Value write(T v, const Member& m) { return from_number(double(v), m); }
+  static void read(const Value& value, const Member& member, T& out) { out = T(to_number(value, member)); }
+  static Value write(T value, const Member& member) { return from_number(double(value), member); }
 };
 
 template <class T>
   requires std::is_enum_v<T>
 struct Convert<T> {
   static constexpr Kind kind = Kind::choice;
-  static void read(const Value& v, const Member& m, T& out) { out = T(to_choice(v, m)); }
-  static Value write(T v, const Member& m) { return Value(m.choices.at(size_t(v))); }
+  static void read(const Value& value, const Member& member, T& out) { out = T(to_choice(value, member)); }
+  static Value write(T value, const Member& member) { return Value(member.choices.at(size_t(value))); }
 };
 
 template <>
 struct Convert<std::string> {
   static constexpr Kind kind = Kind::string;
-  static void read(const Value& v, const Member& m, std::string& out) { out = to_string(v, m); }
-  static Value write(const std::string& v, const Member&) { return Value(v); }
+  static void read(const Value& value, const Member& member, std::string& out) { out = to_string(value, member); }
+  static Value write(const std::string& value, const Member&) { return Value(value); }
 };
 
 template <>
 struct Convert<FilePath> {
   static constexpr Kind kind = Kind::file;
-  static void read(const Value& v, const Member&, FilePath& out) { out = to_file(v); }
-  static Value write(const FilePath& v, const Member&) { return v.empty() ? Value(std::string()) : Value(v); }
+  static void read(const Value& value, const Member&, FilePath& out) { out = to_file(value); }
+  static Value write(const FilePath& value, const Member&) { return value.empty() ? Value(std::string()) : Value(value); }
 };
 
 template <class T, Kind K, int N>
@@ -152,20 +152,20 @@ struct ConvertTuple {
     else
       return T{Scalar(f[0]), Scalar(f[1]), Scalar(f[2])};
   }
-  static void read(const Value& v, const Member& m, T& out) {
+  static void read(const Value& value, const Member& member, T& out) {
     double f[N];
-    to_numbers(v, m, f, N);
+    to_numbers(value, member, f, N);
     out = make(f);
   }
-  static void get(const T& v, double* f) {
-    f[0] = double(v.x);
-    f[1] = double(v.y);
-    if constexpr (N == 3) f[2] = double(v.z);
+  static void get(const T& value, double* f) {
+    f[0] = double(value.x);
+    f[1] = double(value.y);
+    if constexpr (N == 3) f[2] = double(value.z);
   }
-  static Value write(const T& v, const Member& m) {
+  static Value write(const T& value, const Member& member) {
     double f[N];
-    get(v, f);
-    return from_numbers(f, N, m);
+    get(value, f);
+    return from_numbers(f, N, member);
   }
 };
 template <>
@@ -184,24 +184,24 @@ struct Convert<Normal3> : ConvertTuple<Normal3, Kind::normal3, 3> {};
 template <>
 struct Convert<Color> {
   static constexpr Kind kind = Kind::color;
-  static void read(const Value& v, const Member& m, Color& out) { out = to_color(v, m); }
-  static Value write(const Color& v, const Member&) { return v ? Value(v) : Value(); }
+  static void read(const Value& value, const Member& member, Color& out) { out = to_color(value, member); }
+  static Value write(const Color& value, const Member&) { return value ? Value(value) : Value(); }
 };
 
 template <>
 struct Convert<AnimatedTransform> {
   static constexpr Kind kind = Kind::transform;
-  static void read(const Value& v, const Member&, AnimatedTransform& out) { out = to_transform(v); }
-  static Value write(const AnimatedTransform& v, const Member&) {
-    return v.animated() ? Value(AnimatedTransform(v.keys())) : Value(v.keys().front().transform);
+  static void read(const Value& value, const Member&, AnimatedTransform& out) { out = to_transform(value); }
+  static Value write(const AnimatedTransform& value, const Member&) {
+    return value.animated() ? Value(AnimatedTransform(value.keys())) : Value(value.keys().front().transform);
   }
 };
 
 template <class C>
 struct Convert<Ref<C>> {
   static constexpr Kind kind = Kind::component;
-  static void read(const Value& v, const Member& m, Ref<C>& out) { out = ref_cast<C>(to_component(v, m)); }
-  static Value write(const Ref<C>& v, const Member&) { return v ? Value(Ref<Component>(v)) : Value(); }
+  static void read(const Value& value, const Member& member, Ref<C>& out) { out = ref_cast<C>(to_component(value, member)); }
+  static Value write(const Ref<C>& value, const Member&) { return value ? Value(Ref<Component>(value)) : Value(); }
 };
 
 template <class T>
@@ -211,45 +211,45 @@ template <class T>
 struct Convert<std::vector<T>> {
   static constexpr Kind kind = Convert<T>::kind;
   using List = std::vector<T>;
-  static void reserve(void* to, size_t n) { static_cast<List*>(to)->reserve(n); }
+  static void reserve(void* to, size_t count) { static_cast<List*>(to)->reserve(count); }
 
-  static void read(const Value& v, const Member& m, List& out) {
+  static void read(const Value& value, const Member& member, List& out) {
     List list;
     if constexpr (Tuple<T>) {
       to_rows(
-          v, m, Convert<T>::width, [](void* to, const double* f) { static_cast<List*>(to)->push_back(Convert<T>::make(f)); },
-          &list, reserve);
+          value, member, Convert<T>::width,
+          [](void* to, const double* f) { static_cast<List*>(to)->push_back(Convert<T>::make(f)); }, &list, reserve);
     } else if constexpr (std::is_floating_point_v<T>) {
-      to_rows(v, m, 1, [](void* to, const double* f) { static_cast<List*>(to)->push_back(T(*f)); }, &list, reserve);
+      to_rows(value, member, 1, [](void* to, const double* f) { static_cast<List*>(to)->push_back(T(*f)); }, &list, reserve);
     } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
       to_integers(
-          v, m, Convert<T>::low, Convert<T>::high, [](void* to, std::int64_t i) { static_cast<List*>(to)->push_back(T(i)); },
-          &list, reserve);
+          value, member, Convert<T>::low, Convert<T>::high,
+          [](void* to, std::int64_t i) { static_cast<List*>(to)->push_back(T(i)); }, &list, reserve);
     } else {
       Value::List scratch;
-      for (const Value& item : to_list(v, scratch)) Convert<T>::read(item, m, list.emplace_back());
+      for (const Value& item : to_list(value, scratch)) Convert<T>::read(item, member, list.emplace_back());
     }
     out = std::move(list);
   }
 
-  static Value write(const List& v, const Member& m) {
+  static Value write(const List& value, const Member& member) {
     if constexpr (Tuple<T>) {
-      Numbers n;
-      n.width = Convert<T>::width;
-      n.values.reserve(v.size() * size_t(n.width));
-      for (const T& item : v) {
+      Numbers numbers;
+      numbers.width = Convert<T>::width;
+      numbers.values.reserve(value.size() * size_t(numbers.width));
+      for (const T& item : value) {
         double f[3];
         Convert<T>::get(item, f);
-        n.values.insert(n.values.end(), f, f + n.width);
+        numbers.values.insert(numbers.values.end(), f, f + numbers.width);
       }
-      return Value(std::move(n));
+      return Value(std::move(numbers));
     } else if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
-      Numbers n;
-      n.values.assign(v.begin(), v.end());
-      return Value(std::move(n));
+      Numbers numbers;
+      numbers.values.assign(value.begin(), value.end());
+      return Value(std::move(numbers));
     } else {
       Value::List list;
-      for (const T& item : v) list.push_back(Convert<T>::write(item, m));
+      for (const T& item : value) list.push_back(Convert<T>::write(item, member));
       return Value(std::move(list));
     }
   }

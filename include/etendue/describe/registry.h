@@ -171,7 +171,7 @@ class Registry {
  private:
   Registry();
   struct State;
-  State* s;
+  State* state_;
 };
 
 /// Reads a member; throws Error with a suggestion if there is no member of this name.

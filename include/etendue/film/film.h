@@ -74,7 +74,7 @@ class Film {
   std::vector<BadSample> first_bad_samples() const;
 
   /// From now on keeps the n samples of largest luminance. They are not part of the saved state.
-  void keep_largest(size_t n);
+  void keep_largest(size_t count);
   size_t largest_kept() const;
   /// The samples that were kept, in decreasing order.
   std::vector<LargeSample> largest_samples() const;

@@ -55,7 +55,7 @@ class ImageTile {
   /// summed one after the other, so that the pixels of the crop equal those of the whole image to the bit.
   void begin(const ImageBuffer&, const PixelArea&, std::uint32_t block = 0);
   /// From now on keeps the n samples of largest luminance.
-  void keep_largest(size_t n) { largest_wanted_ = n; }
+  void keep_largest(size_t count) { largest_wanted_ = count; }
 
   /// Adds a sample at a film point (in pixels; pixel centres are at half-integers) that belongs to the pixel (px, py). Bad
   /// values are noted and count as zero. `weight` is the number of samples that it counts for, apart from the filter f: a

@@ -11,12 +11,12 @@ namespace etendue {
 class GuidedScattering {
  public:
   /// For a path that came to the vertex from the direction `out`.
-  GuidedScattering(const Guide& guide, const PathVertex& v, const Vector3& out) : vertex_(v) {
-    if (!v.scatters_smoothly()) return;
-    region_ = guide.region_of(v.point.position, facing(v, out));
+  GuidedScattering(const Guide& guide, const PathVertex& vertex, const Vector3& out) : vertex_(vertex) {
+    if (!vertex.scatters_smoothly()) return;
+    region_ = guide.region_of(vertex.point.position, facing(vertex, out));
     const Guide::Region& region = guide.region(region_);
     share_ = region.share();
-    if (share_ > 0) lobes_ = SeenLobes(region.lobes(), v.point.position);
+    if (share_ > 0) lobes_ = SeenLobes(region.lobes(), vertex.point.position);
   }
 
   std::uint32_t region() const { return region_; }
@@ -40,50 +40,50 @@ class GuidedScattering {
   /// Samples a direction; `scatter(choice)` samples one by scattering alone.
   template <class Scatter>
   Choice sample(float choice, Point2 u, const Scatter& scatter) const {
-    Choice c;
+    Choice chosen;
     if (choice < share_) {
       const Vector3 in = lobes_.sample(choice / share_, u);
       const ScatterValue f = scattering(vertex_, vertex_.out, in, Transport::radiance);
-      if (f.value.black()) return c;
-      c.scatter = f.pdf;
+      if (f.value.black()) return chosen;
+      chosen.scatter = f.pdf;
       const float p = mixed(lobes_.pdf(in), f.pdf);
-      if (!(p > 0)) return c;
-      ScatterSample& s = c.next.emplace();
-      s.direction = in;
-      s.weight = f.value / p;
-      s.pdf = p;
+      if (!(p > 0)) return chosen;
+      ScatterSample& next = chosen.next.emplace();
+      next.direction = in;
+      next.weight = f.value / p;
+      next.pdf = p;
       if (vertex_.on_surface() && (dot(vertex_.point.normal, in) > 0) != (dot(vertex_.point.normal, vertex_.out) > 0))
-        s.lobe = diffuse_transmission;
-      if (alone(s)) c.next.reset();
-      if (f.pdf > 0) c.more = p / f.pdf;
-      return c;
+        next.lobe = diffuse_transmission;
+      if (alone(next)) chosen.next.reset();
+      if (f.pdf > 0) chosen.more = p / f.pdf;
+      return chosen;
     }
-    c.next = scatter(std::min((choice - share_) / (1 - share_), one_minus_epsilon));
-    if (!c.next) return c;
-    ScatterSample& s = *c.next;
-    c.scatter = s.pdf;
-    if (alone(s)) {
-      s.weight /= 1 - share_;
-      c.more = 1 - share_;
+    chosen.next = scatter(std::min((choice - share_) / (1 - share_), one_minus_epsilon));
+    if (!chosen.next) return chosen;
+    ScatterSample& next = *chosen.next;
+    chosen.scatter = next.pdf;
+    if (alone(next)) {
+      next.weight /= 1 - share_;
+      chosen.more = 1 - share_;
     } else if (share_ > 0) {
-      s.pdf = mixed(lobes_.pdf(s.direction), c.scatter);
-      s.weight *= c.scatter / s.pdf;
-      c.more = s.pdf / c.scatter;
+      next.pdf = mixed(lobes_.pdf(next.direction), chosen.scatter);
+      next.weight *= chosen.scatter / next.pdf;
+      chosen.more = next.pdf / chosen.scatter;
     }
-    return c;
+    return chosen;
   }
 
   /// Whether such directions are sampled by scattering alone: those of specular lobes, and those that enter an object with
   /// subsurface scattering.
-  bool alone(const ScatterSample& s) const {
-    return s.specular() || (vertex_.on_surface() && !vertex_.subsurface_exit && enters_subsurface(vertex_.point, s));
+  bool alone(const ScatterSample& sample) const {
+    return sample.specular() || (vertex_.on_surface() && !vertex_.subsurface_exit && enters_subsurface(vertex_.point, sample));
   }
 
  private:
   /// The normal on the side of a surface from which a path came; zero in media.
-  static Normal3 facing(const PathVertex& v, const Vector3& out) {
-    if (!v.on_surface()) return {};
-    return dot(v.point.normal, out) < 0 ? -v.point.normal : v.point.normal;
+  static Normal3 facing(const PathVertex& vertex, const Vector3& out) {
+    if (!vertex.on_surface()) return {};
+    return dot(vertex.point.normal, out) < 0 ? -vertex.point.normal : vertex.point.normal;
   }
   float mixed(float guide, float scatter) const { return share_ * guide + (1 - share_) * scatter; }
 

@@ -41,8 +41,8 @@ struct LobeMixture {
   LobeLanes concentration{};  ///< k where |v| = 1
   LobeLanes weight{};
 
-  Lobe seen_from(const Point3& c, int lobe) const;
-  void set(const Point3& c, int lobe, const Lobe&);
+  Lobe seen_from(const Point3& from, int lobe) const;
+  void set(const Point3& from, int lobe, const Lobe&);
 };
 
 /// A mixture as seen from a point.

@@ -15,15 +15,15 @@ namespace etendue {
 class PhotonDirections {
  public:
   /// Uses the photons within `radius` of x that came to the side of the surface on which the walk came.
-  PhotonDirections(const PhotonMap& map, const PathVertex& x, float radius) {
+  PhotonDirections(const PhotonMap& map, const PathVertex& vertex, float radius) {
     std::vector<PointTree::Near>& near = PointTree::near_on_this_thread();
-    map.tree().nearest(x.point.position, radius, most, near);
-    const Vector3 normal = on_side(Vector3(x.point.normal), x.out);
+    map.tree().nearest(vertex.point.position, radius, most, near);
+    const Vector3 normal = on_side(Vector3(vertex.point.normal), vertex.out);
     for (const PointTree::Near& each : near) {
-      const Photon& p = map[each.index];
-      if (p.in_medium || !(dot(normal, p.out) > 0)) continue;
-      photons_[count_] = &p;
-      sum_ += carried_[count_] = std::max(p.throughput.average(), 0.0f);
+      const Photon& photon = map[each.index];
+      if (photon.in_medium || !(dot(normal, photon.out) > 0)) continue;
+      photons_[count_] = &photon;
+      sum_ += carried_[count_] = std::max(photon.throughput.average(), 0.0f);
       ++count_;
     }
   }

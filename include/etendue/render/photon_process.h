@@ -42,14 +42,15 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
     double walks = 0;                             ///< n, times the probability of a photon to be stored
     float surface_radius = 0, medium_radius = 0;  ///< [m]
     Merging merging;                              ///< n pi r^2 and n 4/3 pi r^3
-    float radius(const PathVertex& v) const { return v.in_medium() ? medium_radius : surface_radius; }
+    float radius(const PathVertex& vertex) const { return vertex.in_medium() ? medium_radius : surface_radius; }
     /// Calls `visit(photon, n pi r^2 or n 4/3 pi r^3)` for the photons within the radius of a vertex that are not occluded from
     /// it.
     template <class Visit>
-    void near(const Scene& scene, const PathVertex& v, const Visit& visit) const {
-      const auto merged = float(v.in_medium() ? merging.medium : merging.surface);
-      map.within(v.point.position, radius(v), [&](const Photon& p) {
-        if (p.in_medium == v.in_medium() && !photon_occluded(scene, v, p, radius(v))) visit(p, merged);
+    void near(const Scene& scene, const PathVertex& vertex, const Visit& visit) const {
+      const auto merged = float(vertex.in_medium() ? merging.medium : merging.surface);
+      map.within(vertex.point.position, radius(vertex), [&](const Photon& photon) {
+        if (photon.in_medium == vertex.in_medium() && !photon_occluded(scene, vertex, photon, radius(vertex)))
+          visit(photon, merged);
       });
     }
     /// Calls `visit(photon, t, n pi r^2)` for the photons in media within the radius of the ray's first `reach` [m] that are
@@ -57,9 +58,9 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
     template <class Visit>
     void along(const Scene& scene, const Ray& ray, float reach, const Visit& visit) const {
       map.tree().along(ray.origin, ray.direction, reach, surface_radius, [&](std::uint32_t i, float t) {
-        const Photon& p = map[i];
-        if (p.in_medium && !photon_occluded(scene, ray(t), {}, ray.time, p.position, {}, surface_radius))
-          visit(p, t, float(merging.surface));
+        const Photon& photon = map[i];
+        if (photon.in_medium && !photon_occluded(scene, ray(t), {}, ray.time, photon.position, {}, surface_radius))
+          visit(photon, t, float(merging.surface));
       });
     }
   };
@@ -72,9 +73,10 @@ class PhotonProcess : public RenderProcess, public ShownInSpace {
     template <class Visit>
     void along(const Scene& scene, const Medium& medium, const Ray& ray, float reach, NumberStream& numbers,
                const Visit& visit) const {
-      map.along(ray, reach, numbers, [&](const PhotonBeam& b, float s, float t, float width) {
-        if (b.volume == medium.volume && !photon_occluded(scene, ray(t), {}, ray.time, b.origin + s * b.direction, {}, radius))
-          visit(b, s, t, float(walks * double(width)));
+      map.along(ray, reach, numbers, [&](const PhotonBeam& beam, float s, float t, float width) {
+        if (beam.volume == medium.volume &&
+            !photon_occluded(scene, ray(t), {}, ray.time, beam.origin + s * beam.direction, {}, radius))
+          visit(beam, s, t, float(walks * double(width)));
       });
     }
   };

@@ -140,7 +140,7 @@ class Render {
   struct Members;
 
  private:
-  const std::unique_ptr<Members> m;
+  const std::unique_ptr<Members> members_;
 };
 
 /// The metadata that pictures of a job carry.

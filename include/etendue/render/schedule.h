@@ -21,10 +21,12 @@ class Schedule {
   /// several times. An exception of the work ends the step, which then leaves nothing.
   template <class Work>
   void film(std::uint64_t count, Work&& work) {
-    using W = std::remove_reference_t<Work>;
+    using WorkType = std::remove_reference_t<Work>;
     film_items(
         count,
-        [](void* self, std::uint64_t item, ImageTile& tile, Arena& arena) { (*static_cast<W*>(self))(item, tile, arena); },
+        [](void* self, std::uint64_t item, ImageTile& tile, Arena& arena) {
+          (*static_cast<WorkType*>(self))(item, tile, arena);
+        },
         &work);
   }
 
@@ -36,7 +38,7 @@ class Schedule {
     struct Collection final : Results {
       std::remove_reference_t<Work>& work;
       std::vector<T> all;
-      explicit Collection(std::remove_reference_t<Work>& w) : work(w) {}
+      explicit Collection(std::remove_reference_t<Work>& work_) : work(work_) {}
       void* make() override { return new std::vector<T>; }
       void fill(std::uint64_t item, void* results, Arena& arena) override {
         work(item, *static_cast<std::vector<T>*>(results), arena);

@@ -48,9 +48,9 @@ class VirtualLightProcess : public PhotonProcess {
  public:
   /// `nearest`: the distance from which on a virtual light with both cosines 1 contributes fully, in widths of a pixel where it
   /// is first seen (the median over the picture).
-  VirtualLightProcess(const Renderer& r, const RenderContext& c, VirtualLightSettings s, float nearest)
-      : PhotonProcess(r, c), settings_(s) {
-    settings_.bound = 1 / square(nearest * seen_pixel_width(c));
+  VirtualLightProcess(const Renderer& renderer_, const RenderContext& context_, VirtualLightSettings settings, float nearest)
+      : PhotonProcess(renderer_, context_), settings_(settings) {
+    settings_.bound = 1 / square(nearest * seen_pixel_width(context_));
   }
 
  protected:
@@ -94,20 +94,21 @@ class VirtualLightProcess : public PhotonProcess {
       return walk.emitter_hit_weight(luminaires, settings_.heuristic, luminaire);
     };
     while (walk.next_vertex(met) && !walk.at_end()) {
-      const PathVertex& v = walk.vertex;
+      const PathVertex& vertex = walk.vertex;
       const NumberStream::Bounce u = walk.next_bounce();
       const Spectrum whole = walk.throughput;
-      const bool smooth = v.scatters_smoothly(), gathered = !walk.specular;  // at the previous vertex
+      const bool smooth = vertex.scatters_smoothly(), gathered = !walk.arrived_specularly;  // at the previous vertex
       // Virtual lights at this vertex already contribute to the previous vertex, with weight w; the walk carries the rest,
       // 1 - w. Without compensation it carries only emitter hits, which may lie behind null-scattering surfaces.
-      if (smooth && gathered && !v.subsurface_exit)
-        walk.throughput *= settings_.compensate ? 1 - part(v.point.position, v.normal(), walk.from, walk.from_normal) : 0;
+      if (smooth && gathered && !vertex.subsurface_exit)
+        walk.throughput *=
+            settings_.compensate ? 1 - part(vertex.point.position, vertex.normal(), walk.from, walk.from_normal) : 0;
       if (smooth && !walk.throughput.black()) {
         walk.add_direct(luminaires, u, settings_.heuristic);
         gather(walk);
       }
       const auto next = walk.sample_direction(u.lobe_choice, u.direction);
-      if (next && (next->specular() || enters_subsurface_of(v, *next))) walk.throughput = whole;
+      if (next && (next->specular() || enters_subsurface_of(vertex, *next))) walk.throughput = whole;
       if (next && !settings_.compensate && gathered && next->lobe != null_scattering) walk.throughput = {};
       if (next && !walk.throughput.black() && walk.go_on(*next) && roulette.survives(walk)) continue;
       walk.end();
@@ -116,8 +117,8 @@ class VirtualLightProcess : public PhotonProcess {
   }
 
  private:
-  static bool enters_subsurface_of(const PathVertex& v, const ScatterSample& next) {
-    return v.on_surface() && !v.subsurface_exit && enters_subsurface(v.point, next);
+  static bool enters_subsurface_of(const PathVertex& vertex, const ScatterSample& next) {
+    return vertex.on_surface() && !vertex.subsurface_exit && enters_subsurface(vertex.point, next);
   }
 
   VirtualLightSettings settings_;

@@ -102,4 +102,30 @@ class BidirectionalSubpaths {
 /// Adds a weighted contribution to the sample's radiance, or splats it (t = 1), and passes it to the sample's PathSink.
 void add_contribution(SampleContext&, const Wavelengths& of_light, const PathContribution&, Spectrum& radiance);
 
+/// The sum of the weighted contributions of one sample. `accept(PathContribution&)` returns whether a contribution counts, and
+/// may scale it.
+template <class Accept>
+class ContributionSum {
+ public:
+  ContributionSum(SampleContext& sample, const BidirectionalSubpaths& paths, const Accept& accept)
+      : sample_(sample), paths_(paths), accept_(accept) {}
+
+  void add(PathContribution contribution) {
+    if (accept_(contribution)) add_contribution(sample_, paths_.light_wavelengths(), contribution, radiance);
+  }
+  void add(const std::optional<PathContribution>& contribution) {
+    if (contribution) add(*contribution);
+  }
+  void add(std::span<const PathContribution> contributions) {
+    for (const PathContribution& each : contributions) add(each);
+  }
+
+  Spectrum radiance;
+
+ private:
+  SampleContext& sample_;
+  const BidirectionalSubpaths& paths_;
+  const Accept accept_;
+};
+
 }  // namespace etendue

@@ -38,9 +38,9 @@
 
 namespace etendue {
 
-template <bool clear = false>
-class CameraWalk : public Walk<clear> {
-  using Base = Walk<clear>;
+template <bool unattenuated = false>
+class CameraWalk : public Walk<unattenuated> {
+  using Base = Walk<unattenuated>;
 
  public:
   using Base::length, Base::longest, Base::numbers, Base::ray, Base::sample, Base::scene, Base::throughput, Base::vertex;
@@ -49,7 +49,7 @@ class CameraWalk : public Walk<clear> {
       : Base(scene_, sample_, ray_, longest_), memory_(sample_.arena.mark()), one_luminaire_(scene_.luminaires().size() == 1) {
     this->collects_light = true;
     this->observed = sample.sink.features || sample.sink.record;
-    if (!clear && scene.has_interiors()) media_at(scene, ray.origin, ray.time, this->media);
+    if (!unattenuated && scene.has_interiors()) media_at(scene, ray.origin, ray.time, this->media);
   }
 
   Spectrum radiance;  ///< the part of L that is gathered so far
@@ -62,7 +62,7 @@ class CameraWalk : public Walk<clear> {
   template <class Weight>
   [[gnu::always_inline]] bool next_vertex(const Weight& weight) {
     if (!goes_on_ || exits_subsurface_) {
-      settle(awaits_ && !(clear && scene.any(direct_.shadow)));
+      settle(awaits_ && !(unattenuated && scene.any(direct_.shadow)));
       earlier = radiance;
       if (!exits_subsurface_) return false;
       exits_subsurface_ = goes_on_ = false;  // the vertex is a subsurface exit, to which no ray leads
@@ -71,7 +71,7 @@ class CameraWalk : public Walk<clear> {
     }
     if ((length & 31) == 31 && sample.aborted()) return false;
     sample.arena.rewind(memory_);  // the scattering of earlier vertices is no longer needed
-    const auto [blocked, found] = scene.any_and_nearest(clear && awaits_ ? &direct_.shadow : nullptr, ray, this->hit);
+    const auto [blocked, found] = scene.any_and_nearest(unattenuated && awaits_ ? &direct_.shadow : nullptr, ray, this->hit);
     settle(!blocked);
     earlier = radiance;
     goes_on_ = false;
@@ -113,7 +113,7 @@ class CameraWalk : public Walk<clear> {
                                                           u.light_point, heuristic, direct_, scattering))
       return;
     direct_.light *= throughput;
-    if constexpr (!clear) {
+    if constexpr (!unattenuated) {
       MediumStack scratch;
       NumberStream way = numbers.fork("shadow", std::uint32_t(length));
       direct_.light *= shadow_transmittance(scene, direct_.shadow, media_towards(vertex, direct_.shadow.direction, scratch),
@@ -134,7 +134,7 @@ class CameraWalk : public Walk<clear> {
   /// after a specular lobe, where next event estimation finds nothing.
   [[gnu::always_inline]] float emitter_hit_weight(const LightSampler& lights, Heuristic heuristic,
                                                   const SurfacePoint& luminaire) const {
-    if (this->specular) return 1;
+    if (this->arrived_specularly) return 1;
     return heuristic_weight(heuristic, this->direction_pdf,
                             next_event_direction_pdf(lights, this->from, this->from_normal, ray.direction, luminaire));
   }
@@ -147,16 +147,16 @@ class CameraWalk : public Walk<clear> {
   /// The same with a direction that was already sampled, by `sample_direction` or by another distribution (scattered_towards).
   [[gnu::always_inline]] bool go_on(const ScatterSample& next) {
     sample.sink.scattered(next);
-    if (!clear && next.lobe == null_scattering) {
+    if (!unattenuated && next.lobe == null_scattering) {
       this->pass_on(next);
       return goes_on_ = true;
     }
     if (vertex.on_surface() && !vertex.subsurface_exit && enters_subsurface(vertex.point, next))
       return exits_subsurface_ = goes_on_ = this->subsurface_exit_found(next);
-    if (whole_ > 0) [[unlikely]]
-      come_together(next);
+    if (weight_at_split_ > 0) [[unlikely]]
+      reduce_branches(next);
     this->leave(next);
-    if (!this->specular) bends_ = std::numeric_limits<int>::max();
+    if (!this->arrived_specularly) bends_ = std::numeric_limits<int>::max();
     return goes_on_ = true;
   }
 
@@ -193,7 +193,7 @@ class CameraWalk : public Walk<clear> {
     NumberStream refracted = numbers;
     if (splits_reflection_and_refraction(splitting)) {
       ++bends_;
-      if (!(whole_ > 0)) whole_ = this->mean_roulette_weight();
+      if (!(weight_at_split_ > 0)) weight_at_split_ = this->mean_roulette_weight();
       refracted = numbers.fork("refracted", std::uint32_t(length));
     } else if (ways == reflect_and_refract) {
       ways = choose_way(scatter, choice);
@@ -202,8 +202,9 @@ class CameraWalk : public Walk<clear> {
       return ways & lobe ? scatter.sample(vertex.out, choice, u.direction, {.lobes = lobe}) : std::nullopt;
     };
     std::optional<ScatterSample> own = sampled(specular_reflection);
-    if (const int n = ways & scatter.dispersed_lobes() ? splitting.wavelengths : 1; n > 1)
-      for (int i = 0; i < n; ++i) follow_wavelength(i * spectrum_size / n, n, choice, u.direction, refracted, follow);
+    if (const int count = ways & scatter.dispersed_lobes() ? splitting.wavelengths : 1; count > 1)
+      for (int i = 0; i < count; ++i)
+        follow_wavelength(i * spectrum_size / count, count, choice, u.direction, refracted, follow);
     else if (own)
       follow_refracted(sampled(specular_transmission), refracted, follow);
     else
@@ -223,7 +224,7 @@ class CameraWalk : public Walk<clear> {
   CameraWalk(const CameraWalk& walk, SampleContext& own)
       : Base(walk, own),
         bends_(walk.bends_),
-        whole_(walk.whole_),
+        weight_at_split_(walk.weight_at_split_),
         lane_(walk.lane_),
         memory_(own.arena.mark()),
         one_luminaire_(walk.one_luminaire_) {}
@@ -249,8 +250,7 @@ class CameraWalk : public Walk<clear> {
 
   /// The context of a branch, with its own primary samples and wavelengths.
   SampleContext context_of(Wavelengths& wavelengths, const NumberStream& branch_numbers) const {
-    const SampleContext& s = sample;
-    return {wavelengths, branch_numbers, s.arena, s.sink};
+    return {wavelengths, branch_numbers, sample.arena, sample.sink};
   }
 
   template <class Follow>
@@ -264,15 +264,15 @@ class CameraWalk : public Walk<clear> {
   }
 
   template <class Follow>
-  void follow_wavelength(int lane, int n, float choice, Point2 u, const NumberStream& refracted, const Follow& follow) {
+  void follow_wavelength(int lane, int count, float choice, Point2 u, const NumberStream& refracted, const Follow& follow) {
     if (!(throughput[lane] > 0)) return;
     const ArenaScope memory(sample.arena);
     Wavelengths wavelengths = sample.wavelengths.alone(lane);
     SampleContext own = context_of(wavelengths, refracted);
     CameraWalk branch(*this, own);
     branch.throughput = Spectrum();
-    branch.throughput.set(0, throughput[lane] * float(spectrum_size) / float(n));
-    branch.branches = float(n);
+    branch.throughput.set(0, throughput[lane] * float(spectrum_size) / float(count));
+    branch.branches = float(count);
     branch.lane_ = lane;
     const Scatter* scatter = scattering_at(vertex.point, vertex.out, wavelengths, sample.arena);
     if (!scatter) return;
@@ -289,15 +289,15 @@ class CameraWalk : public Walk<clear> {
   }
 
   /// Reduces the branches of reflect/refract splitting to one on average. At its first smooth vertex each branch gets the
-  /// survival probability part_, its part of the throughput that the walk had at the first split. The roulette is applied one
-  /// vertex later, after the emitter hit at the end of the next segment was added: with multiple importance sampling that hit
-  /// is half of the direct light of the smooth vertex.
-  void come_together(const ScatterSample& next) {
-    if (!this->specular) {
-      this->pending_survival = part_;
-      whole_ = 0;
+  /// survival probability branch_survival_, its part of the throughput that the walk had at the first split. The roulette is
+  /// applied one vertex later, after the emitter hit at the end of the next segment was added: with multiple importance
+  /// sampling that hit is half of the direct light of the smooth vertex.
+  void reduce_branches(const ScatterSample& next) {
+    if (!this->arrived_specularly) {
+      this->pending_survival = branch_survival_;
+      weight_at_split_ = 0;
     } else if (!next.specular()) {
-      part_ = std::min(1.0f, this->mean_roulette_weight() / whole_);
+      branch_survival_ = std::min(1.0f, this->mean_roulette_weight() / weight_at_split_);
     }
   }
 
@@ -334,9 +334,9 @@ class CameraWalk : public Walk<clear> {
     const Spectrum light =
         placed(throughput * vertex.point.object->emission->radiance(vertex.point, -ray.direction, sample.wavelengths));
     if (light.black()) return;
-    const float w = weight(vertex.point);
-    add(length, light * w, vertex.point.object);
-    sample.sink.emitter_hit(light * w, length, w);
+    const float mis_weight = weight(vertex.point);
+    add(length, light * mis_weight, vertex.point.object);
+    sample.sink.emitter_hit(light * mis_weight, length, mis_weight);
   }
 
   /// Adds the light of next event estimation, given the result of its shadow ray. The processor cannot predict that result, so
@@ -350,10 +350,10 @@ class CameraWalk : public Walk<clear> {
 
   bool goes_on_ = true, exits_subsurface_ = false, awaits_ = false;
   int direct_length_ = 0;
-  int bends_ = 0;               ///< how often the walk was split into reflection and refraction; the largest int after a smooth
-                                ///< vertex: no more splits
-  float whole_ = 0, part_ = 1;  ///< see come_together: the throughput at the first split, and the part of this branch
-  int lane_ = -1;               ///< the index of a branch's only wavelength among the path's; -1: the walk has all
+  int bends_ = 0;  ///< how often the walk was split into reflection and refraction; the largest int after a smooth
+                   ///< vertex: no more splits
+  float weight_at_split_ = 0, branch_survival_ = 1;  ///< see reduce_branches
+  int lane_ = -1;  ///< the index of a branch's only wavelength among the path's; -1: the walk has all
   DirectLight direct_;
   const Arena::Mark memory_;
   const bool one_luminaire_;

@@ -34,15 +34,15 @@ template <class Scattering, class Leave>
                                                           const Scattering& scattering, const Leave& leave) {
   const LightChoice light = lights.choose(from, normal, choice);
   if (!light.luminaire) return false;
-  SurfaceSample s = light.luminaire->sample_visible(from, u, time);
-  if (!(s.pdf > 0)) return false;
-  const ScatterValue f = scattering(s.direction);
+  SurfaceSample sampled = light.luminaire->sample_visible(from, u, time);
+  if (!(sampled.pdf > 0)) return false;
+  const ScatterValue f = scattering(sampled.direction);
   if (f.value.black()) return false;
-  const Spectrum emitted = light.luminaire->emission->radiance(s.point, -s.direction, wavelengths);
-  if (emitted.black() || !scene.in_front(s.point, -s.direction)) return false;
-  leave(s, direct.shadow);
-  const float pdf = light.probability * s.pdf;
-  const float weight = weight_over_pdf(heuristic, pdf, s.delta ? 0 : f.pdf);
+  const Spectrum emitted = light.luminaire->emission->radiance(sampled.point, -sampled.direction, wavelengths);
+  if (emitted.black() || !scene.in_front(sampled.point, -sampled.direction)) return false;
+  leave(sampled, direct.shadow);
+  const float pdf = light.probability * sampled.pdf;
+  const float weight = weight_over_pdf(heuristic, pdf, sampled.delta ? 0 : f.pdf);
   direct.light = f.value * emitted * weight;
   direct.weight = weight * pdf;
   direct.luminaire = light.luminaire;
@@ -64,17 +64,17 @@ template <class Scattering>
                                                      float time, const Wavelengths& wavelengths, float choice, Point2 u,
                                                      Heuristic heuristic, DirectLight& direct, const Scattering& scattering) {
   return sample_next_event_from(scene, lights, vertex.point.position, vertex.normal(), time, wavelengths, choice, u, heuristic,
-                                direct, scattering, [&](const SurfaceSample& s, Ray& ray) __attribute__((always_inline)) {
+                                direct, scattering, [&](const SurfaceSample& sampled, Ray& ray) __attribute__((always_inline)) {
                                   ray.time = time;
                                   if (vertex.in_medium()) {
                                     ray.origin = vertex.point.position;
-                                    ray.direction = s.direction;
+                                    ray.direction = sampled.direction;
                                     ray.maximum = infinity;
-                                    if (!s.infinite) SurfacePoint::end_at(s.point, ray);
-                                  } else if (s.infinite) {
-                                    vertex.point.leave(s.direction, ray);
+                                    if (!sampled.infinite) SurfacePoint::end_at(sampled.point, ray);
+                                  } else if (sampled.infinite) {
+                                    vertex.point.leave(sampled.direction, ray);
                                   } else {
-                                    vertex.point.towards(s.point, ray);
+                                    vertex.point.towards(sampled.point, ray);
                                   }
                                 });
 }

@@ -77,9 +77,9 @@ class LightParts {
 }
 
 /// The same for light that is splatted to another film point.
-inline void splat_light(SampleContext& sample, Point2 film, const Spectrum& light, const Wavelengths& w, int length,
+inline void splat_light(SampleContext& sample, Point2 film, const Spectrum& light, const Wavelengths& wavelengths, int length,
                         const SceneObject* luminaire) {
-  if (sample.sink.splats) sample.sink.splat(film, light, w, LightParts::label(length, luminaire).packed());
+  if (sample.sink.splats) sample.sink.splat(film, light, wavelengths, LightParts::label(length, luminaire).packed());
 }
 
 }  // namespace etendue

@@ -55,7 +55,7 @@ struct LightPath {
                            ///< more
 
   int length() const { return int(x.size()) - 1; }
-  bool specular(int i) const { return x[size_t(i)].specular; }
+  bool specular(int i) const { return x[size_t(i)].leaves_specularly; }
   /// The index of the last vertex before x_i that is not specular.
   int smooth_before(int i) const;
   /// For a smooth x_i, seen from the previous smooth vertex: the solid angle of directions there per measure of the vertices
@@ -71,7 +71,8 @@ struct LightPath {
 class PathSpace {
  public:
   using Walk = std::vector<ChainVertex>;
-  PathSpace(const RenderContext& c, const LightSampler& l) : context(c), lights(l), time(c.camera.shutter_open) {}
+  PathSpace(const RenderContext& context_, const LightSampler& lights_)
+      : context(context_), lights(lights_), time(context_.camera.shutter_open) {}
 
   const RenderContext& context;
   const LightSampler& lights;

@@ -12,16 +12,16 @@ namespace etendue {
 /// Light that leaves a luminaire along a ray, with the pdfs by which it was sampled.
 struct EmittedLight {
   const SceneObject* luminaire = nullptr;
-  SurfacePoint point;   ///< on the luminaire; for one at infinity far outside the scene
-  Ray ray;              ///< carries the light into the scene
-  Spectrum radiance;    ///< along the ray, times the cosine at the luminaire
-  float choice = 0;     ///< P, the probability of the luminaire
-  float position = 0;   ///< p_A [1/m^2] on the luminaire; for one at infinity on the plane across the ray
-  float direction = 0;  ///< p_w [1/sr]
+  SurfacePoint point;       ///< on the luminaire; for one at infinity far outside the scene
+  Ray ray;                  ///< carries the light into the scene
+  Spectrum radiance;        ///< along the ray, times the cosine at the luminaire
+  float probability = 0;    ///< P, of the luminaire
+  float pdf_position = 0;   ///< p_A [1/m^2] on the luminaire; for one at infinity on the plane across the ray
+  float pdf_direction = 0;  ///< p_w [1/sr]
   bool infinite = false;
-  bool placed = false;  ///< `point` and `position` are valid, even if no light is emitted in the sampled direction
+  bool placed = false;  ///< `point` and `pdf_position` are valid, even if no light is emitted in the sampled direction
   /// T_0 of the light subpath.
-  Spectrum throughput() const { return radiance / (choice * position * direction); }
+  Spectrum throughput() const { return radiance / (probability * pdf_position * pdf_direction); }
 };
 
 /// The plane across the direction of light from infinity on which its rays are sampled. All bounded objects lie in the scene's
@@ -43,9 +43,9 @@ class EmissionPlane {
   /// A point on the plane, relative to the scene's centre [m].
   Point2 sample(Point2 u) const;
   /// The pdf [1/m^2] on the plane of the ray through a point. The position of the point along the direction does not matter.
-  float pdf(const Point3& p, const Vector3& direction) const {
+  float pdf(const Point3& point, const Vector3& direction) const {
     if (!endless_) return within_;
-    const float r2 = length_squared(cross(p - centre_, direction));
+    const float r2 = length_squared(cross(point - centre_, direction));
     return r2 > square(radius_) ? radius_ / (4 * pi * r2 * std::sqrt(r2)) : within_;
   }
 

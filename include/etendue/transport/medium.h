@@ -28,29 +28,29 @@ namespace etendue {
 /// The medium inside an object.
 class Medium {
  public:
-  Medium(const VolumeShader* v = nullptr, const SceneObject* o = nullptr) : volume(v), object(o) {}
+  Medium(const VolumeShader* volume_ = nullptr, const SceneObject* object_ = nullptr) : volume(volume_), object(object_) {}
 
   const VolumeShader* volume = nullptr;  ///< null: vacuum
   const SceneObject* object = nullptr;   ///< the object whose interior this is; the coefficients are given in its object space
   explicit operator bool() const { return volume != nullptr; }
 
   /// The same point or ray in the object's space; points of a ray keep their parameters t.
-  Point3 own(const Point3& p, float time) const;
+  Point3 own(const Point3& position, float time) const;
   Ray own(const Ray&) const;
 
-  VolumeCoefficients coefficients(const Point3& p, float time, const Wavelengths& w) const {
-    return volume->coefficients(counted(p, time), time, w);
+  VolumeCoefficients coefficients(const Point3& position, float time, const Wavelengths& wavelengths) const {
+    return volume->coefficients(counted(position, time), time, wavelengths);
   }
   /// See VolumeShader; directions are in world space.
-  float phase(const Point3& p, float time, const Vector3& out, const Vector3& in) const {
-    return volume->phase(counted(p, time), out, in);
+  float phase(const Point3& position, float time, const Vector3& out, const Vector3& in) const {
+    return volume->phase(counted(position, time), out, in);
   }
-  Vector3 sample_phase(const Point3& p, float time, const Vector3& out, Point2 u, float& pdf) const {
-    return volume->sample_phase(counted(p, time), out, u, pdf);
+  Vector3 sample_phase(const Point3& position, float time, const Vector3& out, Point2 u, float& pdf) const {
+    return volume->sample_phase(counted(position, time), out, u, pdf);
   }
 
  private:
-  Point3 counted(const Point3& p, float time) const { return volume->homogeneous() ? p : own(p, time); }
+  Point3 counted(const Point3& position, float time) const { return volume->homogeneous() ? position : own(position, time); }
 };
 
 /// The medium at the top of a stack.
@@ -87,9 +87,9 @@ FreeFlight sample_free_flight(const Medium&, const Ray&, float reach, const Spec
 
 /// Fills the stack with the closed objects around a point that paths can enter.
 void media_at_slowly(const Scene&, const Point3&, float time, MediumStack&);
-inline void media_at(const Scene& scene, const Point3& p, float time, MediumStack& media) {
+inline void media_at(const Scene& scene, const Point3& position, float time, MediumStack& media) {
   if (const SceneObject* around = scene.surroundings()) media.surround(*around);
-  if (scene.maybe_inside(p)) media_at_slowly(scene, p, time, media);
+  if (scene.maybe_inside(position)) media_at_slowly(scene, position, time, media);
 }
 
 }  // namespace etendue

@@ -109,8 +109,8 @@ class MediumStack {
   bool empty() const { return size_ == 0 && !surroundings_; }
 
   /// Refractive index of a medium (null: 1).
-  static Spectrum index(const SceneObject* medium, const Wavelengths& w) {
-    return medium && medium->shader ? medium->shader->interior_index(w) : Spectrum(1.0f);
+  static Spectrum index(const SceneObject* medium, const Wavelengths& wavelengths) {
+    return medium && medium->shader ? medium->shader->interior_index(wavelengths) : Spectrum(1.0f);
   }
 
  private:

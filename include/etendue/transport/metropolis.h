@@ -59,12 +59,12 @@ struct Contribution {
   /// `area`: see FilmWeights::cell. A splat that is not finite is stored in `bad`, not in `parts`.
   void add(const Splat&, const PixelArea& area);
   /// I(x), weighted with v.
-  static double brightness(std::span<const Brightness> parts, const FilmWeights& v) {
+  static double brightness(std::span<const Brightness> parts, const FilmWeights& weights) {
     double sum = 0;
-    for (const Brightness& part : parts) sum += double(part.luminance) * double(v[part.cell]);
+    for (const Brightness& part : parts) sum += double(part.luminance) * double(weights[part.cell]);
     return sum;
   }
-  double brightness(const FilmWeights& v) const { return brightness(luminances, v); }
+  double brightness(const FilmWeights& weights) const { return brightness(luminances, weights); }
   /// Adds F, times a factor, to the film.
   void add_to(ImageTile&, double factor) const;
   /// Adds the splats that are not finite, so that the film counts them: once for each path.

@@ -35,11 +35,11 @@ struct PathRecord {
   };
   /// The maximum number of vertices and of contributions that are stored of a very long path: the first ones, and the last.
   static constexpr size_t most = 10000;
-  void add(Vertex v) {
-    add_to(vertices, std::move(v), [](Vertex& last) { last.note = "vertices before this one are left out"; });
+  void add(Vertex vertex) {
+    add_to(vertices, std::move(vertex), [](Vertex& last) { last.note = "vertices before this one are left out"; });
   }
-  void contribute(Contribution c) {
-    add_to(contributions, std::move(c), [](Contribution& last) { last.strategy += ", others before it left out"; });
+  void contribute(Contribution contribution) {
+    add_to(contributions, std::move(contribution), [](Contribution& last) { last.strategy += ", others before it left out"; });
   }
   /// Converts positions from rendering space, with the origin `centre`, to world space. To be called once, when the record is
   /// complete.

@@ -64,14 +64,14 @@ struct PathSink {
       lengths[std::min(size_t(length), lengths.size()) - 1] += value;
   }
   /// A contribution to a point of the film, besides the sample's own radiance. `length`: see Splat.
-  void splat(Point2 film, const Spectrum& value, const Wavelengths& w, int length) {
-    if (splats) splats->push_back({film, value, w, length});
+  void splat(Point2 film, const Spectrum& value, const Wavelengths& wavelengths, int length) {
+    if (splats) splats->push_back({film, value, wavelengths, length});
   }
 
   /// The next vertex of a path, with the throughput of the path up to it.
-  void surface(const SurfacePoint& p, const Spectrum& throughput) {
+  void surface(const SurfacePoint& point, const Spectrum& throughput) {
     if (record) [[unlikely]]
-      record_surface(p, throughput);
+      record_surface(point, throughput);
   }
   void medium(const Point3& at, const Spectrum& throughput) {
     if (record) [[unlikely]]
@@ -99,10 +99,10 @@ struct PathSink {
 
   /// The first surface of a camera path; features are taken from the first call alone. `scatter` may be null: black. `before`:
   /// the distance to the last null-scattering boundary on the way [m].
-  void first_surface(const Scene& scene, const SurfacePoint& p, const Hit& hit, const Scatter* scatter, const Vector3& out,
-                     const Wavelengths& w, float before = 0) {
+  void first_surface(const Scene& scene, const SurfacePoint& point, const Hit& hit, const Scatter* scatter, const Vector3& out,
+                     const Wavelengths& wavelengths, float before = 0) {
     if (features) [[unlikely]]
-      store_features(scene, p, hit, scatter, out, w, before);
+      store_features(scene, point, hit, scatter, out, wavelengths, before);
   }
 
   // The rare case of each, out of line.

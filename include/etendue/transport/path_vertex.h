@@ -37,22 +37,22 @@ struct PathVertex {
 
 /// f |cos| [1/sr] of a path that comes from `out` and continues to `in`, or the phase function in a medium; and the pdf [1/sr]
 /// with which it samples `in`.
-inline ScatterValue scattering(const PathVertex& v, const Vector3& out, const Vector3& in, Transport transport) {
-  if (v.in_medium()) {
-    const float phase = v.medium.phase(v.point.position, v.point.time, out, in);
+inline ScatterValue scattering(const PathVertex& vertex, const Vector3& out, const Vector3& in, Transport transport) {
+  if (vertex.in_medium()) {
+    const float phase = vertex.medium.phase(vertex.point.position, vertex.point.time, out, in);
     return {Spectrum(phase), phase};
   }
-  return v.scatter ? v.scatter->value_and_pdf(out, in, {transport, v.lobes}) : ScatterValue{};
+  return vertex.scatter ? vertex.scatter->value_and_pdf(out, in, {transport, vertex.lobes}) : ScatterValue{};
 }
 /// Only that value.
-inline Spectrum scattered(const PathVertex& v, const Vector3& out, const Vector3& in, Transport transport) {
-  if (v.in_medium()) return Spectrum(v.medium.phase(v.point.position, v.point.time, out, in));
-  return v.scatter ? v.scatter->evaluate(out, in, transport, v.lobes) : Spectrum();
+inline Spectrum scattered(const PathVertex& vertex, const Vector3& out, const Vector3& in, Transport transport) {
+  if (vertex.in_medium()) return Spectrum(vertex.medium.phase(vertex.point.position, vertex.point.time, out, in));
+  return vertex.scatter ? vertex.scatter->evaluate(out, in, {transport, vertex.lobes}) : Spectrum();
 }
 /// Only that pdf.
-inline float scattering_pdf(const PathVertex& v, const Vector3& out, const Vector3& in, Transport transport) {
-  if (v.in_medium()) return v.medium.phase(v.point.position, v.point.time, out, in);
-  return v.scatter ? v.scatter->pdf(out, in, {transport, v.lobes}) : 0;
+inline float scattering_pdf(const PathVertex& vertex, const Vector3& out, const Vector3& in, Transport transport) {
+  if (vertex.in_medium()) return vertex.medium.phase(vertex.point.position, vertex.point.time, out, in);
+  return vertex.scatter ? vertex.scatter->pdf(out, in, {transport, vertex.lobes}) : 0;
 }
 
 /// The sample of a direction that another distribution chose, such as a path guide, with that distribution's pdf [1/sr]; for
@@ -60,22 +60,24 @@ inline float scattering_pdf(const PathVertex& v, const Vector3& out, const Vecto
 /// lobes. `pdf` is that of the whole mixture. The weight of a sample from `sample_direction` must be multiplied by (its pdf /
 /// pdf of the mixture) if it is smooth, and divided by the probability of that strategy if it is specular. Empty: f is 0 in
 /// this direction.
-inline std::optional<ScatterSample> scattered_towards(const PathVertex& v, const Vector3& in, float pdf, Transport transport) {
-  const ScatterValue f = scattering(v, v.out, in, transport);
+inline std::optional<ScatterSample> scattered_towards(const PathVertex& vertex, const Vector3& in, float pdf,
+                                                      Transport transport) {
+  const ScatterValue f = scattering(vertex, vertex.out, in, transport);
   if (!(pdf > 0) || f.value.black()) return {};
-  ScatterSample s;
-  s.direction = in;
-  s.weight = f.value / pdf;
-  s.pdf = pdf;
-  if (v.on_surface() && (dot(v.point.normal, in) > 0) != (dot(v.point.normal, v.out) > 0)) s.lobe = diffuse_transmission;
-  return s;
+  ScatterSample sample;
+  sample.direction = in;
+  sample.weight = f.value / pdf;
+  sample.pdf = pdf;
+  if (vertex.on_surface() && (dot(vertex.point.normal, in) > 0) != (dot(vertex.point.normal, vertex.out) > 0))
+    sample.lobe = diffuse_transmission;
+  return sample;
 }
 
 /// A shadow ray from one vertex to another, which ends just before it.
 Ray connecting_ray(const PathVertex& from, const PathVertex& to);
 /// Whether the vertex lies on an object that is invisible to the camera.
-inline bool unseen(const PathVertex& v) {
-  return (v.on_surface() || v.kind == PathVertex::Kind::luminaire) && !v.point.object->visible_to_camera;
+inline bool unseen(const PathVertex& vertex) {
+  return (vertex.on_surface() || vertex.kind == PathVertex::Kind::luminaire) && !vertex.point.object->visible_to_camera;
 }
 /// A shadow ray from a vertex to a point of the lens.
 Ray lens_ray(const PathVertex&, const LensSample&);

@@ -38,7 +38,7 @@ struct Photon {
 };
 
 /// The wavelengths of a walk that gathers photons.
-struct Carrying {
+struct GatheringWavelengths {
   const Wavelengths& wavelengths;
   bool hero_only = false;  ///< it carries the hero alone, with the weight of the dropped ones
   int lane = -1;           ///< the index of that wavelength among the step's wavelengths; -1: it is the first
@@ -46,14 +46,16 @@ struct Carrying {
 };
 /// Light in the wavelengths of such a walk. If light (`hero_only`: it has the hero alone) and walk have both dropped
 /// wavelengths, both contain the factor spectrum_size, which must be applied once only.
-Spectrum carried(const Spectrum& light, bool hero_only, const Carrying&);
+Spectrum in_wavelengths(const Spectrum& light, bool hero_only, const GatheringWavelengths&);
 /// alpha_p.
-inline Spectrum carried(const Photon& p, const Carrying& to) { return carried(p.throughput, p.hero_only, to); }
+inline Spectrum in_wavelengths(const Photon& photon, const GatheringWavelengths& walk) {
+  return in_wavelengths(photon.throughput, photon.hero_only, walk);
+}
 
 /// The light of a photon that a vertex near it scatters: f alpha [W/(sr nm)] on a surface, phase alpha / s_s [W m/(sr nm)] in a
 /// medium, since the throughput of the walk that reached the vertex includes s_s as well. The caller divides by n pi r^2 or n
 /// 4/3 pi r^3.
-Spectrum scattered_from_photon(const PathVertex& at, const Photon&, const Carrying&);
+Spectrum scattered_from_photon(const PathVertex& at, const Photon&, const GatheringWavelengths&);
 
 /// The normal of a surface on the side of a direction.
 inline Vector3 on_side(const Vector3& normal, const Vector3& direction) {
@@ -67,10 +69,11 @@ inline Vector3 on_side(const Vector3& normal, const Vector3& direction) {
 bool photon_occluded(const Scene&, const Point3& a, const Vector3& normal_a, float time, const Point3& b,
                      const Vector3& normal_b, float radius);
 /// The same for a photon within `radius` of a vertex.
-inline bool photon_occluded(const Scene& scene, const PathVertex& v, const Photon& p, float radius) {
-  if (p.in_medium) return photon_occluded(scene, v.point.position, {}, v.point.time, p.position, {}, radius);
-  return photon_occluded(scene, v.point.position, on_side(Vector3(v.point.normal), p.out), v.point.time, p.position,
-                         on_side(p.surface_normal(), p.out), radius);
+inline bool photon_occluded(const Scene& scene, const PathVertex& vertex, const Photon& photon, float radius) {
+  if (photon.in_medium)
+    return photon_occluded(scene, vertex.point.position, {}, vertex.point.time, photon.position, {}, radius);
+  return photon_occluded(scene, vertex.point.position, on_side(Vector3(vertex.point.normal), photon.out), vertex.point.time,
+                         photon.position, on_side(photon.surface_normal(), photon.out), radius);
 }
 
 /// Photons with a search structure over their positions.
@@ -85,8 +88,8 @@ class PhotonMap {
 
   /// Calls `visit(photon)` for all photons within `radius`, in a fixed order.
   template <class Visit>
-  void within(const Point3& p, float radius, const Visit& visit) const {
-    tree_.within(p, radius, [&](std::uint32_t i, float) { visit(photons_[i]); });
+  void within(const Point3& centre, float radius, const Visit& visit) const {
+    tree_.within(centre, radius, [&](std::uint32_t i, float) { visit(photons_[i]); });
   }
   const PointTree& tree() const { return tree_; }
   const Photon& operator[](size_t i) const { return photons_[i]; }

@@ -30,9 +30,9 @@ class PointTree {
 
   /// Calls `visit(i, squared distance)` for all points within `radius`, in a fixed order.
   template <class Visit>
-  void within(const Point3& p, float radius, Visit&& visit) const {
+  void within(const Point3& centre, float radius, Visit&& visit) const {
     float squared = square(radius);
-    search(p, squared, [&](std::uint32_t i, float d2) { visit(i, d2); });
+    search(centre, squared, [&](std::uint32_t i, float d2) { visit(i, d2); });
   }
 
   /// Calls `visit(i, t)` for all points within `radius` of a line segment, from its origin to the distance `reach`, with t the
@@ -85,7 +85,7 @@ class PointTree {
     bool operator<(const Near& b) const { return squared != b.squared ? squared < b.squared : index < b.index; }
   };
   /// The `count` nearest points within `radius`, in a heap with the farthest first; fewer if there are no more.
-  void nearest(const Point3& p, float radius, size_t count, std::vector<Near>& found) const;
+  void nearest(const Point3& centre, float radius, size_t count, std::vector<Near>& found) const;
   /// A buffer for the result, valid until the next call on this thread.
   static std::vector<Near>& near_on_this_thread();
 
@@ -98,7 +98,7 @@ class PointTree {
 
   /// `visit` may reduce `squared`.
   template <class Visit>
-  void search(const Point3& p, const float& squared, const Visit& visit) const {
+  void search(const Point3& centre, const float& squared, const Visit& visit) const {
     struct Range {
       std::uint32_t begin, end;
       std::uint64_t node;
@@ -110,7 +110,7 @@ class PointTree {
     while (true) {
       while (at.end - at.begin > leaf) {
         const Plane& plane = planes_[at.node];
-        const float over = p[int(plane.axis)] - plane.at;
+        const float over = centre[int(plane.axis)] - plane.at;
         const std::uint32_t middle = at.begin + (at.end - at.begin) / 2;
         Range lower{at.begin, middle, 2 * at.node + 1, at.least}, upper{middle, at.end, 2 * at.node + 2, at.least};
         if (over > 0) std::swap(lower, upper);
@@ -119,7 +119,7 @@ class PointTree {
         at = lower;
       }
       for (std::uint32_t i = at.begin; i < at.end; ++i)
-        if (const float d2 = length_squared(points_[i] - p); d2 < squared) visit(i, d2);
+        if (const float d2 = length_squared(points_[i] - centre); d2 < squared) visit(i, d2);
       do {
         if (waiting == 0) return;
         at = stack[size_t(--waiting)];

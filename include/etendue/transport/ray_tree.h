@@ -1,6 +1,8 @@
 #pragma once
 // Ray trees: the steps shared by renderers that trace a tree of rays from the camera.
 
+#include <optional>
+
 #include "etendue/transport/boundaries.h"
 #include "etendue/transport/light_groups.h"
 #include "etendue/transport/medium.h"
@@ -56,17 +58,17 @@ struct LuminaireSample {
 /// Samples a point on a luminaire as seen from a surface point; false: no light arrives from there.
 inline bool sample_luminaire(const Scene& scene, const SceneObject& luminaire, const SurfacePoint& point,
                              const Wavelengths& wavelengths, Point2 u, LuminaireSample& light) {
-  SurfaceSample s = luminaire.sample_visible(point.position, u, point.time);
-  if (!(s.pdf > 0)) return false;
-  light.radiance = luminaire.emission->radiance(s.point, -s.direction, wavelengths);
-  if (light.radiance.black() || !scene.in_front(s.point, -s.direction)) return false;
-  if (s.infinite)
-    point.leave(s.direction, light.shadow);
+  SurfaceSample sampled = luminaire.sample_visible(point.position, u, point.time);
+  if (!(sampled.pdf > 0)) return false;
+  light.radiance = luminaire.emission->radiance(sampled.point, -sampled.direction, wavelengths);
+  if (light.radiance.black() || !scene.in_front(sampled.point, -sampled.direction)) return false;
+  if (sampled.infinite)
+    point.leave(sampled.direction, light.shadow);
   else
-    point.towards(s.point, light.shadow);
-  light.direction = s.direction;
-  light.pdf = s.pdf;
-  light.delta = s.delta;
+    point.towards(sampled.point, light.shadow);
+  light.direction = sampled.direction;
+  light.pdf = sampled.pdf;
+  light.delta = sampled.delta;
   return true;
 }
 
@@ -86,7 +88,8 @@ struct RayBranch {
     return crossings <= most_crossings;
   }
 
-  RayBranch(const Scene& scene, const Ray& camera_ray, const Wavelengths& w) : ray(camera_ray), wavelengths(w) {
+  RayBranch(const Scene& scene, const Ray& camera_ray, const Wavelengths& wavelengths_)
+      : ray(camera_ray), wavelengths(wavelengths_) {
     tracked = media_around(scene, ray, media) != nullptr;
   }
   MediumStack* around() { return tracked ? &media : nullptr; }
@@ -101,6 +104,39 @@ struct RayTree {
   void add(int length, const Spectrum& light, const SceneObject* luminaire) {
     radiance += light;
     report_light(sample.sink, length, light, luminaire);
+  }
+  /// Adds the light that a luminaire emits from a point at the end of a branch, an emitter hit.
+  void add_emission(const RayBranch& branch, const SurfacePoint& point, const SceneObject* luminaire) {
+    const Spectrum light = branch.throughput * luminaire->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
+    add(branch.depth, light, luminaire);
+    sample.sink.emitter_hit(light, branch.depth, 1);
+  }
+  /// Samples a specular lobe or null scattering at the end of a branch, and returns the branch that continues from there;
+  /// nullopt: none does. `first`: whether this is the first branch that continues from the surface.
+  std::optional<RayBranch> continued(const RayBranch& branch, const SurfacePoint& point, const Scatter& scatter, Lobe lobe,
+                                     bool& first) {
+    const float choice = sample.numbers.next();  // a surface may have several lobes of this kind
+    const auto next = scatter.sample(-branch.ray.direction, choice, sample.numbers.next_pair(), {.lobes = lobe});
+    if (!next || enters_subsurface(point, *next)) return std::nullopt;
+    RayBranch child = branch;
+    child.throughput *= next->weight;
+    if (next->dispersive) child.throughput *= child.wavelengths.drop_secondary();
+    if (child.throughput.black() || !child.may_go_on(lobe)) return std::nullopt;
+    if (lobe != null_scattering) ++child.depth;  // null scattering does not count as a segment
+    go_on(point, *next, child.ray, child.around());
+    if (!first) sample.sink.surface(point, branch.throughput);  // path records of a branch begin at this surface
+    first = false;
+    sample.sink.scattered(*next);
+    return child;
+  }
+  /// For a branch that hits no surface: calls `add(luminaire)` for each luminaire at infinity, with `point` on it.
+  template <class Add>
+  void escape(const RayBranch& branch, Hit& hit, SurfacePoint& point, const Add& add) {
+    for (const SceneObject* far : scene.infinite_luminaires(branch.ray)) {
+      far->surface_point(branch.ray, hit, point);
+      sample.sink.escape(*far, branch.ray, branch.throughput);
+      add(far);
+    }
   }
 };
 

@@ -13,9 +13,9 @@ inline constexpr Lobes vertex_lobes = Lobes(all_lobes & ~null_scattering);
 
 /// The shader's BSDF at a point. An exception from Shader::bind is rethrown with the class of the shader; without one there is
 /// no cost.
-inline const Scatter* bound(const Shader& shader, const SurfacePoint& p, const Wavelengths& w, Arena& arena) {
+inline const Scatter* bound(const Shader& shader, const SurfacePoint& point, const Wavelengths& wavelengths, Arena& arena) {
   try {
-    return shader.bind(p, w, arena);
+    return shader.bind(point, wavelengths, arena);
   } catch (...) {
     blame(shader, "binding");
   }
@@ -24,7 +24,7 @@ inline const Scatter* bound(const Shader& shader, const SurfacePoint& p, const W
 /// The scattering on the black side of a one-sided surface: null scattering alone, through holes and thin panes.
 class StraightScatter final : public Scatter {
  public:
-  StraightScatter(const SurfacePoint& p, const Scatter& whole) : Scatter(p, null_scattering), whole_(whole) {
+  StraightScatter(const SurfacePoint& point, const Scatter& whole) : Scatter(point, null_scattering), whole_(whole) {
     has_choice_ = false;
   }
   ScatterValue world_value_and_pdf(const Vector3&, const Vector3&, ScatterContext) const override { return {}; }

@@ -24,11 +24,11 @@ namespace etendue {
 
 /// A vertex of a stored subpath. The objects that it points to lie in the sample's arena.
 struct SubpathVertex : PathVertex {
-  bool specular = false;         ///< the subpath left the vertex by a specular lobe
-  bool infinite = false;         ///< on a luminaire at infinity, or an escaped ray
-  bool hero_only = false;        ///< the throughput holds the hero wavelength only
-  bool parallel = false;         ///< the camera is orthographic: its rays have a pdf per area [1/m^2] instead of per solid
-                                 ///< angle
+  bool leaves_specularly = false;  ///< the subpath leaves the vertex by a specular lobe
+  bool infinite = false;           ///< on a luminaire at infinity, or an escaped ray
+  bool hero_only = false;          ///< the throughput holds the hero wavelength only
+  bool parallel = false;           ///< the camera is orthographic: its rays have a pdf per area [1/m^2] instead of per solid
+                                   ///< angle
   Spectrum throughput;           ///< alpha: contribution of the subpath up to here over its pdf; from a luminaire flux [W/nm],
                                  ///< from the camera 1 at first
   float extinction = 0;          ///< in a medium [1/m], mean over the wavelengths
@@ -42,7 +42,7 @@ struct SubpathVertex : PathVertex {
   bool connectable() const { return on_surface() ? scatters_smoothly() : kind != Kind::escape; }
 };
 
-template <bool clear>
+template <bool unattenuated>
 class Walk;
 
 /// A distribution that samples the directions of camera subpaths in place of scattering alone: a path guide.
@@ -69,9 +69,9 @@ struct SubpathLimits {
 };
 
 /// The pdf [1/sr] with which a camera subpath that came from `out` samples `in`; `scatter` is the pdf of scattering alone.
-inline float camera_pdf(const CameraDirections* directions, const PathVertex& v, const Vector3& out, const Vector3& in,
+inline float camera_pdf(const CameraDirections* directions, const PathVertex& vertex, const Vector3& out, const Vector3& in,
                         float scatter) {
-  return directions ? directions->pdf(v, out, in, scatter) : scatter;
+  return directions ? directions->pdf(vertex, out, in, scatter) : scatter;
 }
 
 /// Events along the segments of a subpath while it is traced; by default ignored. Vertices need no event: they are stored.
@@ -92,8 +92,8 @@ class ProjectionMap;
 
 /// Fills a stored vertex from the last vertex of a walk, for algorithms that drive a Walk themselves; the walk must have
 /// `stores_subpath` set. `before` is the vertex before, and `pdf` that of the direction from it [1/sr], or 1 after a specular
-/// lobe (where Walk::direction_pdf is a probability). `specular` and `pdf_reverse` are only known when the walk leaves the
-/// vertex: see generate_camera_subpath.
+/// lobe (where Walk::direction_pdf is a probability). `leaves_specularly` and `pdf_reverse` are only known when the walk leaves
+/// the vertex: see generate_camera_subpath.
 void store_vertex(const Walk<false>&, const SubpathVertex& before, float pdf, const EmissionPlane&, SubpathVertex&);
 
 /// Traces the subpath that starts with a camera ray, using the sample's wavelengths and primary samples. An escaped subpath

@@ -41,9 +41,9 @@ struct NoEvents {
 
 // All functions are inlined into each algorithm, so that the state of the walk stays in registers: measured, this saves a tenth
 // of the time of simple scenes.
-/// `clear`: the scene has neither media nor null-scattering surfaces (Scene::has_interiors, has_null_surfaces), and the code
-/// for them is left out. False is always correct.
-template <bool clear>
+/// `unattenuated`: the scene has neither media nor null-scattering surfaces (Scene::has_interiors, has_null_surfaces), and the
+/// code for them is left out. False is always correct.
+template <bool unattenuated>
 class Walk {
  public:
   /// `longest_`: the maximum length in segments. `initial_throughput_`: T_0.
@@ -57,8 +57,8 @@ class Walk {
         longest(longest_),
         transport(transport_),
         initial_throughput(initial_throughput_),
-        tracks_(!clear && scene_.has_interiors()),
-        null_surfaces_(!clear && scene_.has_null_surfaces()) {}
+        tracks_(!unattenuated && scene_.has_interiors()),
+        null_surfaces_(!unattenuated && scene_.has_null_surfaces()) {}
   Walk(const Walk&) = delete;  // its vertex points to its media
   Walk& operator=(const Walk&) = delete;
 
@@ -71,12 +71,12 @@ class Walk {
   const int longest;
   const Transport transport;
 
-  PathVertex vertex;        ///< the last vertex. Its `media` points to the walk's own stack, which `leave` changes; with
-                            ///< `stores_subpath`, to a copy in the arena
-  int length = 0;           ///< segments so far
-  float direction_pdf = 0;  ///< [1/sr] of the last segment's direction; after a specular lobe a probability
-  bool specular = true;     ///< whether a specular lobe sampled that direction; true on the first segment, too
-  Point3 from;              ///< the vertex before, as the reference point of the pdf of next event estimation
+  PathVertex vertex;               ///< the last vertex. Its `media` points to the walk's own stack, which `leave` changes; with
+                                   ///< `stores_subpath`, to a copy in the arena
+  int length = 0;                  ///< segments so far
+  float direction_pdf = 0;         ///< [1/sr] of the last segment's direction; after a specular lobe a probability
+  bool arrived_specularly = true;  ///< whether a specular lobe sampled that direction; true on the first segment, too
+  Point3 from;                     ///< the vertex before, as the reference point of the pdf of next event estimation
   Normal3 from_normal;
   Spectrum segment_transmittance;   ///< of the last segment, for pdfs: of its null-scattering surfaces, and with
                                     ///< `stores_subpath` also of its media (weighting_transmittance)
@@ -135,7 +135,7 @@ class Walk {
         return true;
       }
       // A surface at the end of the last segment contributes only if it is an emitter.
-      if (clear && length >= longest && !observed && hit.depth == 0 && !hit.object->luminaire()) return false;
+      if (unattenuated && length >= longest && !observed && hit.depth == 0 && !hit.object->luminaire()) return false;
       vertex.kind = PathVertex::Kind::surface;
       vertex.subsurface_exit = false;
       vertex.scatter = nullptr;
@@ -171,11 +171,11 @@ class Walk {
   /// Empty: absorbed.
   [[gnu::always_inline]] std::optional<ScatterSample> sample_direction(float choice, Point2 u) const {
     if (vertex.in_medium()) {
-      ScatterSample s;
-      s.direction = vertex.medium.sample_phase(vertex.point.position, vertex.point.time, vertex.out, u, s.pdf);
+      ScatterSample next;
+      next.direction = vertex.medium.sample_phase(vertex.point.position, vertex.point.time, vertex.out, u, next.pdf);
       // phase / p = 1.
-      s.weight = Spectrum(1.0f);
-      return s;
+      next.weight = Spectrum(1.0f);
+      return next;
     }
     if (!vertex.scatter) return std::nullopt;
     return vertex.scatter->sample(vertex.out, choice, u, {transport, vertex.lobes});
@@ -193,19 +193,19 @@ class Walk {
     ray.direction = next.direction;
     ray.maximum = infinity;
     ray.of_camera = false;
-    if (!clear && vertex.in_medium()) {
-      specular = false;
+    if (!unattenuated && vertex.in_medium()) {
+      arrived_specularly = false;
       ray.origin = from;
       return;
     }
-    specular = next.specular();
+    arrived_specularly = next.specular();
     if (tracks_ && next.transmitted()) cross_boundary(media, *vertex.point.object, vertex.point.normal, next.direction);
     ray.origin = vertex.point.exit(next.direction);
     ray.width = vertex.point.footprint;
   }
 
   /// Continues through the last vertex by null scattering. The surface is then not a vertex: the segment that led to it goes
-  /// on, and direction_pdf, specular and from stay those of its start.
+  /// on, and direction_pdf, arrived_specularly and from stay those of its start.
   void pass_on(const ScatterSample& next) {
     throughput *= next.weight;
     segment_transmittance *= next.weight;
@@ -246,27 +246,27 @@ class Walk {
   bool observed = false;
 
  protected:
-  /// A branch of a split walk `w`: it starts at the last vertex of `w`.
-  Walk(const Walk& w, SampleContext& own)
-      : scene(w.scene),
+  /// A branch of a split walk: it starts at the last vertex of that walk.
+  Walk(const Walk& walk, SampleContext& own)
+      : scene(walk.scene),
         sample(own),
         numbers(own.numbers),
-        ray(w.ray),
-        throughput(w.throughput),
-        media(w.media),
-        longest(w.longest),
-        transport(w.transport),
-        vertex(w.vertex),
-        length(w.length),
-        branches(w.branches),
-        stores_subpath(w.stores_subpath),
-        collects_light(w.collects_light),
-        attenuates_only(w.attenuates_only),
-        observed(w.observed),
-        initial_throughput(w.initial_throughput),
-        eta_squared_(w.eta_squared_),
-        tracks_(w.tracks_),
-        null_surfaces_(w.null_surfaces_) {}
+        ray(walk.ray),
+        throughput(walk.throughput),
+        media(walk.media),
+        longest(walk.longest),
+        transport(walk.transport),
+        vertex(walk.vertex),
+        length(walk.length),
+        branches(walk.branches),
+        stores_subpath(walk.stores_subpath),
+        collects_light(walk.collects_light),
+        attenuates_only(walk.attenuates_only),
+        observed(walk.observed),
+        initial_throughput(walk.initial_throughput),
+        eta_squared_(walk.eta_squared_),
+        tracks_(walk.tracks_),
+        null_surfaces_(walk.null_surfaces_) {}
 
   /// roulette_weight with the mean over the wavelengths in place of the maximum.
   float mean_roulette_weight() const { return throughput.average() * eta_squared_ * branches; }

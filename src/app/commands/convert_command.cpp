@@ -62,11 +62,7 @@ void add_convert_command(CLI::App& program, Run& run) {
   CLI::App* command = program.add_subcommand("convert", "Write a file of another program as a render description");
   auto options = std::make_shared<ConvertOptions>();
   options->add_to(*command);
-  command
-      ->add_option("-o,--output", options->output,
-                   "The file to write: .etd, or JSON if its name ends in .json; - for standard output")
-      ->required()
-      ->type_name("FILE");
+  add_description_output(*command, options->output);
   command->footer(
       "\nExamples\n"
       "  etendue convert scene.xml -o scene.etd                 comments at its top say what is not as there\n"

@@ -181,7 +181,7 @@ std::string lamp_objects(const ClassInfo& info, const EmissionShader& emission) 
         "Conductor {{}} }}");
   if (info.name == "IesEmission" || info.name == "GoniometricEmission")
     return std::string("Point { position: [0, 0.3, 2.2] m, emission: part }") + walls;
-  for (const char* name : {"ProjectorEmission", "SpotEmission"})
+  for (const char* name : {"ProjectorEmission", "SpotEmission", "ForeignSpotEmission"})
     if (info.name == name)
       return std::string("Point { transform: translate(0, -1.5 m, 2.2 m) * rotate(-112 deg, \"x\"), emission: part }") + walls;
   return std::string(

@@ -46,11 +46,7 @@ void add_save_command(CLI::App& program, Run& run) {
       "save", "Write a file again as one description, with its overrides, includes and params worked in");
   auto options = std::make_shared<SaveOptions>();
   options->add_to(*command);
-  command
-      ->add_option("-o,--output", options->output,
-                   "The file to write: .etd, or JSON if its name ends in .json; - for standard output")
-      ->required()
-      ->type_name("FILE");
+  add_description_output(*command, options->output);
   command->add_flag("--all", options->all, "Write every member, also those that have their defaults");
   command->footer(
       "\nExamples\n"

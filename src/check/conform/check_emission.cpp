@@ -79,19 +79,32 @@ class EmissionTrial {
 
   void check_directions(const SurfacePoint& p) {
     const Frame frame(p.normal == Normal3{} ? Normal3{0, 0, 1} : p.normal);
-    const auto pdf_at = [&](const Vector3& v) { return Spectrum(emission_.pdf(p, v)); };
+    check_samples(
+        {.unit = "sampled directions are unit vectors",
+         .same_pdf = "a sample's density is that of its direction",
+         .follow_pdf = "sampled directions follow the density"},
+        [&] { return emission_.sample(p, trial.pair()); }, [&](const Vector3& v) { return emission_.pdf(p, v); },
+        [&](const Vector3& v) { return frame.to_local(v); }, [&](const Vector3& v) { return frame.to_world(v); });
+  }
+
+  /// The names of the checks of a way to sample directions.
+  struct SampleChecks {
+    const char *unit, *same_pdf, *follow_pdf;
+  };
+  /// Checks samples of directions against their pdf. They are counted in coordinates to which `to_local` turns directions, and
+  /// from which `from_local` turns them back.
+  template <class Sample, class Pdf, class ToLocal, class FromLocal>
+  void check_samples(const SampleChecks& checks, const Sample& sample, const Pdf& pdf, const ToLocal& to_local,
+                     const FromLocal& from_local) {
     Drawn drawn;
     const auto draw = [&](int count) {
-      drawn = draw_directions(
-          count, "sampled directions are unit vectors", "a sample's density is that of its direction",
-          [&] { return emission_.sample(p, trial.pair()); }, pdf_at, [&](const Vector3& v) { return frame.to_local(v); });
+      drawn = draw_directions(count, checks, sample, [&](const Vector3& v) { return Spectrum(pdf(v)); }, to_local);
       return drawn.list;
     };
     const std::vector<Vector3> first = draw(trial.samples(8000));
     if (first.size() < 200) return;
     compare(
-        "sampled directions follow the density", first, drawn.covered,
-        [&](const Vector3& local) { return double(emission_.pdf(p, frame.to_world(local))); },
+        checks.follow_pdf, first, drawn.covered, [&](const Vector3& local) { return double(pdf(from_local(local))); },
         [&](int count) { return std::pair(draw(count), drawn.lost); });
   }
 
@@ -102,12 +115,11 @@ class EmissionTrial {
   };
   /// Draws directions and checks each; `turned` gives the coordinates of the list.
   template <class Sample, class Pdf, class Turn>
-  Drawn draw_directions(int count, const char* unit, const char* same, const Sample& sample, const Pdf& pdf_at,
-                        const Turn& turned) {
+  Drawn draw_directions(int count, const SampleChecks& checks, const Sample& sample, const Pdf& pdf_at, const Turn& turned) {
     Drawn drawn;
     for (int i = 0; i < count; ++i) {
       const DirectionSample s = sample();
-      trial.expect(s.pdf >= 0 && s.pdf < infinity && (s.pdf == 0 || std::abs(length(s.direction) - 1) < 1e-4f), unit,
+      trial.expect(s.pdf >= 0 && s.pdf < infinity && (s.pdf == 0 || std::abs(length(s.direction) - 1) < 1e-4f), checks.unit,
                    [&] { return fmt::format("{}, density {}", text_of(s.direction), s.pdf); });
       if (!(s.pdf > 0)) {
         ++drawn.lost;
@@ -115,7 +127,7 @@ class EmissionTrial {
       }
       drawn.covered += 1 / double(s.pdf) / count;
       trial.expect(agree(Spectrum(s.pdf), pdf_at(s.direction), 2e-3f, true, [&] { return rounding_of(pdf_at, s.direction); }),
-                   same, [&] {
+                   checks.same_pdf, [&] {
                      return fmt::format("on a {} towards {}: {} and {}", name_, text_of(s.direction), s.pdf,
                                         pdf_at(s.direction)[0]);
                    });
@@ -165,20 +177,12 @@ class EmissionTrial {
   void check_incident() {
     const auto up = [](const Vector3& v) { return Vector3{v.z, v.x, v.y}; };
     const auto down = [](const Vector3& v) { return Vector3{v.y, v.z, v.x}; };
-    const auto pdf_at = [&](const Vector3& v) { return Spectrum(emission_.incident_pdf(v)); };
-    Drawn drawn;
-    const auto draw = [&](int count) {
-      drawn = draw_directions(
-          count, "sampled incident directions are unit vectors", "an incident sample's density is that of its direction",
-          [&] { return emission_.sample_incident(trial.pair()); }, pdf_at, up);
-      return drawn.list;
-    };
-    const std::vector<Vector3> first = draw(trial.samples(8000));
-    if (first.size() < 200) return;
-    compare(
-        "sampled incident directions follow the density", first, drawn.covered,
-        [&](const Vector3& local) { return double(emission_.incident_pdf(down(local))); },
-        [&](int count) { return std::pair(draw(count), drawn.lost); });
+    check_samples(
+        {.unit = "sampled incident directions are unit vectors",
+         .same_pdf = "an incident sample's density is that of its direction",
+         .follow_pdf = "sampled incident directions follow the density"},
+        [&] { return emission_.sample_incident(trial.pair()); }, [&](const Vector3& v) { return emission_.incident_pdf(v); },
+        up, down);
   }
 
  private:

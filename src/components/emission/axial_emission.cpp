@@ -2,6 +2,8 @@
 
 #include "axial_emission.h"
 
+#include "at_infinity.h"
+
 namespace etendue {
 namespace {
 
@@ -31,7 +33,7 @@ Vector3 AxialEmission::local(float h, float turn) const {
 }
 
 DirectionSample AxialEmission::sample(const SurfacePoint& p, Point2 u) const {
-  if (p.object && p.object->infinite()) return {normalize(p.object->transform.at(p.time)(Point3{} - p.object_position)), 1};
+  if (p.object && p.object->infinite()) return sample_at_infinity(p);
   if (!about_normal(p)) {
     const float h = draw(u.x, false);
     const Vector3 direction = Frame(Normal3(axis_at(p))).to_world(local(h, u.y));

@@ -11,9 +11,9 @@ class AxialEmission : public ShapedEmission {
  public:
   Spectrum radiance(const SurfacePoint&, const Vector3& direction, const Wavelengths&) const override;
 
-  // A point at infinity emits in one direction only, from the point towards the object's origin, with probability 1. On a
-  // surface a part of a profile about an axis may lie on a side that does not emit. Samples of this part have pdf 0, and the
-  // pdf integrates over the emitting sides to the share of the profile that lies there.
+  // Points at infinity emit as at_infinity.h says. On a surface a part of a profile about an axis may lie on a side that does
+  // not emit. Samples of this part have pdf 0, and the pdf integrates over the emitting sides to the share of the profile that
+  // lies there.
   DirectionSample sample(const SurfacePoint&, Point2 u) const override;
   float pdf(const SurfacePoint&, const Vector3& direction) const override;
 

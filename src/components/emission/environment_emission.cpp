@@ -1,5 +1,6 @@
 // EnvironmentEmission: light from all directions at infinity, given by an image or a map.
 
+#include "at_infinity.h"
 #include "equal_area.h"
 #include "etendue/core/warp.h"
 #include "etendue/describe/color.h"
@@ -104,12 +105,7 @@ class EnvironmentEmission final : public EmissionShader {
     return map_radiance(p, towards, w);
   }
 
-  // A point at infinity emits in one direction only, from the point towards the object's origin, with probability 1.
-  DirectionSample sample(const SurfacePoint& p, Point2) const override {
-    Vector3 away = Point3{} - p.object_position;
-    if (p.object) away = normalize(p.object->transform.at(p.time)(away));
-    return {away, 1};
-  }
+  DirectionSample sample(const SurfacePoint& p, Point2) const override { return sample_at_infinity(p); }
   float pdf(const SurfacePoint&, const Vector3&) const override { return 1; }
 
   /// The power that enters the scene through the object's area [W/nm]: pi * area * mean radiance. For an image the mean

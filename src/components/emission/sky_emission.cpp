@@ -1,5 +1,6 @@
 // SkyEmission: a clear sky with its sun.
 
+#include "at_infinity.h"
 #include "direction_table.h"
 #include "etendue/emission_shader.h"
 #include "etendue/scene_object.h"
@@ -76,12 +77,7 @@ class SkyEmission final : public EmissionShader {
     return seen(p.object_position - Point3{}, w);
   }
 
-  // A point at infinity emits in one direction only, from the point towards the object's origin, with probability 1.
-  DirectionSample sample(const SurfacePoint& p, Point2) const override {
-    Vector3 away = Point3{} - p.object_position;
-    if (p.object) away = normalize(p.object->transform.at(p.time)(away));
-    return {away, 1};
-  }
+  DirectionSample sample(const SurfacePoint& p, Point2) const override { return sample_at_infinity(p); }
   float pdf(const SurfacePoint&, const Vector3&) const override { return 1; }
 
   /// The power that enters the scene through the object's area [W/nm]: pi * area * mean radiance.

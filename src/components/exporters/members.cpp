@@ -112,6 +112,12 @@ double field_of_view(const Component& camera) {
   return 2 * std::atan(number_of(camera, "sensor_size") / 2 / focal_length) * 180 / std::numbers::pi;
 }
 
+bool is_spot(const Component& emission) {
+  return class_of(emission) == "SpotEmission" || class_of(emission) == "ForeignSpotEmission";
+}
+
+std::string spot_edge(const Component& spot) { return class_of(spot) == "SpotEmission" ? "smooth" : word_of(spot, "edge"); }
+
 bool turns_by_anisotropy_alone(const Component& medium) {
   const Ref<Component> phase = part_of(medium, "phase");
   return !phase || class_of(*phase) == "HenyeyGreensteinPhase";

@@ -42,6 +42,10 @@ std::vector<std::pair<int, double>> sampled(const Color&, ColorUse);
 std::array<double, 3> rgb_of(const Color&, ColorUse);
 /// The field of view of a PerspectiveCamera along its fov_axis [deg].
 double field_of_view(const Component& camera);
+/// Whether an emission is a spot: a SpotEmission or a ForeignSpotEmission.
+bool is_spot(const Component& emission);
+/// How a spot's edge falls off, by ForeignSpotEmission's words; "smooth" of a SpotEmission.
+std::string spot_edge(const Component& spot);
 /// Whether a medium has a Henyey-Greenstein phase function, of any anisotropy.
 bool turns_by_anisotropy_alone(const Component& medium);
 /// The mean cosine of the scattering angle in a medium.

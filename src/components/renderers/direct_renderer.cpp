@@ -94,16 +94,12 @@ class DirectRenderer final : public Renderer {
     Hit hit;
     SurfacePoint point;
     if (!meet_surface(scene, branch.ray, branch.around(), hit, point)) {
-      for (const SceneObject* far : scene.infinite_luminaires(branch.ray)) {
-        far->surface_point(branch.ray, hit, point);
-        sample.sink.escape(*far, branch.ray, branch.throughput);
-        add_emission(tree, branch, point, far);
-      }
+      tree.escape(branch, hit, point, [&](const SceneObject* far) { tree.add_emission(branch, point, far); });
       return false;
     }
     const Vector3 out = -branch.ray.direction;
     sample.sink.surface(point, branch.throughput);
-    if (point.object->luminaire()) add_emission(tree, branch, point, point.object);
+    if (point.object->luminaire()) tree.add_emission(branch, point, point.object);
     const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
     sample.sink.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
     if (!scatter) return false;
@@ -125,31 +121,12 @@ class DirectRenderer final : public Renderer {
     return branch.may_go_on(null_scattering);
   }
 
-  static void add_emission(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const SceneObject* luminaire) {
-    const Spectrum light = branch.throughput * luminaire->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
-    tree.add(branch.depth, light, luminaire);
-    tree.sample.sink.emitter_hit(light, branch.depth, 1);
-  }
-
   /// Follows one new branch for each perfect mirror and refraction.
   void follow_mirrors(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const Scatter& scatter) const {
-    SampleContext& sample = tree.sample;
     bool first = true;
     for (const Lobe lobe : {specular_reflection, specular_transmission}) {
       if (!scatter.has(lobe)) continue;
-      const float choice = sample.numbers.next();  // a surface may have several lobes of this kind
-      const auto next = scatter.sample(-branch.ray.direction, choice, sample.numbers.next_pair(), {.lobes = lobe});
-      if (!next || enters_subsurface(point, *next)) continue;
-      RayBranch child = branch;
-      child.throughput *= next->weight;
-      if (next->dispersive) child.throughput *= child.wavelengths.drop_secondary();
-      if (child.throughput.black() || !child.may_go_on(lobe)) continue;
-      ++child.depth;
-      go_on(point, *next, child.ray, child.around());
-      if (!first) sample.sink.surface(point, branch.throughput);  // path records of a branch begin at this surface
-      first = false;
-      sample.sink.scattered(*next);
-      follow(tree, child);
+      if (auto child = tree.continued(branch, point, scatter, lobe, first)) follow(tree, *child);
     }
   }
 

@@ -120,11 +120,7 @@ class DistributionRenderer final : public Renderer {
       const ArenaScope memory(sample.arena);
       if (sample.aborted()) return;
       if (!meet_surface(scene, branch.ray, branch.around(), hit, point)) {
-        for (const SceneObject* far : scene.infinite_luminaires(branch.ray)) {
-          far->surface_point(branch.ray, hit, point);
-          sample.sink.escape(*far, branch.ray, branch.throughput);
-          add_emission(tree, branch, point);
-        }
+        tree.escape(branch, hit, point, [&](const SceneObject*) { add_emission(tree, branch, point); });
         return;
       }
       const Vector3 out = -branch.ray.direction;

@@ -55,28 +55,6 @@ namespace {
 /// Subpaths without Russian roulette: their length is already chosen.
 SubpathLimits exactly(int segments) { return {segments, segments + 1}; }
 
-/// The sum of the contributions of one strategy, or of all.
-struct Sum {
-  SampleContext& sample;
-  const BidirectionalSubpaths& walks;
-  const int s, t;      ///< the strategy; -1: any
-  const float factor;  ///< number of strategies / P(k)
-  Spectrum radiance = {};
-
-  void add(const PathContribution& light) {
-    if (t >= 0 && (light.s != s || light.t != t)) return;
-    PathContribution one = light;
-    one.light *= factor;
-    add_contribution(sample, walks.light_wavelengths(), one, radiance);
-  }
-  void add(const std::optional<PathContribution>& light) {
-    if (light) add(*light);
-  }
-  void add(std::span<const PathContribution> all) {
-    for (const PathContribution& light : all) add(light);
-  }
-};
-
 /// Estimates F: each sample is one path, made by one strategy.
 class StrategyProcess final : public RenderProcess {
  public:
@@ -107,7 +85,11 @@ class StrategyProcess final : public RenderProcess {
     const int s = std::min(int(sample.numbers.fork("strategy").next() * float(strategies)), strategies - 1), t = k + 1 - s;
 
     BidirectionalSubpaths walks(context, *settings_.light_sampler, sample, {settings_.heuristic});
-    Sum sum{sample, walks, s, t, float(strategies / P)};
+    ContributionSum sum(sample, walks, [&](PathContribution& found) {
+      if (found.s != s || found.t != t) return false;
+      found.light *= float(strategies / P);
+      return true;
+    });
     if (t > 1) {
       walks.from_camera(ray, exactly(t - 1));
       sum.add(walks.segment_emission());
@@ -179,7 +161,7 @@ class DirectProcess final : public RenderProcess {
     if (sample.sink.features) note_first_surface(context.scene, ray, sample);
     const int longest = std::min(settings_.max_depth, MutatedPaths::direct_length);
     BidirectionalSubpaths walks(context, *settings_.light_sampler, sample, {settings_.heuristic});
-    Sum sum{sample, walks, 0, -1, 1};
+    ContributionSum sum(sample, walks, [](const PathContribution&) { return true; });
     walks.from_camera(ray, exactly(longest));
     sum.add(walks.segment_emission());
     for (int t = 2; t <= walks.camera_vertices(); ++t) sum.add(walks.emitter_hits(t));

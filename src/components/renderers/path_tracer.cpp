@@ -47,9 +47,9 @@ class PathTracer final : public Renderer {
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
-    const bool clear = !context.scene.has_interiors() && !context.scene.has_null_surfaces();
-    return clear ? follow(CameraWalk<true>(context.scene, sample, ray, max_depth))
-                 : follow(CameraWalk<false>(context.scene, sample, ray, max_depth));
+    const bool unattenuated = !context.scene.has_interiors() && !context.scene.has_null_surfaces();
+    return unattenuated ? follow(CameraWalk<true>(context.scene, sample, ray, max_depth))
+                        : follow(CameraWalk<false>(context.scene, sample, ray, max_depth));
   }
 
  private:

@@ -124,7 +124,7 @@ class PhotonMapperProcess final : public PhotonProcess {
       luminaires,  // direct emitter hits alone: photons contributed the other light
     } seeks = Seeks::all;
     const auto met = [&](const SurfacePoint& luminaire) {
-      if (walk.specular && seeks != Seeks::all) return 0.0f;
+      if (walk.arrived_specularly && seeks != Seeks::all) return 0.0f;
       return walk.emitter_hit_weight(*settings_.light_sampler, settings_.heuristic, luminaire);
     };
     while (walk.next_vertex(met) && seeks != Seeks::luminaires && !walk.at_end()) {
@@ -138,7 +138,7 @@ class PhotonMapperProcess final : public PhotonProcess {
       if (smooth) add_photons(walk, caustics_, settings_.nearest_caustic, settings_.farthest_caustic, PhotonKinds::caustics);
       if (smooth && brought) add_photons(walk, global_, settings_.nearest, settings_.farthest, PhotonKinds::no_caustics);
       if (!go_on(walk, smooth && !brought)) walk.end();
-      if (!walk.specular) seeks = brought ? Seeks::luminaires : Seeks::gathered;
+      if (!walk.arrived_specularly) seeks = brought ? Seeks::luminaires : Seeks::gathered;
     }
     return walk.radiance;
   }

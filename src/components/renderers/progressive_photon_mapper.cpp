@@ -138,13 +138,13 @@ class ProgressivePhotonProcess final : public PhotonProcess {
   Spectrum follow(Walk& walk) const {
     const Splitting splitting{settings_.split_depth, settings_.split_wavelengths};
     const Met<Walk> met{*this, walk};
-    while (walk.next_vertex(met) && walk.specular && !walk.at_end()) {
+    while (walk.next_vertex(met) && walk.arrived_specularly && !walk.at_end()) {
       if (walk.vertex.scatters_smoothly()) gather(walk);
       const NumberStream::Bounce u = walk.next_bounce();
       if (settings_.next_event) walk.add_direct(*settings_.light_sampler, u, settings_.heuristic);
       if (walk.splits(splitting))
         walk.split(splitting, u, [&](auto& branch) { return follow(branch); });
-      else if (walk.scatter(u) && !settings_.next_event && !walk.specular)
+      else if (walk.scatter(u) && !settings_.next_event && !walk.arrived_specularly)
         walk.end();
     }
     return walk.radiance;
@@ -162,22 +162,22 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     }
     /// A medium interval of length `reach`. After a smooth vertex none is gathered: photons there contain in-scattered light.
     void through(const Medium& medium, float reach) const {
-      if (walk.attenuates_only && walk.specular) self.gather_along(walk, medium, reach);
+      if (walk.attenuates_only && walk.arrived_specularly) self.gather_along(walk, medium, reach);
     }
   };
 
   template <class Walk>
-  static Carrying carrying(const Walk& walk) {
+  static GatheringWavelengths wavelengths_of(const Walk& walk) {
     const Wavelengths& w = walk.sample.wavelengths;
     return {w, w.single(), walk.lane(), walk.branches};
   }
 
   template <class Walk>
   void gather(Walk& walk) const {
-    const Carrying to = carrying(walk);
+    const GatheringWavelengths of_walk = wavelengths_of(walk);
     const auto add = [&](const Photon& p, float area) {
       if (walk.length + int(p.vertices) > settings_.max_depth) return;
-      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, to) / area, p.from(context.scene));
+      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, of_walk) / area, p.from(context.scene));
     };
     photons_.near(context.scene, walk.vertex, add);
     caustics_.near(context.scene, walk.vertex, add);
@@ -185,13 +185,14 @@ class ProgressivePhotonProcess final : public PhotonProcess {
 
   template <class Walk>
   void gather_along(Walk& walk, const Medium& medium, float reach) const {
-    const Carrying to = carrying(walk);
+    const GatheringWavelengths of_walk = wavelengths_of(walk);
     NumberStream numbers = walk.numbers.fork("beam", std::uint32_t(walk.length));
     const Ray ray = walk.ray;
     const auto add = [&](const Photon& p, float t, float area) {
       if (walk.length + int(p.vertices) > settings_.max_depth) return;
       const float phase = medium.phase(ray(t), ray.time, -ray.direction, p.out);
-      walk.add_light(int(p.vertices), transmittance(medium, ray, t, to.wavelengths, numbers) * carried(p, to) * (phase / area),
+      walk.add_light(int(p.vertices),
+                     transmittance(medium, ray, t, of_walk.wavelengths, numbers) * in_wavelengths(p, of_walk) * (phase / area),
                      p.from(context.scene));
     };
     photons_.along(context.scene, ray, reach, add);
@@ -204,7 +205,8 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     const auto add_beam = [&](const PhotonBeam& b, float s, float t, float width) {
       if (walk.length + int(b.vertices) > settings_.max_depth) return;
       const float phase = medium.phase(within(t), ray.time, -ray.direction, -b.direction);
-      walk.add_light(int(b.vertices), carried(b.light(s, t, c), b.hero_only, to) * (phase / width), b.from(context.scene));
+      walk.add_light(int(b.vertices), in_wavelengths(b.light(s, t, c), b.hero_only, of_walk) * (phase / width),
+                     b.from(context.scene));
     };
     beams_.along(context.scene, medium, within, there.length(), numbers, add_beam);
     caustic_beams_.along(context.scene, medium, within, there.length(), numbers, add_beam);

@@ -59,22 +59,12 @@ class WhittedRenderer final : public Renderer {
     Hit hit;
     SurfacePoint point;
     if (!meet_surface(scene, branch.ray, branch.around(), hit, point)) {
-      for (const SceneObject* far : scene.infinite_luminaires(branch.ray)) {
-        far->surface_point(branch.ray, hit, point);
-        const Spectrum light = branch.throughput * far->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
-        tree.add(branch.depth, light, far);
-        sample.sink.escape(*far, branch.ray, branch.throughput);
-        sample.sink.emitter_hit(light, branch.depth, 1);
-      }
+      tree.escape(branch, hit, point, [&](const SceneObject* far) { tree.add_emission(branch, point, far); });
       return false;
     }
     const Vector3 out = -branch.ray.direction;
     sample.sink.surface(point, branch.throughput);
-    if (point.object->luminaire()) {
-      const Spectrum light = branch.throughput * point.object->emission->radiance(point, out, branch.wavelengths);
-      tree.add(branch.depth, light, point.object);
-      sample.sink.emitter_hit(light, branch.depth, 1);
-    }
+    if (point.object->luminaire()) tree.add_emission(branch, point, point.object);
     const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
     sample.sink.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
     if (!scatter) return false;
@@ -88,23 +78,13 @@ class WhittedRenderer final : public Renderer {
     for (const Lobe lobe : {specular_reflection, specular_transmission, null_scattering}) {
       // Null scattering does not count as a segment, so the last segment may still pass null-scattering surfaces.
       if (!scatter->has(lobe) || (last && lobe != null_scattering)) continue;
-      const float choice = sample.numbers.next();  // a surface may have several lobes of this kind
-      const auto next = scatter->sample(out, choice, sample.numbers.next_pair(), {.lobes = lobe});
-      if (!next || enters_subsurface(point, *next)) continue;
-      RayBranch child = branch;
-      child.throughput *= next->weight;
-      if (next->dispersive) child.throughput *= child.wavelengths.drop_secondary();
-      if (child.throughput.black() || !child.may_go_on(lobe)) continue;
-      if (lobe != null_scattering) ++child.depth;
-      go_on(point, *next, child.ray, child.around());
-      if (!first) sample.sink.surface(point, branch.throughput);  // path records of a branch begin at this surface
-      first = false;
-      sample.sink.scattered(*next);
+      auto child = tree.continued(branch, point, *scatter, lobe, first);
+      if (!child) continue;
       if (lobe == null_scattering) {
-        branch = child;
+        branch = *child;
         goes_on = true;
       } else {
-        follow(tree, child);
+        follow(tree, *child);
       }
     }
     return goes_on;

@@ -18,6 +18,13 @@ class JointScatter : public ScatterModel<Model> {
 
  protected:
   using ScatterModel<Model>::ScatterModel;
+  /// Sets the value and the pdf of a sample in the direction s.in from those of all lobes together; returns whether the
+  /// direction has a pdf.
+  static bool complete(LocalSample& s, const ScatterValue& both) {
+    s.value = both.value * std::abs(s.in.z);
+    s.pdf = both.pdf;
+    return s.pdf > 0;
+  }
   ~JointScatter() = default;
 };
 

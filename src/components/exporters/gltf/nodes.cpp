@@ -106,7 +106,7 @@ std::optional<size_t> Writer::light_node(const SceneObject& o, bool& is_light) {
     return std::nullopt;
   }
   if (!e) return std::nullopt;
-  const bool spot = class_of(*e) == "SpotEmission";
+  const bool spot = is_spot(*e);
   if ((!spot && class_of(*e) != "DiffuseEmission") || (spot && part_of(*e, "picture")))
     exporting.inexact(fmt::format("{} shines alike in all directions that it shines in", class_of(*e)), e.get());
   const bool named = e->class_info().find("radiance") && !e->class_info().find("file");
@@ -127,7 +127,7 @@ std::optional<size_t> Writer::light_node(const SceneObject& o, bool& is_light) {
                      {"outerConeAngle", number_of(*e, "outer_angle") * degree}};
     const std::vector<double> axis = numbers_of(*e, "axis");
     way = {axis[0], axis[1], axis[2]};
-    if (word_of(*e, "edge") != "square") exporting.inexact("the edge of a spot falls as t^2 in glTF", e.get());
+    if (spot_edge(*e) != "square") exporting.inexact("the edge of a spot falls as t^2 in glTF", e.get());
   }
   DoublePoint3 from;
   const std::vector<double> at = numbers_of(o, type == "Distant" ? "direction" : "position");

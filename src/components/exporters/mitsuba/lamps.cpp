@@ -57,7 +57,7 @@ bool Writer::light_source(const SceneObject& o, const Transform& placed) {
 
 void Writer::point(const SceneObject& o, const Component& e, const Transform& placed) {
   const std::string& kind = class_of(e);
-  if (kind == "SpotEmission") return spot(o, e, placed);
+  if (is_spot(e)) return spot(o, e, placed);
   if (kind == "ProjectorEmission") return projector(o, e, placed);
   if (kind != "DiffuseEmission") exporting.inexact(fmt::format("{} shines alike in all directions in Mitsuba", kind), &e);
   const std::vector<double> p = numbers_of(o, "position");
@@ -82,7 +82,7 @@ void Writer::spot(const SceneObject& o, const Component& e, const Transform& pla
     map(n, "texture", e, "picture", ColorUse::reflectance, Uv::as_is);
     if (!along_z) exporting.inexact("the picture of a spot lies about its axis in Mitsuba", &e);
   }
-  if (word_of(e, "edge") != "linear") exporting.inexact("the edge of a spot is linear in angle in Mitsuba", &e);
+  if (spot_edge(e) != "linear") exporting.inexact("the edge of a spot is linear in angle in Mitsuba", &e);
 }
 
 void Writer::projector(const SceneObject& o, const Component& e, const Transform& placed) {

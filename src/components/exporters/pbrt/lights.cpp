@@ -88,12 +88,12 @@ std::string Writer::environment(const SceneObject& object, const Component& emis
 std::string Writer::point_light(const SceneObject& object, const Component& emission) {
   const std::vector<double> p = numbers_of(object, "position");
   const std::string from = fmt::format(" \"point3 from\" {}", list(p)), name = emission.class_info().name;
-  if (name == "SpotEmission") {
+  if (is_spot(emission)) {
     const std::vector<double> axis = numbers_of(emission, "axis");
     const std::vector<double> to{p[0] + axis[0], p[1] + axis[1], p[2] + axis[2]};
     const double inner = number_of(emission, "inner_angle"), outer = number_of(emission, "outer_angle");
     if (part_of(emission, "picture")) exporting.inexact("the picture of a spot is left out", &emission);
-    if (word_of(emission, "edge") != "smooth") exporting.inexact("a spot's edge is smooth in pbrt", &emission);
+    if (spot_edge(emission) != "smooth") exporting.inexact("a spot's edge is smooth in pbrt", &emission);
     return "LightSource \"spot\"" + light_of(emission, "I", object) + from +
            fmt::format(" \"point3 to\" {} \"float coneangle\" {} \"float conedeltaangle\" {}\n", list(to), outer,
                        outer - inner);

@@ -37,7 +37,7 @@ Ref<Component> make_light(Importing& importing, const Document& document, size_t
     for (double& c : color) c *= number(light, "intensity", 1);
     const bool spot = type == "spot", distant = type == "directional";
     if (!spot && !distant && type != "point") throw Error("a light of the type '" + type.substr(0, 20) + "' is unknown");
-    Ref<Component> emission = importing.make(spot ? "SpotEmission" : "DiffuseEmission", at);
+    Ref<Component> emission = importing.make(spot ? "ForeignSpotEmission" : "DiffuseEmission", at);
     set(*emission, "radiance", color_value(color, at));
     if (spot) {
       const Json& cone = object_in(light, "spot");

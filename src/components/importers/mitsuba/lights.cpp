@@ -111,7 +111,7 @@ Ref<SceneObject> Converter::emitter(const Element& e) {
 
 Ref<Component> Converter::spot(const Element& e) {
   const double cutoff = e.number("cutoff_angle", 20);
-  Ref<Component> emission = make("SpotEmission", e, "");
+  Ref<Component> emission = make("ForeignSpotEmission", e, "");
   set(*emission, "radiance", light(e, "intensity", Uv::as_is));
   set_member(*emission, "outer_angle", cutoff, e.location_of("cutoff_angle"));
   set_member(*emission, "inner_angle", e.number("beam_width", cutoff * 3 / 4), e.location_of("beam_width"));

@@ -102,14 +102,15 @@ void spot(Reader& reader, const Parameters& p) {
     inner = outer;
   }
   const double begin = std::cos(inner * pi / 180), end = std::cos(outer * pi / 180);
-  const Ref<Component> emission = reader.make("SpotEmission", p.at);
+  const bool quartic = reader.version == 3;
+  const Ref<Component> emission = reader.make(quartic ? "ForeignSpotEmission" : "SpotEmission", p.at);
   set_member(*emission, "radiance", scaled_light(reader, p, "I", power_factor(p, 2 * pi * ((1 - begin) + (begin - end) / 2))),
              p.at);
   const DoublePoint3 from = p.point("from", {0, 0, 0});
   set_member(*emission, "axis", way(from, p.point("to", {0, 0, 1}), p), p.at);
   set_member(*emission, "inner_angle", inner, p.at);
   set_member(*emission, "outer_angle", outer, p.at);
-  if (reader.version == 3) set_member(*emission, "edge", "quartic", p.at);
+  if (quartic) set_member(*emission, "edge", "quartic", p.at);
   const Ref<Component> object = placed(reader, "Point", p);
   set_member(*object, "position", list(from), p.at);
   add_light(reader, object, emission, p.at);

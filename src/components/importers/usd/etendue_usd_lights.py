@@ -99,7 +99,7 @@ class Lights:
             members["edge"] = "smooth_angle"
         members.update(axis=[0, 0, -1], inner_angle={"angle": math.radians(angle * (1 - soft))},
                        outer_angle={"angle": math.radians(max(angle, 0.01))})
-        return {"class": "SpotEmission", "members": members}
+        return {"class": "ForeignSpotEmission" if soft > 0 else "SpotEmission", "members": members}
 
     def profile(self, texture):
         """The IesEmission of 'shaping:ies:file', or None. The file's candelas multiply the luminance towards each direction."""

@@ -9,13 +9,15 @@
 namespace etendue {
 
 /// Visits the cells along a line in order (Amanatides & Woo 1987, "A fast voxel traversal algorithm"), skipping empty blocks of
-/// cells (Cohen & Sheffer 1994, "Proximity clouds"). Coordinates are in units of cells; the line must stay in the grid, up to
-/// rounding.
+/// cells (Cohen & Sheffer 1994, "Proximity clouds"). The line must stay in the grid, up to rounding.
 class GridWalk {
  public:
-  GridWalk(const Place& origin, const Place& direction, double from, double to, const int (&count)[3])
-      : enter(from), origin_(origin), direction_(direction), to_(to) {
+  /// Of a grid that begins at `low` and has `scale` cells per unit of length, `count` along each axis.
+  GridWalk(const DoubleRay& line, double from, double to, const Place& low, const Place& scale, const int (&count)[3])
+      : enter(from), to_(to) {
     for (int k = 0; k < 3; ++k) {
+      origin_[k] = (line.origin[k] - low[k]) * scale[k];
+      direction_[k] = line.direction[k] * scale[k];
       count_[k] = count[k];
       cell[k] = int(std::clamp(std::floor(at(from, k)), 0.0, double(count[k] - 1)));
       // If the line starts in the plane between two cells and its direction is negative, it starts in the lower cell.

@@ -88,12 +88,7 @@ class SignedDistanceGrid final : public ImplicitObject {
   }
 
   bool next_crossing(const DoubleRay& r, double from, double to, bool& inside, double& t) const override {
-    Place o, d;
-    for (size_t k = 0; k < 3; ++k) {
-      o[k] = (r.origin[k] - low_[k]) * scale_[k];
-      d[k] = r.direction[k] * scale_[k];
-    }
-    GridWalk walk(o, d, from, to, count_);
+    GridWalk walk(r, from, to, low_, scale_, count_);
     do {
       const size_t cell = cell_index(walk.cell[0], walk.cell[1], walk.cell[2]);
       const int empty = empty_[cell];

@@ -2,6 +2,7 @@
 
 #include "mesh_data.h"
 
+#include <algorithm>
 #include <map>
 
 #include "etendue/describe/component.h"
@@ -22,16 +23,24 @@ std::map<std::string, ReadPart>& formats() {
   return *all;
 }
 
+/// The formats that are read here, by their endings. OBJ is registered too, for files with parts.
+constexpr std::pair<std::string_view, MeshData (*)(std::string_view)> own_formats[] = {
+    {"ply", read_ply}, {"obj", read_obj}, {"stl", read_stl}, {"off", read_off}};
+
+/// Null: the format is not read here.
+auto own_format(std::string_view ending) {
+  const auto known = std::ranges::find(own_formats, ending, [](const auto& format) { return format.first; });
+  return known == std::end(own_formats) ? nullptr : known->second;
+}
+
 MeshData read_text(const std::string& path, const std::string& ending) {
   const FileContents file(path);
   const bool marked = has_byte_order_mark(file.text());
   const std::string plain = marked ? as_utf8(file.text()) : std::string();
   const std::string_view text = marked ? plain : file.text();
   if (text.empty()) throw Error("the file is empty");
-  if (text.starts_with("ply\n") || text.starts_with("ply\r") || ending == "ply") return read_ply(text);
-  if (ending == "obj") return read_obj(text);
-  if (ending == "stl") return read_stl(text);
-  if (ending == "off") return read_off(text);
+  if (text.starts_with("ply\n") || text.starts_with("ply\r")) return read_ply(text);
+  if (const auto read = own_format(ending)) return read(text);
   throw Error("this is no mesh format that is known here (PLY, OBJ, STL and OFF are, and those of importers)");
 }
 
@@ -59,8 +68,7 @@ namespace {
 ReadPart registered_format(const std::string& ending) {
   const std::lock_guard lock(libraries_guard());
   auto known = formats().find(ending);
-  const bool own = ending == "ply" || ending == "stl" || ending == "off";
-  if (known == formats().end() && !own && load_format_library()) known = formats().find(ending);
+  if (known == formats().end() && !own_format(ending) && load_format_library()) known = formats().find(ending);
   return known == formats().end() ? nullptr : known->second;
 }
 

@@ -10,7 +10,7 @@ namespace etendue {
 // Sampling chooses the lobe with a probability proportional to an estimate of its albedo, otherwise the base, whose directions
 // have the pdf cos / pi. A model defines, for `out` and `in` on the same side:
 //   Spectrum matte(out, in)          f of the base [1/sr]
-//   ScatterValue glossy(out, in)     f of the lobe and the pdf with which it samples `in` [1/sr]
+//   ScatterValue glossy(out, in)     f of the lobe and the pdf with lobes it samples `in` [1/sr]
 //   Spectrum matte_albedo(out), glossy_albedo(out)
 //   float matte_weight(out), glossy_weight(out)    unnormalized probabilities of choosing each
 template <class Model>
@@ -53,11 +53,9 @@ class MatteGlossyScatter : public JointScatter<Model> {
     }
     return r;
   }
-  static bool complete(LocalSample& s, const ScatterValue& both) {
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
-    return s.pdf > 0;
-  }
+
+ private:
+  const Model& model() const { return static_cast<const Model&>(*this); }
 };
 
 /// A MatteGlossyScatter whose lobe is sampled by the half-vector: the model also defines sample_half(u), a half-vector with z >

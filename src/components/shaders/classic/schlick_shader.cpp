@@ -98,10 +98,7 @@ class SchlickScatter final : public JointScatter<SchlickScatter> {
     }
     if (!(s.in.z > 0)) return false;
     if (out.z < 0) s.in.z = -s.in.z;
-    const ScatterValue both = value_and_pdf_of(out, s.in, share, lobes);
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
-    return s.pdf > 0;
+    return complete(s, value_and_pdf_of(out, s.in, share, lobes));
   }
   Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     Spectrum sum;
@@ -186,7 +183,7 @@ class SchlickShader final : public Shader {
  public:
   static void describe(Description<SchlickShader>& d) {
     d.summary(
-         "One layer, or two when base_color is given, each of which goes from a mirror through gloss to matt as its roughness "
+         "One layer, or two when base_color is given, each of lobes goes from a mirror through gloss to matt as its roughness "
          "grows, with Fresnel reflection and scratches. What would create energy in the paper is bounded.",
          "Schlick 1994, An inexpensive BRDF model for physically-based rendering")
         .group("Layer")

@@ -160,7 +160,7 @@ void PrincipledScatter::transmission(const Vector3& out, const Vector3& in, Lobe
                (relative_index(out, in) / towards(out, l.eta[0]));  // as in RoughDielectric
 }
 
-// A sheet's rough transmission is modelled as its reflection mirrored at the sheet, for which facets lose no energy
+// A sheet's rough transmission is modelled as its reflection mirrored at the sheet, for lobes facets lose no energy
 // (prepare_multiple). Two surfaces with independent facets would spread light by (eta - 1) / sqrt(2) of that.
 void PrincipledScatter::thin_transmission(const Vector3& out, const Vector3& in, Lobes lobes, const Plan& plan,
                                           ScatterValue& r) const {
@@ -226,10 +226,7 @@ bool PrincipledScatter::local_sample(const Vector3& out, float choice, Point2 u,
                      : (is_glossy ? glossy_reflection : diffuse_reflection);
     if (through) s.eta = hero_index(out, s.in);
   }
-  const ScatterValue both = combine(out, s.in, lobes, plan);
-  s.value = both.value * std::abs(s.in.z);
-  s.pdf = both.pdf;
-  return s.pdf > 0;
+  return complete(s, combine(out, s.in, lobes, plan));
 }
 
 /// Samples the base: the whole sample for a smooth base, the direction and lobe for a rough one.

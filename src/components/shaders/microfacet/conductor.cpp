@@ -103,11 +103,8 @@ class RoughConductor final : public ScatterModel<RoughConductor> {
     } else {
       s.in = reflect(out, distribution_.sample_visible(out, u));
     }
-    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
     s.lobe = glossy_reflection;
-    return s.pdf > 0;
+    return complete(s, local_value_and_pdf(out, s.in, lobes));
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes lobes) const {

@@ -2,10 +2,8 @@
 
 #include <optional>
 
-#include "components/shaders/fresnel.h"
-#include "components/shaders/joint_scatter.h"
+#include "coated_body.h"
 #include "components/shaders/reflectance.h"
-#include "etendue/core/warp.h"
 #include "etendue/transport/medium_stack.h"
 #include "roughness.h"
 
@@ -34,12 +32,12 @@ struct Coat {
   float through(const Vector3& v) const { return rough ? (*rough)(v) : 1 - fresnel_dielectric(std::abs(v.z), eta); }
 };
 
-class PlasticScatter final : public JointScatter<PlasticScatter> {
+class PlasticScatter final : public CoatedBodyScatter<PlasticScatter> {
  public:
   PlasticScatter(const SurfacePoint& p, const MicrofacetDistribution& distribution, const Coat& coat, Spectrum body,
                  bool nonlinear)
-      : JointScatter(p,
-                     Lobes((body.black() ? 0 : diffuse_reflection) | (coat.rough ? glossy_reflection : specular_reflection))),
+      : CoatedBodyScatter(
+            p, Lobes((body.black() ? 0 : diffuse_reflection) | (coat.rough ? glossy_reflection : specular_reflection))),
         distribution_(distribution),
         coat_(coat) {
     const float inside = clamp(1 - coat.through_mean / square(coat.eta), 0, 0.9999f);
@@ -50,46 +48,6 @@ class PlasticScatter final : public JointScatter<PlasticScatter> {
     body_weight_ = body_albedo_.average();
   }
 
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
-    if (!(out.z * in.z > 0)) return {};
-    const float through = coat_.through(out), coat_probability = probability_of_coat(through, lobes);
-    ScatterValue r;
-    if (lobes & diffuse_reflection) {
-      r.value = body_ * (through * coat_.through(in) * inverse_pi);
-      r.pdf = (1 - coat_probability) * std::abs(in.z) * inverse_pi;
-    }
-    if (lobes & glossy_reflection) {
-      const Vector3 m = reflection_half_vector(out, in);
-      const float cosine = std::abs(dot(out, m));
-      r.value += Spectrum(fresnel_dielectric(cosine, coat_.eta) * distribution_.D(m) * distribution_.visibility(out, in));
-      r.pdf += coat_probability * distribution_.visible_pdf(out, m) * reflection_jacobian(cosine);
-    }
-    return r;
-  }
-
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
-    const float through = coat_.through(out), coat_probability = probability_of_coat(through, lobes);
-    if (choice < coat_probability) {
-      if (lobes & specular_reflection) {
-        s.in = {-out.x, -out.y, out.z};
-        s.value = Spectrum(1 - through);
-        s.pdf = coat_probability;
-        s.lobe = specular_reflection;
-        return true;
-      }
-      s.in = reflect(out, distribution_.sample_visible(out, u));
-      s.lobe = glossy_reflection;
-    } else {
-      s.in = warp::cosine_hemisphere(u);
-      if (out.z < 0) s.in.z = -s.in.z;
-      s.lobe = diffuse_reflection;
-    }
-    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
-    return s.pdf > 0;
-  }
-
   Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     const float through = coat_.through(out);
     Spectrum sum;
@@ -98,13 +56,17 @@ class PlasticScatter final : public JointScatter<PlasticScatter> {
     return sum;
   }
 
- private:
-  float probability_of_coat(float through, Lobes lobes) const {
-    if (!(lobes & diffuse_reflection)) return 1;
-    if (!(lobes & (glossy_reflection | specular_reflection))) return 0;
-    return (1 - through) / (1 - through + through * body_weight_);
+  const MicrofacetDistribution& facets() const { return distribution_; }
+  float eta() const { return coat_.eta; }
+  float through(const Vector3& v) const { return coat_.through(v); }
+  const Spectrum& body() const { return body_; }
+  Spectrum coat(const Vector3& out, const Vector3& in, float fresnel, float density) const {
+    return Spectrum(fresnel * density * distribution_.visibility(out, in));
   }
+  Spectrum mirrored(const Vector3&, float through) const { return Spectrum(1 - through); }
+  float coat_share(const Vector3&, float through) const { return (1 - through) / (1 - through + through * body_weight_); }
 
+ private:
   MicrofacetDistribution distribution_;
   Coat coat_;
   Spectrum body_;         ///< f_d pi / (T(out) T(in))
@@ -130,7 +92,7 @@ class Plastic final : public Shader {
         .member<&Plastic::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
         .member<&Plastic::nonlinear>(
             "nonlinear", "",
-            "whether light that the coat throws back to the body takes on its colour again, which makes "
+            "whether light that the coat throws back to the body takes on its colour again, lobes makes "
             "colours deeper");
   }
 

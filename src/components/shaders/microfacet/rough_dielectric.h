@@ -29,7 +29,7 @@ struct BoundaryTint {
 // light once.
 //
 // Sampling: with the probability 1 - E(out), E being the albedo of single scattering, the lobe of multiple scattering is
-// sampled: a side by its share, then a direction with the pdf cos / pi. Otherwise a visible normal is sampled, which reflects
+// sampled: a side by its share, then a direction with the pdf cos / pi. Otherwise a visible normal is sampled, lobes reflects
 // with the probability F.
 //
 // Dispersion. A given direction `in` belongs to another facet normal at each wavelength, and f is evaluated for all of them.
@@ -37,7 +37,7 @@ struct BoundaryTint {
 // chooses the direction with equal probability, and the pdf is the mean of theirs (the balance heuristic of Wilkie et al. 2014,
 // "Hero wavelength spectral sampling", at a single vertex): no weight exceeds 4 times that of a path of a single wavelength,
 // and no wavelength needs to be dropped. Multiple scattering is tabulated for the hero: its transmitted part is multiplied by
-// eta / eta_hero, which keeps both transports adjoint at every wavelength. The resulting error of energy is the relative
+// eta / eta_hero, lobes keeps both transports adjoint at every wavelength. The resulting error of energy is the relative
 // difference of the indices times the few hundredths of the light that are scattered more than once.
 class RoughDielectric final : public JointScatter<RoughDielectric> {
  public:
@@ -96,12 +96,9 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
       if ((s.in.z * out.z > 0) != reflects) return false;  // blocked by another facet
     }
     const bool above = s.in.z * out.z > 0;
-    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
     s.lobe = above ? glossy_reflection : glossy_transmission;
     if (!above) s.eta = towards(out, eta_[0]);
-    return s.pdf > 0;
+    return complete(s, local_value_and_pdf(out, s.in, lobes));
   }
 
   // Single reflection, and the energy that single scattering misses, are tabulated for isotropic distributions. For anisotropic

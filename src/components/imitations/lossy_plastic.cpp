@@ -2,12 +2,9 @@
 
 #include <memory>
 
-#include "components/shaders/fresnel.h"
-#include "components/shaders/joint_scatter.h"
+#include "components/shaders/microfacet/coated_body.h"
+#include "components/shaders/microfacet/microfacet_quadrature.h"
 #include "components/shaders/reflectance.h"
-#include "etendue/core/warp.h"
-#include "microfacet_quadrature.h"
-#include "roughness.h"
 
 namespace etendue {
 namespace {
@@ -20,7 +17,7 @@ namespace {
 //   T(v) = mean over the normals m seen from v of (1 - F(v.m)) G1(t),  t the refracted direction.
 // And R, the coat's reflectance from inside, likewise counts single reflections only. Light that hits more facets is lost: with
 // a white body under GGX 9 % at alpha 0.1, 41 % at 0.4. T is linear between 64 values at mu = i / 63 and R is 2 / 64 times the
-// sum over these of mu times the reflectance from inside, which is 1.6 % low. A smooth coat uses exact formulas for both, and
+// sum over these of mu times the reflectance from inside, lobes is 1.6 % low. A smooth coat uses exact formulas for both, and
 // loses nothing.
 struct LossyCoat {
   static constexpr int count = 64;
@@ -88,59 +85,17 @@ struct LossyCoat {
   }
 };
 
-class LossyPlasticScatter final : public JointScatter<LossyPlasticScatter> {
+class LossyPlasticScatter final : public CoatedBodyScatter<LossyPlasticScatter> {
  public:
   LossyPlasticScatter(const SurfacePoint& p, const LossyCoat& coat, Spectrum body, Spectrum shine, bool nonlinear)
-      : JointScatter(p, Lobes((body.black() ? 0 : diffuse_reflection) |
-                              (shine.black() ? 0 : (coat.smooth() ? specular_reflection : glossy_reflection)))),
+      : CoatedBodyScatter(p, Lobes((body.black() ? 0 : diffuse_reflection) |
+                                   (shine.black() ? 0 : (coat.smooth() ? specular_reflection : glossy_reflection)))),
         coat_(coat),
         shine_(shine) {
     const Spectrum kept = nonlinear ? Spectrum(1.0f) - body * coat.inside : Spectrum(1 - coat.inside);
     body_ = body / (kept * square(coat.eta));
     body_weight_ = (body_ * coat.through_mean).average();
     shine_weight_ = shine.average();
-  }
-
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const {
-    if (!(out.z * in.z > 0)) return {};
-    const float through = coat_.lets_through(out), coat_probability = probability_of_coat(out, through, lobes);
-    ScatterValue r;
-    if (lobes & diffuse_reflection) {
-      r.value = body_ * (through * coat_.lets_through(in) * inverse_pi);
-      r.pdf = (1 - coat_probability) * std::abs(in.z) * inverse_pi;
-    }
-    if (lobes & glossy_reflection) {
-      const MicrofacetDistribution& d = coat_.distribution;
-      const Vector3 m = reflection_half_vector(out, in);
-      const float cosine = std::abs(dot(out, m));
-      r.value += shine_ *
-                 (fresnel_dielectric(cosine, coat_.eta) * d.D(m) * coat_.G1(out) * coat_.G1(in) / (4 * std::abs(out.z * in.z)));
-      r.pdf += coat_probability * d.visible_pdf(out, m) * reflection_jacobian(cosine);
-    }
-    return r;
-  }
-
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
-    const float through = coat_.lets_through(out), coat_probability = probability_of_coat(out, through, lobes);
-    if (choice < coat_probability) {
-      if (lobes & specular_reflection) {
-        s.in = {-out.x, -out.y, out.z};
-        s.value = shine_ * coat_.throws_back(out);
-        s.pdf = coat_probability;
-        s.lobe = specular_reflection;
-        return true;
-      }
-      s.in = reflect(out, coat_.distribution.sample_visible(out, u));
-      s.lobe = glossy_reflection;
-    } else {
-      s.in = warp::cosine_hemisphere(u);
-      if (out.z < 0) s.in.z = -s.in.z;
-      s.lobe = diffuse_reflection;
-    }
-    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
-    return s.pdf > 0;
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
@@ -150,14 +105,20 @@ class LossyPlasticScatter final : public JointScatter<LossyPlasticScatter> {
     return sum;
   }
 
- private:
-  float probability_of_coat(const Vector3& out, float through, Lobes lobes) const {
-    if (!(lobes & diffuse_reflection)) return 1;
-    if (!(lobes & (glossy_reflection | specular_reflection))) return 0;
+  const MicrofacetDistribution& facets() const { return coat_.distribution; }
+  float eta() const { return coat_.eta; }
+  float through(const Vector3& v) const { return coat_.lets_through(v); }
+  const Spectrum& body() const { return body_; }
+  Spectrum coat(const Vector3& out, const Vector3& in, float fresnel, float density) const {
+    return shine_ * (fresnel * density * coat_.G1(out) * coat_.G1(in) / (4 * std::abs(out.z * in.z)));
+  }
+  Spectrum mirrored(const Vector3& out, float) const { return shine_ * coat_.throws_back(out); }
+  float coat_share(const Vector3& out, float through) const {
     const float coat = std::max(coat_.throws_back(out), 0.01f) * shine_weight_;
     return coat / (coat + through * body_weight_);
   }
 
+ private:
   const LossyCoat& coat_;
   Spectrum body_;  ///< f of the body times pi / (T(out) T(in))
   Spectrum shine_;
@@ -184,7 +145,7 @@ class LossyPlastic final : public Shader {
         .member<&LossyPlastic::distribution>("distribution", "", "of the directions of facets", choices("ggx", "beckmann"))
         .member<&LossyPlastic::nonlinear>(
             "nonlinear", "",
-            "whether light that the coat throws back to the body takes on its colour again, which makes colours deeper");
+            "whether light that the coat throws back to the body takes on its colour again, lobes makes colours deeper");
   }
 
   void prepare() override {

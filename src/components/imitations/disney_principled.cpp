@@ -2,13 +2,13 @@
 
 #include "components/shaders/fresnel.h"
 #include "components/shaders/joint_scatter.h"
+#include "components/shaders/layered/principled_scatter.h"
 #include "components/shaders/microfacet/roughness.h"
 #include "components/shaders/reflectance.h"
 #include "components/shaders/tangent_frame.h"
 #include "disney_lobes.h"
 #include "etendue/core/warp.h"
 #include "etendue/transport/medium_stack.h"
-#include "principled_scatter.h"
 
 namespace etendue {
 namespace {
@@ -132,10 +132,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
       }
     }
     if ((s.in.z * out.z > 0) == (s.lobe == glossy_transmission)) return false;  // blocked by another facet
-    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
-    return s.pdf > 0;
+    return complete(s, local_value_and_pdf(out, s.in, lobes));
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
@@ -165,7 +162,7 @@ class DisneyScatter final : public JointScatter<DisneyScatter> {
   static Vector3 mirrored(const Vector3& v) { return {v.x, v.y, -v.z}; }
   float towards(const Vector3& out) const { return out.z > 0 ? d_.eta : 1 / d_.eta; }
   Spectrum sheen() const { return disney::mix(d_.sheen_tint, Spectrum(1.0f), d_.tint) * (d_.sheen * (1 - d_.metallic)); }
-  /// The Fresnel factor of a facet of which `f` is the dielectric's reflectance.
+  /// The Fresnel factor of a facet of lobes `f` is the dielectric's reflectance.
   Spectrum fresnel(float f, float u, bool front) const {
     if (!front) return Spectrum(d_.glass * f);
     Spectrum sum((1 - d_.metallic) * (1 - d_.spec_tint) * f);
@@ -285,7 +282,7 @@ class DisneyPrincipled final : public Shader {
         .member<&DisneyPrincipled::energy>(
             "energy", "",
             "limited: the parts are added as Disney has them, scaled down where together they would send away more light than "
-            "arrives, and what they lose is lost; kept: they are layers as those of Principled, of which a white one returns "
+            "arrives, and what they lose is lost; kept: they are layers as those of Principled, of lobes a white one returns "
             "all "
             "light",
             choices("limited", "kept"))

@@ -79,10 +79,7 @@ class SheetScatter final : public JointScatter<SheetScatter> {
     }
     if (k % 2) s.in.z = -s.in.z;
     if (out.z < 0) s.in.z = -s.in.z;
-    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
-    return s.pdf > 0;
+    return complete(s, local_value_and_pdf(out, s.in, lobes));
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
