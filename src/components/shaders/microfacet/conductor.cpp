@@ -103,8 +103,11 @@ class RoughConductor final : public ScatterModel<RoughConductor> {
     } else {
       s.in = reflect(out, distribution_.sample_visible(out, u));
     }
+    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
+    s.value = both.value * std::abs(s.in.z);
+    s.pdf = both.pdf;
     s.lobe = glossy_reflection;
-    return complete(s, local_value_and_pdf(out, s.in, lobes));
+    return s.pdf > 0;
   }
 
   Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
