@@ -143,8 +143,8 @@ TEST(ClassicShaders, ValuesOfThePapers) {
       const double* a = pairs[i];
       const Vector3 out = direction(a[0], a[1]), in = direction(a[2], a[3]);
       const double tolerance = 2e-5 * row.expected[i] + 1e-9;
-      EXPECT_NEAR(scatter.value(out, in, row.which), row.expected[i], tolerance) << row.name << ", pair " << i;
-      EXPECT_NEAR(scatter.value(mirrored(out), mirrored(in), row.which), row.expected[i], tolerance) << row.name << ", behind";
+      EXPECT_NEAR(scatter.value(out, in, row.lobes), row.expected[i], tolerance) << row.name << ", pair " << i;
+      EXPECT_NEAR(scatter.value(mirrored(out), mirrored(in), row.lobes), row.expected[i], tolerance) << row.name << ", behind";
     }
   }
 }
