@@ -33,9 +33,9 @@ struct SceneOptions {
   static constexpr double default_fps = 24;
   static constexpr int most_frames = 999'999'999;
 
-  void add_to(CLI::App& command);
+  void add_to(Command& command);
   /// Adds all options but the file, for commands with several files.
-  void add_overrides_to(CLI::App& command);
+  void add_overrides_to(Command& command);
 
   /// Loads the plugins and the file, and applies the overrides. Throws Errors.
   Ref<Job> load() const;

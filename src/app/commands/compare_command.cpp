@@ -242,12 +242,11 @@ int Laboratory::run() {
 
 }  // namespace
 
-void add_compare_command(CLI::App& program, etendue::Run& run) {
-  CLI::App* command =
-      program.add_subcommand("compare", "Measure which algorithm is better on a scene, at equal time and samples");
+void add_compare_command(Command& program) {
+  Command command = program.add_command("compare", "Measure which algorithm is better on a scene, at equal time and samples");
   auto options = std::make_shared<CompareOptions>();
-  options->add_to(*command);
-  command->footer(
+  options->add_to(command);
+  command.footer(
       "\nExamples\n"
       "  etendue compare box.etd --renderers PathTracer,BidirectionalPathTracer --time 1m --report box.html\n"
       "  etendue compare box.etd --variant 'as it is:' --variant 'short: renderer.max_depth=4' --samples 256\n"
@@ -255,7 +254,7 @@ void add_compare_command(CLI::App& program, etendue::Run& run) {
       "  etendue compare box.etd --renderers LightTracer,PathTracer --time 30s --reference box-converged.exr\n"
       "\nEvery variant makes independent runs; their errors are told at equal processor time and at equal samples, with\n"
       "confidence bands, bias and variance apart. The first Ctrl-C keeps the runs that are done. docs/compare.md tells more.");
-  command->callback([options, &run] { run = [options] { return Laboratory(*options).run(); }; });
+  command.runs([options] { return Laboratory(*options).run(); });
 }
 
 }  // namespace etendue

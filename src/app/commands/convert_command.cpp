@@ -58,21 +58,20 @@ int convert(const ConvertOptions& options) {
 
 }  // namespace
 
-void add_convert_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("convert", "Write a file of another program as a render description");
+void add_convert_command(Command& program) {
+  Command command = program.add_command("convert", "Write a file of another program as a render description");
   auto options = std::make_shared<ConvertOptions>();
-  options->add_to(*command);
+  options->add_to(command);
   command
-      ->add_option("-o,--output", options->output,
-                   "The file to write: .etd, or JSON if its name ends in .json; - for standard output")
-      ->required()
-      ->type_name("FILE");
-  command->footer(
+      .option("-o,--output FILE", options->output,
+              "The file to write: .etd, or JSON if its name ends in .json; - for standard output")
+      .required();
+  command.footer(
       "\nExamples\n"
       "  etendue convert scene.xml -o scene.etd                 comments at its top say what is not as there\n"
       "  etendue convert scene.xml --strict -o scene.etd        fails instead\n"
       "  etendue convert model.glb -o -                         on the terminal");
-  command->callback([options, &run] { run = [options] { return convert(*options); }; });
+  command.runs([options] { return convert(*options); });
 }
 
 }  // namespace etendue

@@ -41,24 +41,23 @@ int save(const SaveOptions& options) {
 
 }  // namespace
 
-void add_save_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand(
-      "save", "Write a file again as one description, with its overrides, includes and params worked in");
+void add_save_command(Command& program) {
+  Command command =
+      program.add_command("save", "Write a file again as one description, with its overrides, includes and params worked in");
   auto options = std::make_shared<SaveOptions>();
-  options->add_to(*command);
+  options->add_to(command);
   command
-      ->add_option("-o,--output", options->output,
-                   "The file to write: .etd, or JSON if its name ends in .json; - for standard output")
-      ->required()
-      ->type_name("FILE");
-  command->add_flag("--all", options->all, "Write every member, also those that have their defaults");
-  command->footer(
+      .option("-o,--output FILE", options->output,
+              "The file to write: .etd, or JSON if its name ends in .json; - for standard output")
+      .required();
+  command.flag("--all", options->all, "Write every member, also those that have their defaults");
+  command.footer(
       "\nExamples\n"
       "  etendue save box.etd -o -                          on the terminal\n"
       "  etendue save box.etd --all -o full.etd             with all defaults, to learn from\n"
       "  etendue save box.etd -o box.json                   as JSON, for programs; 'etendue schema' describes it\n"
       "  etendue save box.etd -D samples=16 -o quick.etd    with a param replaced");
-  command->callback([options, &run] { run = [options] { return save(*options); }; });
+  command.runs([options] { return save(*options); });
 }
 
 }  // namespace etendue
