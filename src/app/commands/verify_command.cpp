@@ -115,7 +115,7 @@ verify::Collected collect(Render& render, const verify::Choice& choice, const Ve
                  choice.candidates[renderer].name, passes);
       std::fflush(stderr);
     }
-    return !interruption.asked();
+    return !Interruption::asked();
   };
   verify::Collected collected = verify::collect(
       render, choice.candidates, options.tile > 0 ? options.tile : verify::default_tile(*render.job().image), collecting);
