@@ -2,6 +2,7 @@
 
 #include "interruption.h"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -18,9 +19,14 @@ std::atomic<int> requests{0};  // 1: finish, 2: abort
 static_assert(std::atomic<Render*>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free);
 
-void say(std::string_view text) { [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size()); }
+/// Prints the text unless that would block, as the reader of standard error may have stalled.
+void say(std::string_view text) {
+  pollfd ready{STDERR_FILENO, POLLOUT, 0};
+  if (poll(&ready, 1, 0) <= 0) return;
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
+}
 
-// Calls only what is safe in a signal handler: atomics and write().
+// Calls only what is safe in a signal handler: atomics, poll() and write().
 void handle(int signal) {
   Render* render = running.load();
   if (!render) return;
@@ -63,6 +69,6 @@ Interruption::~Interruption() {
   running = nullptr;
 }
 
-bool Interruption::asked() const { return requests.load() != 0; }
+bool Interruption::asked() { return requests.load() != 0; }
 
 }  // namespace etendue

@@ -15,8 +15,8 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  /// Whether a signal has been received.
-  bool asked() const;
+  /// Whether a signal has been received since the last object of this class was made.
+  static bool asked();
 };
 
 }  // namespace etendue

@@ -1,12 +1,6 @@
 // The command line program.
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <sstream>
-
 #include "commands.h"
-#include "report.h"
 #include "streams.h"
 
 using namespace etendue;
@@ -34,63 +28,27 @@ Help on one command: etendue render --help
 Exit status: 0 done, 1 failed, 2 bad input or usage, 130 interrupted.
 )";
 
-/// An empty value is the result of an unset shell variable ("--checkpoint $FILE" in quotes). It has no meaning for any option,
-/// so every option rejects it.
-void refuse_empty_values(CLI::App& command) {
-  for (CLI::Option* option : command.get_options())
-    if (option->get_items_expected_max() > 0)
-      option->transform(CLI::Validator(  // runs before the option's other validators
-          [](std::string& value) {
-            return value.empty() ? std::string("the value is empty; was a variable not set?") : std::string();
-          },
-          ""));
-  for (CLI::App* inner : command.get_subcommands({})) refuse_empty_values(*inner);
-}
-
 int run_program(int argument_count, char** arguments) {
-  CLI::App program(introduction, "etendue");
+  CommandLine command_line("etendue", introduction, "etendue " ETENDUE_VERSION);
+  Command program = command_line.program();
   program.footer(closing);
-  program.set_version_flag("--version", "etendue " ETENDUE_VERSION, "Print the version");
-  program.set_help_flag("-h,--help", "Print this help");
-  program.require_subcommand(1);
-  program.failure_message(usage_failure);
+  program.require_command();
 
-  Run run;
-  add_render_command(program, run);
-  add_check_command(program, run);
-  add_save_command(program, run);
-  add_convert_command(program, run);
-  add_export_command(program, run);
-  add_format_command(program, run);
-  add_classes_command(program, run);
-  add_schema_command(program, run);
-  add_manual_command(program, run);
-  add_image_command(program, run);
-  add_verify_command(program, run);
-  add_compare_command(program, run);
-  add_conform_command(program, run);
-  add_studio_command(program, run);
-
-  refuse_empty_values(program);
-
-  // CLI11 would answer --help after an unknown command with the program's help and exit status 0.
-  const std::string first = argument_count > 1 ? arguments[1] : "";
-  const std::vector<CLI::App*> commands = program.get_subcommands({});
-  if (!first.empty() && !first.starts_with("-") &&
-      std::ranges::none_of(commands, [&](const CLI::App* command) { return command->get_name() == first; })) {
-    fmt::print(stderr, "etendue: {}\netendue --help tells more\n", no_command(program, first));
-    return exit_status::bad_input;
-  }
-  try {
-    program.parse(argument_count, arguments);
-  } catch (const CLI::ParseError& error) {
-    std::ostringstream out, err;
-    const int status = program.exit(error, out, err);
-    fmt::print("{}", out.str());
-    fmt::print(stderr, "{}", err.str());
-    return status == 0 ? exit_status::done : exit_status::bad_input;
-  }
-  return reporting_errors(run);
+  add_render_command(program);
+  add_check_command(program);
+  add_save_command(program);
+  add_convert_command(program);
+  add_export_command(program);
+  add_format_command(program);
+  add_classes_command(program);
+  add_schema_command(program);
+  add_manual_command(program);
+  add_image_command(program);
+  add_verify_command(program);
+  add_compare_command(program);
+  add_conform_command(program);
+  add_studio_command(program);
+  return command_line.run(argument_count, arguments);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <span>
 
+#include "common_options.h"
 #include "core/hash.h"
 #include "describe/guard.h"
 #include "etendue/denoised_output.h"
@@ -23,101 +24,62 @@
 
 namespace etendue {
 
-void RenderOptions::add_to(CLI::App& command) {
-  command.add_option("FILE", files, "The render descriptions (.etd, or .json), one after the other")->required()->type_name("");
+void RenderOptions::add_to(Command& command) {
+  command.argument("FILE", files, "The render descriptions (.etd, or .json), one after the other").required();
   SceneOptions::add_overrides_to(command);
   command
-      .add_option(
-          "--frames", frames,
-          "Render these frames, B not included: 'frame' and 'time' in the file say which, and #### in the names of files "
-          "that are written is replaced by the number")
-      ->type_name("A:B[:STEP]")
-      ->excludes("--frame");
-  CLI::Option* skip_option = command.add_flag("--skip-existing", skip_existing,
-                                              "Leave out what has whole pictures of the same file and options already");
-  CLI::Option* output_option =
-      command
-          .add_option("-o,--output", outputs,
-                      "Write to this file instead of those the file names; its ending chooses the format; may be repeated")
-          ->type_name("FILE")
-          ->allow_extra_args(false);
-  command.add_option("--samples", samples, "Samples per pixel")->type_name("N");
+      .option("--frames A:B[:STEP]", frames,
+              "Render these frames, B not included: 'frame' and 'time' in the file say which, and #### in the names of files "
+              "that are written is replaced by the number")
+      .excludes({"--frame"});
+  command.flag("--skip-existing", skip_existing, "Leave out what has whole pictures of the same file and options already");
+  command.option("-o,--output FILE", outputs,
+                 "Write to this file instead of those the file names; its ending chooses the format; may be repeated");
+  command.option("--samples N", samples, "Samples per pixel");
+  command.option("--time TIME", time,
+                 "Stop after this time, such as 90s, 5m or 1h30m; without --samples, no number of samples stops it earlier");
+  command.option("--error E", error, "Stop when the mean relative standard error of pixels is below this; likewise");
+  command.option("--seed N", seed, "Choose other random numbers");
+  command.option("--size WxH", size, "Size of the picture in pixels");
+  command.option("--crop X0,Y0,X1,Y1", crop, "Render these pixels only, ends not included");
+  command.flag("--denoise", denoise,
+               "Write a second, denoised picture beside each, NAME.denoised.ENDING, by Open Image Denoise (pip install "
+               "pyoidn) where the file says nothing else");
+  add_threads_option(command, threads, ". The picture does not depend on it");
+  command.flag("--quiet", quiet, "Print nothing but errors and warnings");
   command
-      .add_option("--time", time,
-                  "Stop after this time, such as 90s, 5m or 1h30m; without --samples, no number of samples stops it earlier")
-      ->type_name("TIME");
-  command.add_option("--error", error, "Stop when the mean relative standard error of pixels is below this; likewise")
-      ->type_name("E");
-  command.add_option("--seed", seed, "Choose other random numbers")->type_name("N");
-  command.add_option("--size", size, "Size of the picture in pixels")->type_name("WxH");
-  command.add_option("--crop", crop, "Render these pixels only, ends not included")->type_name("X0,Y0,X1,Y1");
-  CLI::Option* denoise_option =
-      command.add_flag("--denoise", denoise,
-                       "Write a second, denoised picture beside each, NAME.denoised.ENDING, by Open Image Denoise (pip install "
-                       "pyoidn) where the file says nothing else");
-  command.add_option("--threads", threads, "Threads to use; 0: all cores. The picture does not depend on it")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""));
-  command.add_flag("--quiet", quiet, "Print nothing but errors and warnings");
+      .option("--progress KIND", progress,
+              "auto: a bar on a terminal, else a line now and then; bar; json: a JSON object per line on standard output; none")
+      .one_of({"auto", "bar", "json", "none"});
+  add_checkpoint_options(command);
+  command.option("--pixel X,Y", pixel, "Render nothing: compute this pixel's samples and print the brightest paths")
+      .excludes({"--denoise", "--output", "--skip-existing", "--checkpoint", "--resume", "--continue", "--every", "--passes"});
+  command.option("--sample N", sample, "With --pixel: compute and print this sample alone, from 0").needs("--pixel");
+  command.option("--paths N", paths, "With --pixel: how many paths to print [5]")
+      .range(1, 1 << 20)
+      .needs("--pixel")
+      .excludes({"--sample"});
+  command.option("--replay FILE", replay, "With --pixel: write the paths to this file, too, as JSON").needs("--pixel");
+  command.option("--fireflies N", fireflies, "List the N samples that brought most light, with the commands to replay them")
+      .range(1, 1 << 20)
+      .excludes({"--pixel"});
   command
-      .add_option(
-          "--progress", progress,
-          "auto: a bar on a terminal, else a line now and then; bar; json: a JSON object per line on standard output; none")
-      ->type_name("KIND")
-      ->check(CLI::IsMember({"auto", "bar", "json", "none"}));
-  const std::vector<CLI::Option*> checkpoint_options = add_checkpoint_options(command);
-  CLI::Option* pixel_option =
-      command.add_option("--pixel", pixel, "Render nothing: compute this pixel's samples and print the brightest paths")
-          ->type_name("X,Y");
-  CLI::Option* sample_option =
-      command.add_option("--sample", sample, "With --pixel: compute and print this sample alone, from 0")->type_name("N");
-  sample_option->needs(pixel_option);
-  command.add_option("--paths", paths, "With --pixel: how many paths to print [5]")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1 << 20).description(""))
-      ->needs(pixel_option)
-      ->excludes(sample_option);
-  command.add_option("--replay", replay, "With --pixel: write the paths to this file, too, as JSON")
-      ->type_name("FILE")
-      ->needs(pixel_option);
-  command.add_option("--fireflies", fireflies, "List the N samples that brought most light, with the commands to replay them")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1 << 20).description(""))
-      ->excludes(pixel_option);
-  command.add_option("--tev", tev, "Show the picture in the viewer tev while it is rendered; PORT is 14158 unless it is said")
-      ->type_name("HOST[:PORT]")
-      ->excludes(pixel_option);
-  pixel_option->excludes(denoise_option);
-  pixel_option->excludes(output_option);
-  pixel_option->excludes(skip_option);
-  for (CLI::Option* option : checkpoint_options) pixel_option->excludes(option);
+      .option("--tev HOST[:PORT]", tev,
+              "Show the picture in the viewer tev while it is rendered; PORT is 14158 unless it is said")
+      .excludes({"--pixel"});
 }
 
-std::vector<CLI::Option*> RenderOptions::add_checkpoint_options(CLI::App& command) {
-  CLI::Option* checkpoint_option =
-      command.add_option("--checkpoint", checkpoint, "Keep the state of the render in this file, to go on from")
-          ->type_name("FILE");
-  CLI::Option* resume_option =
-      command
-          .add_option("--resume", resume,
-                      "Go on from this checkpoint, to the same bits as without a break; and keep the state there, unless "
-                      "--checkpoint names another file")
-          ->type_name("FILE");
-  CLI::Option* continue_option =
-      command.add_option("--continue", continue_file, "--resume this file if it is there, else begin with it as --checkpoint")
-          ->type_name("FILE")
-          ->excludes(resume_option)
-          ->excludes(checkpoint_option);
-  CLI::Option* every_option =
-      command.add_option("--every", every, "How often the checkpoint is written, at the end of a pass [60s]; 0s: after each")
-          ->type_name("TIME");
-  CLI::Option* passes_option =
-      command
-          .add_option("--passes", passes,
-                      "Render these passes only, B not included, into the checkpoint; 'image merge' makes a picture of such "
-                      "parts. Pictures of the part are written where -o says")
-          ->type_name("A:B");
-  return {checkpoint_option, resume_option, continue_option, every_option, passes_option};
+void RenderOptions::add_checkpoint_options(Command& command) {
+  command.option("--checkpoint FILE", checkpoint, "Keep the state of the render in this file, to go on from");
+  command.option("--resume FILE", resume,
+                 "Go on from this checkpoint, to the same bits as without a break; and keep the state there, unless "
+                 "--checkpoint names another file");
+  command.option("--continue FILE", continue_file, "--resume this file if it is there, else begin with it as --checkpoint")
+      .excludes({"--resume", "--checkpoint"});
+  command.option("--every TIME", every, "How often the checkpoint is written, at the end of a pass [60s]; 0s: after each");
+  command.option("--passes A:B", passes,
+                 "Render these passes only, B not included, into the checkpoint; 'image merge' makes a picture of such "
+                 "parts. Pictures of the part are written where -o says");
 }
 
 std::optional<IndexRange> RenderOptions::parse_passes() const {

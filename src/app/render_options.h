@@ -31,7 +31,7 @@ struct RenderOptions : SceneOptions {
   int fireflies = 0;   ///< number of samples that are listed after the render
   std::string tev;     ///< address of the tev that shows the image, as written; empty: none
 
-  void add_to(CLI::App& command);
+  void add_to(Command& command);
 
   /// Loads the file, applies all overrides except the outputs, and checks the settings. Throws Errors.
   Ref<Job> load() const;
@@ -61,7 +61,7 @@ struct RenderOptions : SceneOptions {
   std::vector<Override> overrides() const;
   /// For --size with a crop in the description: scales the crop, so that it shows the same part of the image.
   void scale_crop(const Job&, std::vector<Override>&) const;
-  std::vector<CLI::Option*> add_checkpoint_options(CLI::App& command);
+  void add_checkpoint_options(Command& command);
   std::optional<IndexRange> parse_passes() const;
 };
 

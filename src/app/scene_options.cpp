@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common_options.h"
 #include "etendue/language/language.h"
 #include "etendue/render/job.h"
 #include "files/gzip.h"
@@ -26,41 +27,22 @@ std::pair<std::string, std::string> split(const std::string& option, const std::
 
 }  // namespace
 
-void SceneOptions::add_to(CLI::App& command) {
-  command.add_option("FILE", file, "The render description (.etd, or .json), or a file of another program")
-      ->required()
-      ->type_name("");
+void SceneOptions::add_to(Command& command) {
+  command.argument("FILE", file, "The render description (.etd, or .json), or a file of another program").required();
   add_overrides_to(command);
 }
 
-void SceneOptions::add_overrides_to(CLI::App& command) {
-  command.add_option("-D,--define", defines, "Replace the value of a param of the file; may be repeated")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
-  command
-      .add_option("--set", sets, "Set any member of any part, such as renderer.max_depth=4 or scene.objects[2].radius=\"1 cm\"")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  command.add_option("--plugin", plugins, "Load a shared library of further classes; may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  command.add_flag("--strict", import.strict, "Of other programs' files: what cannot be expressed exactly is an error");
-  command
-      .add_option("--allow-path", import.allowed_folders,
-                  "Of other programs' files: they may name files in this folder too, not in their own alone; may be repeated")
-      ->type_name("FOLDER")
-      ->allow_extra_args(false);
-  command.add_option("--frame", frame, "What 'frame' means in the file, and with it 'time', which is frame / fps [0]")
-      ->type_name("N")
-      ->check(CLI::Range(0, most_frames).description(""));
-  command.add_option("--fps", fps, "Frames in a second of 'time' [24]")->type_name("F");
-}
-
-void add_description_output(CLI::App& command, std::string& output) {
-  command
-      .add_option("-o,--output", output, "The file to write: .etd, or JSON if its name ends in .json; - for standard output")
-      ->required()
-      ->type_name("FILE");
+void SceneOptions::add_overrides_to(Command& command) {
+  command.option("-D,--define NAME=VALUE", defines, "Replace the value of a param of the file; may be repeated");
+  command.option("--set PATH=VALUE", sets,
+                 "Set any member of any part, such as renderer.max_depth=4 or scene.objects[2].radius=\"1 cm\"");
+  add_plugin_option(command, plugins);
+  command.flag("--strict", import.strict, "Of other programs' files: what cannot be expressed exactly is an error");
+  command.option("--allow-path FOLDER", import.allowed_folders,
+                 "Of other programs' files: they may name files in this folder too, not in their own alone; may be repeated");
+  command.option("--frame N", frame, "What 'frame' means in the file, and with it 'time', which is frame / fps [0]")
+      .range(0, most_frames);
+  command.option("--fps F", fps, "Frames in a second of 'time' [24]");
 }
 
 double SceneOptions::frames_per_second() const {
@@ -75,7 +57,7 @@ double SceneOptions::frames_per_second() const {
 LoadOptions SceneOptions::load_options() const {
   if (!fps.empty() && !frame)
     throw Error("there are no frames whose time this could tell: give --frame or --frames as well", {intern("--fps"), 0, 0});
-  for (const std::string& plugin : plugins) Registry::instance().load_plugin(plugin);
+  load_plugins(plugins);
   LoadOptions options;
   options.frame = frame.value_or(0);
   options.time = options.frame / frames_per_second();

@@ -33,9 +33,9 @@ struct SceneOptions {
   static constexpr double default_fps = 24;
   static constexpr int most_frames = 999'999'999;
 
-  void add_to(CLI::App& command);
+  void add_to(Command& command);
   /// Adds all options but the file, for commands with several files.
-  void add_overrides_to(CLI::App& command);
+  void add_overrides_to(Command& command);
 
   /// Loads the plugins and the file, and applies the overrides. Throws Errors.
   Ref<Job> load() const;
@@ -56,9 +56,6 @@ struct SceneOptions {
   LoadOptions load_options() const;
   void apply_sets(Job&) const;
 };
-
-/// Adds the option that names the description to be written.
-void add_description_output(CLI::App& command, std::string& output);
 
 /// The text, in single quotes if it has characters that are special to a shell.
 std::string shell_quoted(const std::string& text);

@@ -10,12 +10,15 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <cstdio>
 #include <system_error>
 
 #include "commands.h"
+#include "interruption.h"
 
 namespace etendue {
 
@@ -27,20 +30,33 @@ struct StandardStream {
 };
 StandardStream standard_output{STDOUT_FILENO}, standard_error{STDERR_FILENO};
 
+/// Waits until PIPE_BUF bytes can be written without blocking. A reader may take as long as it likes: a pager waits for its
+/// user. But after a signal to stop, a reader that has taken nothing for some time is given up, so that a render still writes
+/// its picture; then the result is false.
+bool wait_for_reader(int descriptor) {
+  constexpr int interval = 250, patience = 2000;  // [ms]
+  for (int waited = 0; waited < patience; waited += Interruption::asked() ? interval : 0) {
+    pollfd ready{descriptor, POLLOUT, 0};
+    const int count = ::poll(&ready, 1, interval);
+    if (count > 0 || (count < 0 && errno != EINTR)) return true;  // write() reports what is wrong with the descriptor
+  }
+  return false;
+}
+
 /// Writes all bytes, or stores the error.
 ssize_t write_to(void* cookie, const char* data, size_t size) {
   auto& stream = *static_cast<StandardStream*>(cookie);
   size_t done = 0;
   while (done < size && stream.error == 0) {
-    const ssize_t written = ::write(stream.descriptor, data + done, size - done);
-    if (written > 0) {
-      done += size_t(written);
-    } else if (written < 0 && errno == EAGAIN) {  // another process may have made a shared terminal non-blocking
-      pollfd ready{stream.descriptor, POLLOUT, 0};
-      ::poll(&ready, 1, 1000);
-    } else if (written < 0 && errno != EINTR) {
-      stream.error = errno;
+    if (!wait_for_reader(stream.descriptor)) {
+      stream.error = ETIMEDOUT;
+      break;
     }
+    const ssize_t written = ::write(stream.descriptor, data + done, std::min<size_t>(size - done, PIPE_BUF));
+    if (written > 0)
+      done += size_t(written);
+    else if (written < 0 && errno != EINTR && errno != EAGAIN)  // EAGAIN: another process made a shared terminal non-blocking
+      stream.error = errno;
   }
   return ssize_t(size);
 }

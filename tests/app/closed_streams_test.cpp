@@ -2,8 +2,11 @@
 // names.
 
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <functional>
 #include <regex>
 
 #include "support/program_support.h"
@@ -114,6 +117,29 @@ TEST_F(StreamsTest, under_nohup_it_goes_on) {
   process.send(SIGHUP);
   EXPECT_EQ(process.wait(), 0) << process.err();
   EXPECT_TRUE(exists("a.npy"));
+}
+
+TEST_F(StreamsTest, a_reader_that_stalls_does_not_keep_a_render_from_ending_with_its_picture) {
+  const std::string fifo = folder / "fifo";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  const int reader = open(fifo.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);  // reads nothing; can write as well
+  ASSERT_GE(reader, 0);
+  Process process("/bin/sh",
+                  {"-c", "exec '" + program + "' render tiny.etd --samples 1000000000 -o a.npy --progress json > fifo 2>&1"},
+                  folder);
+  const auto comes = [](const std::function<bool()>& condition) {
+    for (int i = 0; i < 6000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return condition();
+  };
+  int printed = 0;
+  EXPECT_TRUE(comes([&] { return ioctl(reader, FIONREAD, &printed) == 0 && printed > 0; }));
+  const std::vector<char> page(4096, ' ');
+  for (const size_t size : {page.size(), size_t(1)})  // fills the buffer to the last byte
+    while (write(reader, page.data(), size) > 0) continue;
+  process.send(SIGTERM);
+  EXPECT_TRUE(comes([&] { return exists("a.npy"); }));
+  if (exists("a.npy")) EXPECT_EQ(process.wait(), 130);
+  close(reader);
 }
 
 // ---- values that mean nothing

@@ -93,7 +93,6 @@ TEST(Crop, pieces_are_the_whole_to_the_bit_for_every_renderer) {
   size_t compared = 0;
   for (const std::string& name : renderers()) {
     if (knows_other_pixels(name)) continue;
-    // 100 samples: more than one pass of the whole picture would not change anything, and the last is a short one.
     const Ref<Job> job = room(name + " { samples: 5 }", test::make_filter("GaussianFilter"));
     expect_same(merged(job), render(job, {}), name);
     ++compared;

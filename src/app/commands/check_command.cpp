@@ -106,13 +106,12 @@ int check(const SceneOptions& options) {
 
 }  // namespace
 
-void add_check_command(CLI::App& program, Run& run) {
-  CLI::App* command =
-      program.add_subcommand("check", "Read and prepare a file without rendering it; show everything wrong with it");
+void add_check_command(Command& program) {
+  Command command = program.add_command("check", "Read and prepare a file without rendering it; show everything wrong with it");
   auto options = std::make_shared<SceneOptions>();
-  options->add_to(*command);
-  command->footer("\nExample\n  etendue check scenes/cornell_box.etd");
-  command->callback([options, &run] { run = [options] { return check(*options); }; });
+  options->add_to(command);
+  command.footer("\nExample\n  etendue check scenes/cornell_box.etd");
+  command.runs([options] { return check(*options); });
 }
 
 }  // namespace etendue

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/common_options.h"
 #include "describe/words.h"
 #include "etendue/describe/reflection.h"
 
@@ -18,7 +19,7 @@ struct ClassesOptions {
 
 int show_classes(const ClassesOptions& options) {
   Registry& registry = Registry::instance();
-  for (const std::string& plugin : options.plugins) registry.load_plugin(plugin);
+  load_plugins(options.plugins);
   if (options.name.empty()) {
     fmt::print("{}{}", options.json ? classes_json() : class_tree_text(), options.json ? "\n" : "");
     return exit_status::done;
@@ -31,20 +32,18 @@ int show_classes(const ClassesOptions& options) {
 
 }  // namespace
 
-void add_classes_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("classes", "List all classes, or show one with its members");
+void add_classes_command(Command& program) {
+  Command command = program.add_command("classes", "List all classes, or show one with its members");
   auto options = std::make_shared<ClassesOptions>();
-  command->add_option("NAME", options->name, "A class, such as PathTracer, or an interface, such as Shader")->type_name("");
-  command->add_flag("--json", options->json, "As JSON, for programs");
-  command->add_option("--plugin", options->plugins, "Load a shared library of further classes; may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  command->footer(
+  command.argument("NAME", options->name, "A class, such as PathTracer, or an interface, such as Shader");
+  command.flag("--json", options->json, "As JSON, for programs");
+  add_plugin_option(command, options->plugins);
+  command.footer(
       "\nExamples\n"
       "  etendue classes                    the tree of all classes\n"
       "  etendue classes Shader             all shaders\n"
       "  etendue classes PathTracer         its members: type, unit, range, default, meaning");
-  command->callback([options, &run] { run = [options] { return show_classes(*options); }; });
+  command.runs([options] { return show_classes(*options); });
 }
 
 }  // namespace etendue

@@ -143,31 +143,30 @@ void Laboratory::open_store() {
 
 /// Renders one run unless it is stored. Returns false when interrupted.
 bool Laboratory::render_one(const RunKey& key, SceneSubjects& subjects, size_t subject, const Budget& budget) {
-  const size_t kind = key.scene * (variants_.size() + 1) + key.variant;
   const bool for_reference = key.variant == variants_.size();
   if (store_->has(key) && !(for_reference && store_->run(key).marks.back().seconds < budget.seconds)) {
-    progress_->done(kind, store_->run(key).wall_seconds, false);
+    progress_->done(store_->run(key).wall_seconds);
     return true;
   }
   Render& render = subjects.ready(subject);
   const Interruption interruption(render);
-  progress_->begin(kind, fmt::format("{}: {} run {}", stem_of(options_.files[key.scene]),
-                                     for_reference ? "reference," : variants_[subject].name + ",", key.run + 1));
+  progress_->begin(fmt::format("{}: {} run {}", stem_of(options_.files[key.scene]),
+                               for_reference ? "reference," : variants_[subject].name + ",", key.run + 1));
   const double began = processor_seconds();
   std::optional<RunResult> result = render_run(render, seed_of(identity_.seed, key), budget, [&] {
     const double part = budget.seconds > 0 ? (processor_seconds() - began) / budget.seconds
                                            : double(render.progress().samples) / double(budget.samples);
     progress_->at(part);
-    return !interruption.asked();
+    return !Interruption::asked();
   });
   if (!result) return false;
   if (for_reference) {  // only the final image is used
     result->run.marks.erase(result->run.marks.begin(), result->run.marks.end() - 1);
     result->pictures.erase(result->pictures.begin(), result->pictures.end() - 1);
   }
-  progress_->done(kind, result->run.wall_seconds, true);
+  progress_->done(result->run.wall_seconds);
   store_->keep(key, std::move(*result));
-  return !interruption.asked();
+  return !Interruption::asked();
 }
 
 bool Laboratory::render(size_t scene, SceneSubjects& subjects) {
@@ -242,12 +241,11 @@ int Laboratory::run() {
 
 }  // namespace
 
-void add_compare_command(CLI::App& program, etendue::Run& run) {
-  CLI::App* command =
-      program.add_subcommand("compare", "Measure which algorithm is better on a scene, at equal time and samples");
+void add_compare_command(Command& program) {
+  Command command = program.add_command("compare", "Measure which algorithm is better on a scene, at equal time and samples");
   auto options = std::make_shared<CompareOptions>();
-  options->add_to(*command);
-  command->footer(
+  options->add_to(command);
+  command.footer(
       "\nExamples\n"
       "  etendue compare box.etd --renderers PathTracer,BidirectionalPathTracer --time 1m --report box.html\n"
       "  etendue compare box.etd --variant 'as it is:' --variant 'short: renderer.max_depth=4' --samples 256\n"
@@ -255,7 +253,7 @@ void add_compare_command(CLI::App& program, etendue::Run& run) {
       "  etendue compare box.etd --renderers LightTracer,PathTracer --time 30s --reference box-converged.exr\n"
       "\nEvery variant makes independent runs; their errors are told at equal processor time and at equal samples, with\n"
       "confidence bands, bias and variance apart. The first Ctrl-C keeps the runs that are done. docs/compare.md tells more.");
-  command->callback([options, &run] { run = [options] { return Laboratory(*options).run(); }; });
+  command.runs([options] { return Laboratory(*options).run(); });
 }
 
 }  // namespace etendue

@@ -2,71 +2,47 @@
 
 #include <fmt/format.h>
 
+#include "app/common_options.h"
 #include "app/text.h"
 #include "etendue/language/language.h"
 
 namespace etendue {
 
-void CompareOptions::add_to(CLI::App& command) {
-  command.add_option("FILE", files, "Render descriptions (.etd, or .json); several make a matrix of scenes and variants")
-      ->required()
-      ->type_name("");
+void CompareOptions::add_to(Command& command) {
+  command.argument("FILE", files, "Render descriptions (.etd, or .json); several make a matrix of scenes and variants")
+      .required();
   add_overrides_to(command);
-  command
-      .add_option(
-          "--renderers", renderers,
-          "Compare these: classes, or expressions such as 'PathTracer{next_event: false}', with commas between. They take "
-          "over the sampler, light sampler and max_depth of the file's, unless they set their own")
-      ->type_name("A,B,…");
-  command
-      .add_option("--variant", variant_texts,
-                  "Compare the file with these members set as well, as --set does, under a name; may be repeated")
-      ->type_name("'NAME: PATH=VALUE, …'")
-      ->allow_extra_args(false);
-  command.add_option("--time", time, "Each run ends after so much processor time, of all threads together")->type_name("TIME");
-  command.add_option("--samples", samples, "Each run ends after so many samples per pixel")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1 << 30).description(""));
-  command.add_option("--runs", runs, "Independent runs of each variant")
-      ->capture_default_str()
-      ->type_name("K")
-      ->check(CLI::Range(3, 1000).description(""));
-  command
-      .add_option("--reference", references,
-                  "The true picture, of linear values (.exr, .npy) or a checkpoint; once for each FILE. Without: the mean of "
-                  "the variants that are unbiased and find all light")
-      ->type_name("IMAGE")
-      ->allow_extra_args(false);
-  command
-      .add_option("--reference-time", reference_time,
-                  "Render a reference for so much processor time, with the first variant that is unbiased and finds all light")
-      ->type_name("TIME");
-  command.add_option("--report", report, "Write a page with plots, pictures and tables, one HTML file")->type_name("FILE");
-  command.add_option("--csv", csv, "Write the error curves as a table")->type_name("FILE");
-  command.add_option("--json", json, "Write all numbers")->type_name("FILE");
-  command
-      .add_option(
-          "--state", state,
-          "Keep finished runs in this folder; without: beside the report, or else the table. The same command goes on from "
-          "there")
-      ->type_name("FOLDER");
-  command.add_option("--inset", inset_texts, "Show this part of the picture enlarged; without: where variants differ most")
-      ->type_name("X,Y,W,H")
-      ->allow_extra_args(false);
-  command
-      .add_option("--tile", tile, "Side of the tiles in which biases are looked for [pixels]; 0: 32, less in small pictures")
-      ->type_name("PX")
-      ->check(CLI::Range(0, 65536).description(""));
-  command.add_option("--significance", significance, "Probability of calling any of several equal variants better, or biased")
-      ->capture_default_str()
-      ->type_name("P")
-      ->check(CLI::Range(1e-12, 0.5).description(""));
-  command.add_option("--seed", seed, "Choose other random numbers")->type_name("N");
-  command.add_option("--size", size, "Size of the pictures in pixels")->type_name("WxH");
-  command.add_option("--threads", threads, "Threads to use; 0: all cores")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""));
-  command.add_flag("--quiet", quiet, "Print nothing but errors");
+  command.option(
+      "--renderers A,B,…", renderers,
+      "Compare these: classes, or expressions such as 'PathTracer{next_event: false}', with commas between. They take "
+      "over the sampler, light sampler and max_depth of the file's, unless they set their own");
+  command.option("--variant 'NAME: PATH=VALUE, …'", variant_texts,
+                 "Compare the file with these members set as well, as --set does, under a name; may be repeated");
+  command.option("--time TIME", time, "Each run ends after so much processor time, of all threads together");
+  command.option("--samples N", samples, "Each run ends after so many samples per pixel").range(1, 1 << 30);
+  command.option("--runs K", runs, "Independent runs of each variant").show_default().range(3, 1000);
+  command.option("--reference IMAGE", references,
+                 "The true picture, of linear values (.exr, .npy) or a checkpoint; once for each FILE. Without: the mean of "
+                 "the variants that are unbiased and find all light");
+  command.option("--reference-time TIME", reference_time,
+                 "Render a reference for so much processor time, with the first variant that is unbiased and finds all light");
+  command.option("--report FILE", report, "Write a page with plots, pictures and tables, one HTML file");
+  command.option("--csv FILE", csv, "Write the error curves as a table");
+  command.option("--json FILE", json, "Write all numbers");
+  command.option(
+      "--state FOLDER", state,
+      "Keep finished runs in this folder; without: beside the report, or else the table. The same command goes on from "
+      "there");
+  command.option("--inset X,Y,W,H", inset_texts, "Show this part of the picture enlarged; without: where variants differ most");
+  command.option("--tile PX", tile, "Side of the tiles in which biases are looked for [pixels]; 0: 32, less in small pictures")
+      .range(0, 65536);
+  command.option("--significance P", significance, "Probability of calling any of several equal variants better, or biased")
+      .show_default()
+      .range(1e-12, 0.5);
+  command.option("--seed N", seed, "Choose other random numbers");
+  command.option("--size WxH", size, "Size of the pictures in pixels");
+  add_threads_option(command, threads);
+  command.flag("--quiet", quiet, "Print nothing but errors");
 }
 
 Ref<Job> CompareOptions::load(const std::string& path) const {

@@ -17,7 +17,7 @@ struct CompareOptions : SceneOptions {
   double significance = 0.01;
   bool quiet = false;
 
-  void add_to(CLI::App& command);
+  void add_to(Command& command);
   /// Loads a file's job with all overrides.
   Ref<Job> load(const std::string& file) const;
   /// These throw Error for options that contradict each other.

@@ -15,7 +15,7 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 
 }  // namespace
 
-void CompareProgress::begin(size_t, const std::string& what) {
+void CompareProgress::begin(const std::string& what) {
   what_ = what;
   began_ = now();
   if (start_ < 0) start_ = began_;
@@ -28,21 +28,17 @@ void CompareProgress::at(double fraction) {
   show(std::clamp(fraction, 0.0, 1.0));
 }
 
-void CompareProgress::done(size_t kind_of_run, double seconds, bool) {
+void CompareProgress::done(double seconds) {
   ++done_;
-  auto& [sum, count] = known_[kind_of_run];
-  sum += seconds;
-  ++count;
+  seconds_ += seconds;
 }
 
 void CompareProgress::show(double fraction) {
   // Every remaining run is estimated to take the mean time of the finished ones, as the variants take turns.
-  double seconds = 0, count = 0;
-  for (const auto& [kind, known] : known_) seconds += known.first, count += double(known.second);
   const double spent = now() - began_, left_runs = double(runs_ - done_);
   std::string left;
-  if (count > 0)
-    left = duration_text(std::max(0.0, seconds / count * left_runs - spent));
+  if (done_ > 0)
+    left = duration_text(std::max(0.0, seconds_ / double(done_) * left_runs - spent));
   else if (fraction > 0.02)
     left = duration_text(spent / fraction * left_runs - spent);
   const double whole = (double(done_) + fraction) / double(std::max<size_t>(runs_, 1));

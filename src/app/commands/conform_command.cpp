@@ -7,6 +7,7 @@
 #include <map>
 
 #include "app/commands.h"
+#include "app/common_options.h"
 #include "app/scene_options.h"
 #include "check/conform/conformance.h"
 #include "files/output_files.h"
@@ -23,28 +24,23 @@ struct ConformOptions {
   std::uint64_t seed = 1;
   std::string report;
 
-  void add_to(CLI::App& command);
+  void add_to(Command& command);
   std::string command_line() const;
 };
 
-void ConformOptions::add_to(CLI::App& command) {
-  command.add_option("CLASS", classes, "Classes, such as PhongShader, or interfaces, such as Shader; none: all")->type_name("");
-  command.add_option("--plugin", plugins, "Load a shared library of further classes; may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  CLI::Option* quick_flag = command.add_flag("--quick", quick, "A quarter of the samples");
-  command.add_flag("--thorough", thorough, "Ten times the samples")->excludes(quick_flag);
-  command.add_option("--drawn", drawn, "How many parts of random members to try of each class, beside the one with defaults")
-      ->capture_default_str()
-      ->type_name("N")
-      ->check(CLI::Range(0, 100000).description(""));
-  command.add_option("--seed", seed, "Draw other parts and samples")->capture_default_str()->type_name("N");
-  command.add_option("--report", report, "Write all outcomes as an HTML page")->type_name("FILE");
-  command.add_flag("--parts", parts, "Print the parts that were tried");
-  command.add_flag("--interfaces", interfaces, "Only list the interfaces, and which of them have checks of their own");
-  command.add_option("--threads", threads, "Threads to use; 0: all cores")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""));
+void ConformOptions::add_to(Command& command) {
+  command.argument("CLASS", classes, "Classes, such as PhongShader, or interfaces, such as Shader; none: all");
+  add_plugin_option(command, plugins);
+  command.flag("--quick", quick, "A quarter of the samples");
+  command.flag("--thorough", thorough, "Ten times the samples").excludes({"--quick"});
+  command.option("--drawn N", drawn, "How many parts of random members to try of each class, beside the one with defaults")
+      .show_default()
+      .range(0, 100000);
+  command.option("--seed N", seed, "Draw other parts and samples").show_default();
+  command.option("--report FILE", report, "Write all outcomes as an HTML page");
+  command.flag("--parts", parts, "Print the parts that were tried");
+  command.flag("--interfaces", interfaces, "Only list the interfaces, and which of them have checks of their own");
+  add_threads_option(command, threads);
 }
 
 std::string ConformOptions::command_line() const {
@@ -107,7 +103,7 @@ int list_interfaces() {
 }
 
 int run_conform(const ConformOptions& options) {
-  for (const std::string& plugin : options.plugins) Registry::instance().load_plugin(plugin);
+  load_plugins(options.plugins);
   if (options.interfaces) return list_interfaces();
   if (!options.report.empty()) {
     OutputFiles files;
@@ -143,11 +139,11 @@ int run_conform(const ConformOptions& options) {
 
 }  // namespace
 
-void add_conform_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("conform", "Test whether parts, plugins' too, do what their interfaces promise");
+void add_conform_command(Command& program) {
+  Command command = program.add_command("conform", "Test whether parts, plugins' too, do what their interfaces promise");
   auto options = std::make_shared<ConformOptions>();
-  options->add_to(*command);
-  command->footer(
+  options->add_to(command);
+  command.footer(
       "\nExamples\n"
       "  etendue conform                                        everything\n"
       "  etendue conform Shader --quick                         all shaders, a quick look\n"
@@ -155,7 +151,7 @@ void add_conform_command(CLI::App& program, Run& run) {
       "  etendue conform --thorough --report conform.html\n"
       "\nExit status: 0 nothing failed, 1 something did or nothing was tested, 2 bad input. docs/conform.md tells what is "
       "tested.");
-  command->callback([options, &run] { run = [options] { return run_conform(*options); }; });
+  command.runs([options] { return run_conform(*options); });
 }
 
 }  // namespace etendue

@@ -5,12 +5,7 @@
 #include <filesystem>
 
 #include "app/scene_options.h"
-#include "etendue/language/language.h"
-#include "files/input_files.h"
-#include "files/output_files.h"
-#include "files/whole_file.h"
-#include "language/json.h"
-#include "render/checkpoint.h"
+#include "description_output.h"
 
 namespace etendue {
 
@@ -40,35 +35,23 @@ std::string comments(const std::string& file, const std::vector<Error>& notes) {
 int convert(const ConvertOptions& options) {
   const ImportedJob imported = options.load_imported();
   for (const Error& note : imported.notes) warn(note.what(), note.location);
-  const Job& job = *imported.job;
-  if (options.output == "-") {
-    fmt::print("{}{}", comments(options.file, imported.notes), write_description(job));
-    return exit_status::done;
-  }
-  note_inputs_of(job);
-  OutputFiles files;
-  files.add(options.output, {intern("--output"), 0, 0});
-  files.raise();
-  const std::string folder = std::filesystem::absolute(options.output).parent_path().string();
-  write_whole_file(options.output, language::is_json(options.output)
-                                       ? write_json(job, false, folder)
-                                       : comments(options.file, imported.notes) + write_description(job, false, folder));
+  write_description_to(options.output, *imported.job, comments(options.file, imported.notes), false);
   return exit_status::done;
 }
 
 }  // namespace
 
-void add_convert_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("convert", "Write a file of another program as a render description");
+void add_convert_command(Command& program) {
+  Command command = program.add_command("convert", "Write a file of another program as a render description");
   auto options = std::make_shared<ConvertOptions>();
-  options->add_to(*command);
-  add_description_output(*command, options->output);
-  command->footer(
+  options->add_to(command);
+  add_description_output(command, options->output);
+  command.footer(
       "\nExamples\n"
       "  etendue convert scene.xml -o scene.etd                 comments at its top say what is not as there\n"
       "  etendue convert scene.xml --strict -o scene.etd        fails instead\n"
       "  etendue convert model.glb -o -                         on the terminal");
-  command->callback([options, &run] { run = [options] { return convert(*options); }; });
+  command.runs([options] { return convert(*options); });
 }
 
 }  // namespace etendue

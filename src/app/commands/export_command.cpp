@@ -46,19 +46,17 @@ int write(const ExportOptions& options) {
 
 }  // namespace
 
-void add_export_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("export", "Write a render description as a file of another program");
+void add_export_command(Command& program) {
+  Command command = program.add_command("export", "Write a render description as a file of another program");
   auto options = std::make_shared<ExportOptions>();
-  options->add_to(*command);
-  command->add_option("-o,--output", options->output, "The file to write; its ending says for which program")
-      ->required()
-      ->type_name("FILE");
-  command->footer(
+  options->add_to(command);
+  command.option("-o,--output FILE", options->output, "The file to write; its ending says for which program").required();
+  command.footer(
       "\nExamples\n"
       "  etendue export scenes/cornell_box.etd -o box.pbrt      meshes and images are written beside it\n"
       "  etendue export box.etd --strict -o box.pbrt            fails where it cannot be the same\n"
       "  etendue export box.etd -o box.glb                      a model for viewers, with simple materials");
-  command->callback([options, &run] { run = [options] { return write(*options); }; });
+  command.runs([options] { return write(*options); });
 }
 
 }  // namespace etendue

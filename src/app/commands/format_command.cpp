@@ -57,22 +57,20 @@ int format_all(const FormatOptions& options) {
 
 }  // namespace
 
-void add_format_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("format", "Give a render description one layout: indentation, blanks, comments");
+void add_format_command(Command& program) {
+  Command command = program.add_command("format", "Give a render description one layout: indentation, blanks, comments");
   auto options = std::make_shared<FormatOptions>();
-  command->add_option("FILE", options->files, "The render descriptions (.etd), which are replaced")->required()->type_name("");
-  CLI::Option* output = command->add_option("-o,--output", options->output, "Write to this file instead; - for standard output")
-                            ->type_name("FILE");
-  command
-      ->add_flag("--check", options->check, "Change nothing; print the files whose layout would change, and exit with 1 if any")
-      ->excludes(output);
-  command->footer(
+  command.argument("FILE", options->files, "The render descriptions (.etd), which are replaced").required();
+  command.option("-o,--output FILE", options->output, "Write to this file instead; - for standard output");
+  command.flag("--check", options->check, "Change nothing; print the files whose layout would change, and exit with 1 if any")
+      .excludes({"--output"});
+  command.footer(
       "\nExamples\n"
       "  etendue format box.etd                             in place, in one go or not at all\n"
       "  etendue format box.etd -o -                        on the terminal\n"
       "  etendue format --check scenes/*.etd                which of them have another layout\n"
       "\nLines end where they did, comments stay, and the meaning is compared before anything is written.");
-  command->callback([options, &run] { run = [options] { return format_all(*options); }; });
+  command.runs([options] { return format_all(*options); });
 }
 
 }  // namespace etendue

@@ -95,38 +95,33 @@ int diff(const DiffOptions& options) {
   return agree ? exit_status::done : exit_status::failed;
 }
 
-void add_diff(CLI::App& image, Run& run) {
-  CLI::App* command = image.add_subcommand("diff", "Compare two pictures, in CIE XYZ");
+void add_diff(Command& image) {
+  Command command = image.add_command("diff", "Compare two pictures, in CIE XYZ");
   auto options = std::make_shared<DiffOptions>();
-  command->add_option("A", options->a, "A picture")->required()->type_name("");
-  command->add_option("B", options->b, "The reference")->required()->type_name("");
-  command->add_option("--tiles", options->tiles, "Compare also the means of tiles of N x N pixels")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1 << 20).description(""));
+  command.argument("A", options->a, "A picture").required();
+  command.argument("B", options->b, "The reference").required();
+  command.option("--tiles N", options->tiles, "Compare also the means of tiles of N x N pixels").range(1, 1 << 20);
   command
-      ->add_option("--tolerance", options->tolerance,
-                   "Exit with 1 if the root of the relative MSE exceeds this; with --tiles, if a tile's mean, in X, Y or Z, "
-                   "deviates by a larger fraction")
-      ->type_name("T")
-      ->check(CLI::Range(0.0, 1e30).description(""));
-  command->footer(
+      .option("--tolerance T", options->tolerance,
+              "Exit with 1 if the root of the relative MSE exceeds this; with --tiles, if a tile's mean, in X, Y or Z, "
+              "deviates by a larger fraction")
+      .range(0.0, 1e30);
+  command.footer(
       "\nExamples\n"
       "  etendue image diff a.exr b.exr\n"
       "  etendue image diff a.npy reference.npy --tiles 32 --tolerance 0.02");
-  command->callback([options, &run] { run = [options] { return diff(*options); }; });
+  command.runs([options] { return diff(*options); });
 }
 
 // ---- info -------------------------------------------------------------------------------------------------------------
 
-void add_info(CLI::App& image, Run& run) {
-  CLI::App* command = image.add_subcommand("info", "Show size, metadata and ranges of a picture");
+void add_info(Command& image) {
+  Command command = image.add_command("info", "Show size, metadata and ranges of a picture");
   auto files = std::make_shared<std::vector<std::string>>();
-  command->add_option("FILE", *files, "Pictures")->required()->type_name("");
-  command->callback([files, &run] {
-    run = [files] {
-      for (const std::string& file : *files) fmt::print("{}", describe_image(file));
-      return exit_status::done;
-    };
+  command.argument("FILE", *files, "Pictures").required();
+  command.runs([files] {
+    for (const std::string& file : *files) fmt::print("{}", describe_image(file));
+    return exit_status::done;
   });
 }
 
@@ -149,27 +144,25 @@ int tone_map_picture(const ToneMapOptions& options) {
   return exit_status::done;
 }
 
-void add_tonemap(CLI::App& image, Run& run) {
-  CLI::App* command = image.add_subcommand("tonemap", "Turn a picture of radiance into one to look at");
+void add_tonemap(Command& image) {
+  Command command = image.add_command("tonemap", "Turn a picture of radiance into one to look at");
   auto options = std::make_shared<ToneMapOptions>();
-  command->add_option("IN", options->in, "A picture of radiance, such as an EXR or NPY file")->required()->type_name("");
-  command->add_option("OUT", options->out, "The file to write; its ending chooses the format")->required()->type_name("");
-  command->add_option("--tone-map", options->tone_map, "A tone map as it is written in a file")
-      ->capture_default_str()
-      ->type_name("TONEMAP");
-  command->footer("\nExample\n  etendue image tonemap box.exr box.png --tone-map 'ReinhardToneMap { stops: 1 }'");
-  command->callback([options, &run] { run = [options] { return tone_map_picture(*options); }; });
+  command.argument("IN", options->in, "A picture of radiance, such as an EXR or NPY file").required();
+  command.argument("OUT", options->out, "The file to write; its ending chooses the format").required();
+  command.option("--tone-map TONEMAP", options->tone_map, "A tone map as it is written in a file").show_default();
+  command.footer("\nExample\n  etendue image tonemap box.exr box.png --tone-map 'ReinhardToneMap { stops: 1 }'");
+  command.runs([options] { return tone_map_picture(*options); });
 }
 
 }  // namespace
 
-void add_image_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("image", "Compare, inspect, tone map and merge pictures");
-  command->require_subcommand(1);
-  add_diff(*command, run);
-  add_info(*command, run);
-  add_tonemap(*command, run);
-  add_image_merge(*command, run);
+void add_image_command(Command& program) {
+  Command command = program.add_command("image", "Compare, inspect, tone map and merge pictures");
+  command.require_command();
+  add_diff(command);
+  add_info(command);
+  add_tonemap(command);
+  add_image_merge(command);
 }
 
 }  // namespace etendue

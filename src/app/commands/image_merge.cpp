@@ -79,26 +79,20 @@ int merge(const MergeOptions& options) {
 
 }  // namespace
 
-void add_image_merge(CLI::App& image, Run& run) {
-  CLI::App* command = image.add_subcommand("merge", "Make one picture of checkpoints that hold different passes of a render");
+void add_image_merge(Command& image) {
+  Command command = image.add_command("merge", "Make one picture of checkpoints that hold different passes of a render");
   auto options = std::make_shared<MergeOptions>();
-  command->add_option("PART", options->parts, "Checkpoints of 'etendue render --passes', in any order")
-      ->required()
-      ->type_name("");
-  command
-      ->add_option("-o,--output", options->outputs,
-                   "Write to this file instead of those the render description names; may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  command->add_option("--checkpoint", options->checkpoint, "Write a checkpoint of all parts together, to go on from")
-      ->type_name("FILE");
-  command->add_flag("--quiet", options->quiet, "Print nothing but errors and notes");
-  command->footer(
+  command.argument("PART", options->parts, "Checkpoints of 'etendue render --passes', in any order").required();
+  command.option("-o,--output FILE", options->outputs,
+                 "Write to this file instead of those the render description names; may be repeated");
+  command.option("--checkpoint FILE", options->checkpoint, "Write a checkpoint of all parts together, to go on from");
+  command.flag("--quiet", options->quiet, "Print nothing but errors and notes");
+  command.footer(
       "\nExample\n"
       "  etendue render box.etd --passes 0:8 --checkpoint a.part      on one machine\n"
       "  etendue render box.etd --passes 8:16 --checkpoint b.part     on another\n"
       "  etendue image merge a.part b.part -o box.exr -o box.png");
-  command->callback([options, &run] { run = [options] { return merge(*options); }; });
+  command.runs([options] { return merge(*options); });
 }
 
 }  // namespace etendue

@@ -5,6 +5,6 @@
 
 namespace etendue {
 
-void add_image_merge(CLI::App& image, Run& run);
+void add_image_merge(Command& image);
 
 }  // namespace etendue

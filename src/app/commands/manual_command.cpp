@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "app/commands.h"
+#include "app/common_options.h"
 #include "app/text.h"
 #include "describe/guard.h"
 #include "etendue/describe/reflection.h"
@@ -88,7 +89,7 @@ std::string pictures_page(const std::filesystem::path& folder) {
 }
 
 int write_manual(const ManualOptions& options) {
-  for (const std::string& plugin : options.plugins) Registry::instance().load_plugin(plugin);
+  load_plugins(options.plugins);
   if (options.folder.empty()) {
     if (options.pictures || options.missing) throw Error("pictures need a folder: give one with -o");
     for (const ManualPage& page : manual_pages()) fmt::print("{}\n", page.text);
@@ -116,23 +117,17 @@ int write_manual(const ManualOptions& options) {
 
 }  // namespace
 
-void add_manual_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("manual", "Write the manual of all classes, in Markdown");
+void add_manual_command(Command& program) {
+  Command command = program.add_command("manual", "Write the manual of all classes, in Markdown");
   auto options = std::make_shared<ManualOptions>();
-  command->add_option("-o,--output", options->folder, "A folder for one page per class; without it, all on the terminal")
-      ->type_name("FOLDER");
-  command->add_option("--plugin", options->plugins, "Load a shared library of further classes; may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  command->add_flag("--pictures", options->pictures, "Render a small picture of each class that can be seen; takes minutes");
-  command->add_flag("--missing", options->missing, "The pictures that are not there yet");
-  command->add_option("--samples", options->samples, "Samples per pixel of the pictures")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1 << 30).description(""))
-      ->capture_default_str();
-  command->footer(
+  command.option("-o,--output FOLDER", options->folder, "A folder for one page per class; without it, all on the terminal");
+  add_plugin_option(command, options->plugins);
+  command.flag("--pictures", options->pictures, "Render a small picture of each class that can be seen; takes minutes");
+  command.flag("--missing", options->missing, "The pictures that are not there yet");
+  command.option("--samples N", options->samples, "Samples per pixel of the pictures").range(1, 1 << 30).show_default();
+  command.footer(
       "\nExamples\n  etendue manual | less\n  etendue manual -o manual --pictures\n  etendue manual -o manual --missing");
-  command->callback([options, &run] { run = [options] { return write_manual(*options); }; });
+  command.runs([options] { return write_manual(*options); });
 }
 
 }  // namespace etendue

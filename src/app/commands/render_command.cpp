@@ -215,11 +215,11 @@ int render(const RenderOptions& options, Series& series) {
 
 }  // namespace
 
-void add_render_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("render", "Render files to the pictures they name");
+void add_render_command(Command& program) {
+  Command command = program.add_command("render", "Render files to the pictures they name");
   auto options = std::make_shared<RenderOptions>();
-  options->add_to(*command);
-  command->footer(
+  options->add_to(command);
+  command.footer(
       "\nExamples\n"
       "  etendue render scenes/cornell_box.etd                    as the file says\n"
       "  etendue render box.etd -o box.png -o box.exr             to these files instead\n"
@@ -237,10 +237,8 @@ void add_render_command(CLI::App& program, Run& run) {
       "  etendue render box.etd --passes 0:8 --checkpoint a.part  a part, for 'etendue image merge'\n"
       "\nThe first Ctrl-C ends the render after the current pass and writes what there is, a second one aborts it.\n"
       "The picture depends on the file and the seed alone, never on the number of threads.");
-  command->callback([options, &run] {
-    run = [options] {
-      return render_series(*options, [](const RenderOptions& one, Series& series) { return render(one, series); });
-    };
+  command.runs([options] {
+    return render_series(*options, [](const RenderOptions& one, Series& series) { return render(one, series); });
   });
 }
 

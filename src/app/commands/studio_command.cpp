@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "app/commands.h"
+#include "app/common_options.h"
 #include "app/text.h"
-#include "etendue/describe/registry.h"
 #include "studio_serving.h"
 
 namespace etendue {
@@ -41,7 +41,7 @@ std::string password(const StudioOptions& options) {
 }
 
 int run_studio(const StudioOptions& options) {
-  for (const std::string& plugin : options.plugins) Registry::instance().load_plugin(plugin);
+  load_plugins(options.plugins);
   studio::StudioSettings settings;
   settings.render.threads = options.threads;
   settings.read_only = options.read_only;
@@ -71,34 +71,23 @@ int run_studio(const StudioOptions& options) {
 
 }  // namespace
 
-void add_studio_command(CLI::App& program, Run& run) {
+void add_studio_command(Command& program) {
   auto options = std::make_shared<StudioOptions>();
-  CLI::App& command = *program.add_subcommand("studio", "Describe, watch and control a render in the browser");
-  command.add_option("FILE", options->file, "The render description (.etd, or .json); none: an empty one")->type_name("");
-  command.add_flag("--no-browser", options->no_browser, "Only print the address");
-  command.add_flag("--read-only", options->read_only, "Show it only: pages can change nothing");
-  command
-      .add_option("--allow-path", options->allowed,
-                  "A folder that pages may read and write, beside the file's and the working one; may be repeated")
-      ->type_name("FOLDER")
-      ->allow_extra_args(false);
-  command.add_option("--port", options->port, "Port; 0: any that is free")
-      ->type_name("N")
-      ->check(CLI::Range(0, 65535).description(""));
-  command.add_option("--listen", options->listen, "Let others in, at this address of the machine; needs a password")
-      ->type_name("ADDRESS");
-  command
-      .add_option("--password-file", options->password_file, "File with the password; else it is in ETENDUE_STUDIO_PASSWORD")
-      ->type_name("FILE");
-  command.add_option("--page", options->page, "Another page")->type_name("FILE")->group("");
-  command.add_option("--plugin", options->plugins, "Load a shared library of further classes; may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  command.add_option("--threads", options->threads, "Threads to use; 0: all cores")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""));
-  command.callback([options, &run] { run = [options] { return run_studio(*options); }; });
-  add_view_command(program, run);
+  Command command = program.add_command("studio", "Describe, watch and control a render in the browser");
+  command.argument("FILE", options->file, "The render description (.etd, or .json); none: an empty one");
+  command.flag("--no-browser", options->no_browser, "Only print the address");
+  command.flag("--read-only", options->read_only, "Show it only: pages can change nothing");
+  command.option("--allow-path FOLDER", options->allowed,
+                 "A folder that pages may read and write, beside the file's and the working one; may be repeated");
+  command.option("--port N", options->port, "Port; 0: any that is free").range(0, 65535);
+  command.option("--listen ADDRESS", options->listen, "Let others in, at this address of the machine; needs a password");
+  command.option("--password-file FILE", options->password_file,
+                 "File with the password; else it is in ETENDUE_STUDIO_PASSWORD");
+  command.option("--page FILE", options->page, "Another page").hidden();
+  add_plugin_option(command, options->plugins);
+  add_threads_option(command, options->threads);
+  command.runs([options] { return run_studio(*options); });
+  add_view_command(program);
 }
 
 }  // namespace etendue

@@ -12,6 +12,6 @@ namespace etendue {
 int serve(studio::StudioSettings, studio::ServerSettings, bool open_browser, const std::function<void(studio::Studio&)>& begin);
 
 /// Defined in view_command.cpp; add_studio_command calls it.
-void add_view_command(CLI::App& program, Run& run);
+void add_view_command(Command& program);
 
 }  // namespace etendue

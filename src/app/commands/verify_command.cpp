@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "app/common_options.h"
 #include "app/interruption.h"
 #include "app/scene_options.h"
 #include "app/text.h"
@@ -25,53 +26,39 @@ struct VerifyOptions : SceneOptions {
   double significance = 0.01, inject = 1;
   bool force = false, json = false, quiet = false;
 
-  void add_to(CLI::App& command);
+  void add_to(Command& command);
   Ref<Job> load() const;
   std::string command_line() const;
 };
 
-void VerifyOptions::add_to(CLI::App& command) {
+void VerifyOptions::add_to(Command& command) {
   SceneOptions::add_to(command);
-  command
-      .add_option(
-          "--renderers", renderers,
-          "Compare these: classes, or expressions such as 'PathTracer{next_event: false}', with commas between. Without: "
-          "the file's own and all others that find all the light of the scene")
-      ->type_name("A,B,…");
-  command.add_flag("--force", force, "Compare the named renderers even if they miss light that the scene has");
-  command.add_option("--samples", samples, "Samples per pixel of each renderer, in all passes together")->type_name("N");
-  command.add_option("--passes", passes, "Independent passes of each renderer")
-      ->capture_default_str()
-      ->type_name("K")
-      ->check(CLI::Range(8, 10000).description(""));
-  command
-      .add_option(
-          "--time", time,
-          "As many passes as this time takes, for each renderer (at least 8); --samples over --passes are the size of one")
-      ->type_name("TIME");
-  command.add_option("--lengths", lengths, "Compare path lengths from 1 to this one by one, and all longer ones together")
-      ->capture_default_str()
-      ->type_name("L")
-      ->check(CLI::Range(0, 63).description(""));
-  command.add_option("--tile", tile, "Side of the tiles compared [pixels]; 0: 32, less in small pictures")
-      ->type_name("PX")
-      ->check(CLI::Range(0, 65536).description(""));
-  command.add_option("--significance", significance, "Probability of reporting any disagreement where there is none")
-      ->capture_default_str()
-      ->type_name("P")
-      ->check(CLI::Range(1e-12, 0.5).description(""));
-  command.add_option("--report", report, "Write a report with maps of the differences, one HTML file")->type_name("FILE");
-  command.add_flag("--json", json, "Print everything as JSON");
-  command.add_option("--seed", seed, "Choose other random numbers")->type_name("N");
-  command.add_option("--size", size, "Size of the picture in pixels")->type_name("WxH");
-  command.add_option("--threads", threads, "Threads to use; 0: all cores")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""));
-  command.add_flag("--quiet", quiet, "Print nothing but errors: the exit status tells");
-  command.add_option("--inject", inject, "Self test: multiply what the first renderer measures, to see that it is noticed")
-      ->type_name("FACTOR")
-      ->group("Self test")
-      ->check(CLI::Range(0.0, 1e6).description(""));
+  command.option(
+      "--renderers A,B,…", renderers,
+      "Compare these: classes, or expressions such as 'PathTracer{next_event: false}', with commas between. Without: "
+      "the file's own and all others that find all the light of the scene");
+  command.flag("--force", force, "Compare the named renderers even if they miss light that the scene has");
+  command.option("--samples N", samples, "Samples per pixel of each renderer, in all passes together");
+  command.option("--passes K", passes, "Independent passes of each renderer").show_default().range(8, 10000);
+  command.option(
+      "--time TIME", time,
+      "As many passes as this time takes, for each renderer (at least 8); --samples over --passes are the size of one");
+  command.option("--lengths L", lengths, "Compare path lengths from 1 to this one by one, and all longer ones together")
+      .show_default()
+      .range(0, 63);
+  command.option("--tile PX", tile, "Side of the tiles compared [pixels]; 0: 32, less in small pictures").range(0, 65536);
+  command.option("--significance P", significance, "Probability of reporting any disagreement where there is none")
+      .show_default()
+      .range(1e-12, 0.5);
+  command.option("--report FILE", report, "Write a report with maps of the differences, one HTML file");
+  command.flag("--json", json, "Print everything as JSON");
+  command.option("--seed N", seed, "Choose other random numbers");
+  command.option("--size WxH", size, "Size of the picture in pixels");
+  add_threads_option(command, threads);
+  command.flag("--quiet", quiet, "Print nothing but errors: the exit status tells");
+  command.option("--inject FACTOR", inject, "Self test: multiply what the first renderer measures, to see that it is noticed")
+      .heading("Self test")
+      .range(0.0, 1e6);
 }
 
 Ref<Job> VerifyOptions::load() const {
@@ -128,7 +115,7 @@ verify::Collected collect(Render& render, const verify::Choice& choice, const Ve
                  choice.candidates[renderer].name, passes);
       std::fflush(stderr);
     }
-    return !interruption.asked();
+    return !Interruption::asked();
   };
   verify::Collected collected = verify::collect(
       render, choice.candidates, options.tile > 0 ? options.tile : verify::default_tile(*render.job().image), collecting);
@@ -179,18 +166,18 @@ int verify_file(const VerifyOptions& options) {
 
 }  // namespace
 
-void add_verify_command(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("verify", "Prove that renderers agree on a scene, or show where they do not");
+void add_verify_command(Command& program) {
+  Command command = program.add_command("verify", "Prove that renderers agree on a scene, or show where they do not");
   auto options = std::make_shared<VerifyOptions>();
-  options->add_to(*command);
-  command->footer(
+  options->add_to(command);
+  command.footer(
       "\nExamples\n"
       "  etendue verify scenes/cornell_box.etd --size 64x64 --samples 256\n"
       "  etendue verify box.etd --renderers 'PathTracer,PathTracer{next_event: false}' --report box.html\n"
       "  etendue verify box.etd --time 1m --json\n"
       "\nWhole renders with independent random numbers are compared by tiles and path lengths. Exit status: 0 no disagreement, "
       "1 disagreement, 2 bad input. docs/verify.md tells the statistics.");
-  command->callback([options, &run] { run = [options] { return verify_file(*options); }; });
+  command.runs([options] { return verify_file(*options); });
 }
 
 }  // namespace etendue

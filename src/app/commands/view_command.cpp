@@ -87,16 +87,14 @@ int view(const ViewOptions& options) {
 
 }  // namespace
 
-void add_view_command(CLI::App& program, Run& run) {
+void add_view_command(Command& program) {
   auto options = std::make_shared<ViewOptions>();
-  CLI::App& command = *program.add_subcommand("view", "Show pictures in the browser: EXR, PNG, NPY and others, checkpoints");
-  command.add_option("IMAGE", options->files, "The pictures")->type_name("")->required();
-  command.add_flag("--no-browser", options->no_browser, "Only print the address");
-  command.add_option("--port", options->port, "Port; 0: any that is free")
-      ->type_name("N")
-      ->check(CLI::Range(0, 65535).description(""));
-  command.add_option("--page", options->page, "Another page")->type_name("FILE")->group("");
-  command.callback([options, &run] { run = [options] { return view(*options); }; });
+  Command command = program.add_command("view", "Show pictures in the browser: EXR, PNG, NPY and others, checkpoints");
+  command.argument("IMAGE", options->files, "The pictures").required();
+  command.flag("--no-browser", options->no_browser, "Only print the address");
+  command.option("--port N", options->port, "Port; 0: any that is free").range(0, 65535);
+  command.option("--page FILE", options->page, "Another page").hidden();
+  command.runs([options] { return view(*options); });
 }
 
 }  // namespace etendue
