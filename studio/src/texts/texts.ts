@@ -1,7 +1,7 @@
 // All that the page says, in one place and its folder.
-import { help } from "./texts/help.ts";
-import { heldLight, lights, paths, picture, sides, space, strategies, viewing, views } from "./texts/picture.ts";
-import { chooser, panel, tree } from "./texts/scene.ts";
+import { help } from "./help.ts";
+import { heldLight, lights, paths, picture, sides, space, strategies, viewing, views } from "./picture.ts";
+import { chooser, panel, tree } from "./scene.ts";
 
 export const texts = {
   chooser, heldLight, help, lights, panel, paths, picture, sides, space, strategies, tree, viewing, views,
