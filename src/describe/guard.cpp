@@ -26,6 +26,18 @@ std::string thrown_text() {
   }
 }
 
+std::vector<Error> thrown_errors() {
+  try {
+    throw;
+  } catch (const Errors& several) {
+    return several.errors;
+  } catch (const Error& error) {
+    return {error};
+  } catch (...) {
+    return {Error(thrown_text())};
+  }
+}
+
 std::string name_with_plugin(const ClassInfo& info) {
   return info.provider.empty() ? info.name : fmt::format("{} (of plugin '{}')", info.name, info.provider);
 }

@@ -6,6 +6,7 @@
 #include "etendue/describe/color.h"
 #include "language/writer.h"
 #include "studio.h"
+#include "studio/pixels/linear_srgb.h"
 
 namespace etendue::studio {
 
@@ -30,9 +31,6 @@ Json color_json(const SpectralFunction& color, Meaning meaning) {
                                                                                       : ColorUse::reflectance;
   const Color white = illuminant_spectrum("D65");
   const Xyz xyz = to_xyz(color, use, use == ColorUse::radiance ? nullptr : white.get());
-  const auto& m = rgb_space("srgb").from_xyz;
-  Json srgb = Json::array();
-  for (size_t k = 0; k < 3; ++k) srgb.push_back(m[3 * k] * xyz.x + m[3 * k + 1] * xyz.y + m[3 * k + 2] * xyz.z);
   Json wavelengths = Json::array(), values = Json::array();
   for (int nm = 360; nm <= 830; nm += 10) {
     wavelengths.push_back(nm);
@@ -40,7 +38,7 @@ Json color_json(const SpectralFunction& color, Meaning meaning) {
   }
   return {{"color",
            {{"text", color.expression()},
-            {"srgb", srgb},
+            {"srgb", LinearSrgb()(xyz.x, xyz.y, xyz.z)},
             {"xyz", {xyz.x, xyz.y, xyz.z}},
             {"wavelengths", wavelengths},
             {"values", values}}}};

@@ -107,6 +107,8 @@ Json Studio::sides_json() {
   return {{"event", "renders"}, {"renders", std::move(list)}};
 }
 
+void Studio::tell_sides() { broadcast(sides_json()); }
+
 Json Studio::course_json(int render) {
   const std::lock_guard lock(browsers_guard_);
   const auto found = courses_.find(render);

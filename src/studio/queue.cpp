@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 
+#include "describe/guard.h"
 #include "etendue/language/language.h"
 #include "render/denoising.h"
 
@@ -116,12 +119,8 @@ void Queue::render(const std::string& file, int number) {
     }
     if (!given_up) given_up = render->run() == Ended::aborted;
     if (!given_up) write_all(*render, std::filesystem::path(file).replace_extension().string(), outputs, errors);
-  } catch (const Errors& several) {
-    errors.insert(errors.end(), several.errors.begin(), several.errors.end());
-  } catch (const Error& error) {
-    errors.push_back(error);
-  } catch (const std::exception& error) {
-    errors.emplace_back(error.what());
+  } catch (...) {
+    std::ranges::copy(thrown_errors(), std::back_inserter(errors));
   }
   const std::lock_guard lock(guard_);
   at_work_.reset();

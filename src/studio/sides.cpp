@@ -5,7 +5,8 @@
 
 #include <fstream>
 
-#include "studio.h"
+#include "describe/guard.h"
+#include "request.h"
 #include "studio/document/text_editor.h"
 
 namespace etendue::studio {
@@ -55,14 +56,13 @@ void Side::follow(const Document& leader, const std::map<std::string, std::strin
   try {
     TextEditor editor(leader);
     if (!difference.renderer.empty()) {
-      const ClassInfo* info = Registry::instance().find(difference.renderer);
-      if (!info) static_cast<void>(Registry::instance().create(difference.renderer));  // throws Error with a suggestion
+      const ClassInfo& renderer = class_named(difference.renderer);
       const Ref<Component> now(const_cast<Renderer*>(leader.job().renderer.get()));
-      if (&now->class_info() != info) editor.replace_class(now, *info);
+      if (&now->class_info() != &renderer) editor.replace_class(now, renderer);
     }
     changed = document_.follow(leader, editor.text(), all);
   } catch (...) {
-    became(errors_at_hand());
+    became(thrown_errors());
     runner_.stop();
     throw;
   }

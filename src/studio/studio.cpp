@@ -6,30 +6,10 @@
 
 #include <filesystem>
 
+#include "describe/guard.h"
+#include "request.h"
+
 namespace etendue::studio {
-
-namespace {
-
-constexpr size_t largest_echo = 200;
-
-const Request* find_request(const std::string& name) {
-  static const std::map<std::string, const Request*, std::less<>> all = [] {
-    std::map<std::string, const Request*, std::less<>> map;
-    for (const auto list :
-         {edit_requests(), structure_requests(), text_requests(), render_requests(), side_requests(), camera_requests(),
-          look_requests(), file_requests(), view_requests(), picture_requests(), task_requests()})
-      for (const Request& request : list) map.emplace(request.name, &request);
-    return map;
-  }();
-  const auto found = all.find(name);
-  if (found != all.end()) return found->second;
-  std::vector<std::string> known;
-  for (const auto& [key, request] : all) known.push_back(key);
-  throw RequestError("unknown_request",
-                     fmt::format("there is no request '{}'{}", name.substr(0, largest_echo), suggestion(name, known)));
-}
-
-}  // namespace
 
 Studio::Studio(StudioSettings settings)
     : settings_(std::move(settings)),
@@ -87,7 +67,7 @@ void Studio::open_first(Document::Source source) {
     try {
       document_.open(std::move(source));
     } catch (...) {  // probably no memory; errors in the text are stored as a draft
-      for (const Error& error : errors_at_hand()) notice(error.what(), "error");
+      for (const Error& error : thrown_errors()) notice(error.what(), "error");
       document_.create(folder);
     }
     text_units_ = document_.places().size();
@@ -160,18 +140,18 @@ void Studio::answer(const Task& task) {
       reply["id"] = *id;
     if (goodbye_) throw RequestError("ending", "the program is about to end");
     const Call call{*this, *task.from, request, reply["id"]};
-    const Request* found = find_request(call.text("do"));
-    if (settings_.read_only && !found->read_only)
+    const Request& found = request_named(call.text("do"));
+    if (settings_.read_only && !found.read_only)
       throw RequestError("read_only", "this studio only shows (--read-only): nothing can be changed");
-    const std::string name = found->name;
+    const std::string name = found.name;
     Working working(*this, name, name == "open" ? call.text_or("file", "") : std::string());
-    Json result = found->answer(call);
+    Json result = found.answer(call);
     reply["ok"] = true;
     for (auto& [key, value] : result.items()) reply[key] = std::move(value);
   } catch (const RequestError& error) {
     reply["errors"] = Json::array({{{"message", error.what()}, {"code", error.code}}});
   } catch (...) {
-    reply["errors"] = errors_json(errors_at_hand(), &document_);
+    reply["errors"] = errors_json(thrown_errors(), &document_);
   }
   try {
     task.from->send(written(reply));
@@ -180,22 +160,6 @@ void Studio::answer(const Task& task) {
   if (!goodbye_ || ended_before) return;
   broadcast({{"event", "goodbye"}});
   if (on_shutdown) on_shutdown();
-}
-
-std::vector<Error> errors_at_hand() {
-  try {
-    throw;
-  } catch (const Errors& several) {
-    return several.errors;
-  } catch (const Error& error) {
-    return {error};
-  } catch (const std::bad_alloc&) {
-    return {Error("there is not enough memory for this")};
-  } catch (const std::exception& error) {
-    return {Error(error.what())};
-  } catch (...) {
-    return {Error("something unknown was thrown")};
-  }
 }
 
 void Studio::shutdown(bool discard) {
@@ -207,6 +171,18 @@ std::shared_ptr<Render> Studio::valid_render() {
   std::shared_ptr<Render> render = document_.render();
   if (!render) throw RequestError("no_document", "there is nothing that can be rendered: the text has errors");
   return render;
+}
+
+std::shared_ptr<Render> Studio::render_of(int number) {
+  if (number == 0) return valid_render();
+  return sides_.find(number)->render();
+}
+
+Runner& Studio::runner_of(int number) { return number == 0 ? runner_ : sides_.find(number)->runner(); }
+
+void Studio::follow_sides() {
+  if (coarse || !document_.valid() || sides_.all().empty()) return;
+  sides_.follow(document_, overrides);
 }
 
 void Studio::apply_overrides() {

@@ -56,13 +56,6 @@ class Browser {
   int number = 0;
 };
 
-/// An error with a code, to which a page may react.
-class RequestError : public Error {
- public:
-  RequestError(std::string c, const std::string& message) : Error(message), code(std::move(c)) {}
-  std::string code;
-};
-
 struct Call;
 
 class Studio {
@@ -99,7 +92,7 @@ class Studio {
   static std::string manual_page(const std::string& class_name);
   const StudioSettings& settings() const { return settings_; }
 
-  // ---- for requests (requests_*.cpp), in the answering thread --------------------------------------------------------------
+  // ---- for requests (src/studio/requests), in the answering thread ------------------------------------------------------
 
   Document& document() { return document_; }
   Runner& runner() { return runner_; }
@@ -236,46 +229,6 @@ class Studio {
   std::thread answerer_, viewer_;
 };
 
-/// The arguments of a request that is being answered.
-struct Call {
-  Studio& studio;
-  Browser& browser;
-  const Json& request;
-  Json id;
-
-  bool has(const char* key) const { return request.contains(key) && !request[key].is_null(); }
-  // Each function throws RequestError if the argument is missing or of the wrong type.
-  std::string text(const char* key) const;
-  std::string text_or(const char* key, const std::string& otherwise) const;
-  bool flag(const char* key) const;
-  std::int64_t integer(const char* key, std::int64_t low, std::int64_t high) const;
-  std::int64_t integer_or(const char* key, std::int64_t otherwise, std::int64_t low, std::int64_t high) const;
-  double number(const char* key) const;
-  double number_or(const char* key, double otherwise) const;
-  std::optional<size_t> index(const char* key = "index") const;
-  /// The render that the argument 'render' names; by default the document's own.
-  int render_number() const;
-  std::shared_ptr<Render> render() const { return studio.render_of(render_number()); }
-  Ref<Component> component(const char* key = "component") const;
-};
-
-struct Request {
-  const char* name;
-  bool read_only;  ///< allowed when nothing may be changed
-  Json (*answer)(const Call&);
-};
-std::span<const Request> edit_requests();
-std::span<const Request> structure_requests();
-std::span<const Request> text_requests();
-std::span<const Request> render_requests();
-std::span<const Request> side_requests();
-std::span<const Request> camera_requests();
-std::span<const Request> look_requests();
-std::span<const Request> file_requests();
-std::span<const Request> view_requests();
-std::span<const Request> picture_requests();
-std::span<const Request> task_requests();
-
 // ---- JSON of components and errors (json_tree.cpp) -------------------------------------------------------------------------
 
 Json component_json(const Document&, const Component&);
@@ -285,8 +238,6 @@ Json error_json(const Error&, const Document*);
 Json errors_json(const std::vector<Error>&, const Document*);
 /// JSON as it is sent.
 std::shared_ptr<const std::string> written(const Json&);
-/// The errors of the current exception.
-std::vector<Error> errors_at_hand();
 /// Parses a tone map, in which no files are allowed. Throws Error or Errors if the text is not a tone map.
 Ref<ToneMap> tone_map_of(const std::string&);
 /// The data about the program in the reply to "hello": classes, units, functions, names.

@@ -41,18 +41,6 @@ Ref<ToneMap> tone_map_of(const std::string& text) {
   return tone_map;
 }
 
-void Studio::pin(const std::string& name, std::shared_ptr<const Image> picture) {
-  constexpr size_t most = 8;
-  const std::lock_guard lock(browsers_guard_);
-  if (!picture) {
-    pins_.erase(name);
-  } else if (pins_.size() >= most && !pins_.contains(name)) {
-    throw Error("eight pictures are pinned already: take one off first");
-  } else {
-    pins_[name] = std::move(picture);
-  }
-}
-
 void Studio::wake_viewer() {
   {
     const std::lock_guard lock(viewer_guard_);

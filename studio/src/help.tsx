@@ -3,7 +3,7 @@ import type { JSX } from "preact";
 import { version } from "./model/state.ts";
 import { Dialog } from "./parts/parts.tsx";
 import { helping } from "./top_bar.tsx";
-import { texts } from "./texts.ts";
+import { texts } from "./texts/texts.ts";
 
 const t = texts.help;
 

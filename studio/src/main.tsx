@@ -3,8 +3,9 @@ import { render } from "preact";
 import uplotStyle from "uplot/dist/uPlot.min.css";
 import { App } from "./app.tsx";
 import { toggleRender } from "./control/control.tsx";
-import { connection } from "./model/studio.ts";
+import { connect } from "./model/studio.ts";
 import { tab } from "./model/state.ts";
+import { forgetPictures, takePixels } from "./picture/store.ts";
 import baseStyle from "./styles/base.css";
 import partsStyle from "./styles/parts.css";
 import panesStyle from "./styles/panes.css";
@@ -45,4 +46,4 @@ function nextPane(back: boolean): void {
 document.addEventListener("keydown", key);
 const app = document.getElementById("app");
 if (app) render(<App />, app);
-connection.connect();
+connect({ takePixels, forgetPictures });

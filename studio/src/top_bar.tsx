@@ -7,10 +7,10 @@ import { ask } from "./model/studio.ts";
 import { Button } from "./parts/parts.tsx";
 import { WorkingBadge } from "./parts/working.tsx";
 import { RenderButtons } from "./control/control.tsx";
-import { guarded, Question } from "./guarded.tsx";
+import { guarded, Question } from "./parts/guarded.tsx";
 import { settle } from "./text/editor.tsx";
-import { texts } from "./texts.ts";
-import { isDark, theme } from "./theme.ts";
+import { texts } from "./texts/texts.ts";
+import { isDark, theme } from "./model/theme.ts";
 
 const t = texts.top;
 export const helping = signal(false);

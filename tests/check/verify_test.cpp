@@ -8,6 +8,7 @@
 #include "check/verify/collect.h"
 #include "check/verify/report_pictures.h"
 #include "etendue/language/language.h"
+#include "images/base64.h"
 #include "support/process.h"
 #include "support/render_support.h"
 

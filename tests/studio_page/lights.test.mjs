@@ -103,7 +103,7 @@ test("photons and a guide are drawn in space", whole, async (t) => {
   await checkAccess(page, "photons");
   await page.getByRole("button", { name: "Show photons" }).click();
   await page.locator(".photon-count").waitFor({ state: "detached" });
-  await page.getByRole("button", { name: "Show guiding at the pixel" }).isDisabled();
+  await page.getByRole("button", { name: "Show the guiding distribution at the pixel" }).isDisabled();
 });
 
 test("what a renderer does not have is said", whole, async (t) => {

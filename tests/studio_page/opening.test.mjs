@@ -83,7 +83,7 @@ test("tools have names until they are known", whole, async (t) => {
   const browser = await openBrowser(t);
   const page = await openPage(t, browser, studio.address, { viewport: { width: 1024, height: 720 } });
   const names = async (on) => (await on.locator(".picture-bar [aria-label=Tools] .button span").allTextContents()).filter((n) => n !== "");
-  assert.deepEqual(await names(page), ["Pan and zoom", "Select", "Orbit", "Fly", "Region", "Paths"]);
+  assert.deepEqual(await names(page), ["Pan and zoom", "Select", "Orbit", "Fly", "Crop", "Paths"]);
   await checkInside(page, "tools with names");
   await checkAccess(page, "tools with names");
   await page.click("button[aria-label^='Select objects']");
@@ -95,7 +95,7 @@ test("tools have names until they are known", whole, async (t) => {
   const again = await page.context().newPage();
   await again.goto(studio.address);
   await again.waitForSelector("[role=treeitem]");
-  assert.deepEqual(await names(again), ["Pan and zoom", "Orbit", "Fly", "Region"]);
+  assert.deepEqual(await names(again), ["Pan and zoom", "Orbit", "Fly", "Crop"]);
   await again.click("button[aria-label='Hide the names of the tools']");
   await until("none has a name", async () => (await names(again)).length === 0);
   assert.equal(await again.locator("button[aria-label='Hide the names of the tools']").count(), 0);

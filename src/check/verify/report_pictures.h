@@ -6,9 +6,6 @@
 
 namespace etendue::verify {
 
-/// RFC 4648, with padding.
-std::string base64(const std::vector<unsigned char>& bytes);
-
 /// An image of 8-bit sRGB: "data:image/png;base64,…"
 std::string png_uri(int width, int height, const std::vector<unsigned char>& rgb);
 

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "describe/guard.h"
 #include "document.h"
 #include "etendue/language/language.h"
 #include "files/regular_file.h"
@@ -20,20 +21,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint64_t largest_text = std::uint64_t(256) << 20;
-
-std::vector<Error> errors_at_hand() {
-  try {
-    throw;
-  } catch (const Errors& several) {
-    return several.errors;
-  } catch (const std::bad_alloc&) {
-    return {Error("there is not enough memory")};
-  } catch (const Error& error) {
-    return {error};
-  } catch (const std::exception& error) {
-    return {Error(error.what())};
-  }
-}
 
 /// The values by which a change of a file is detected; nothing if the file does not exist.
 std::optional<std::array<std::int64_t, 4>> state_of(const std::string& path) {
@@ -86,7 +73,7 @@ void Document::open(Source source) {
     for (const NamedFile& named : files_loaded_by(next.outline(), folder)) next.trusted_.insert(canonical_path(named.path));
     for (const NamedFile& named : files_named_by(next.job())) next.trusted_.insert(canonical_path(named.path));
   } catch (...) {
-    next.set_draft(text, errors_at_hand());
+    next.set_draft(text, thrown_errors());
     next.take_text(std::make_unique<Outline>("", next.name_));
   }
   if (source.disk) {

@@ -1,5 +1,7 @@
 #include "runner.h"
 
+#include "describe/guard.h"
+
 namespace etendue::studio {
 
 Runner::Runner(Turns& turns) : turns_(turns), thread_([this] { work(); }) {}
@@ -115,12 +117,8 @@ void Runner::work() {
     Status next;
     try {
       next.ended = run(render);
-    } catch (const Errors& several) {
-      next.errors = several.errors;
-    } catch (const Error& error) {
-      next.errors = {error};
-    } catch (const std::exception& error) {
-      next.errors = {Error(error.what())};
+    } catch (...) {
+      next.errors = thrown_errors();
     }
     lock.lock();
     running_ = false;

@@ -6,8 +6,8 @@ import type UPlot from "uplot";
 import { errorPlot } from "../parts/error_plot.ts";
 import { errorCourse, progress } from "../model/state.ts";
 import { percent } from "../model/numbers.ts";
-import { isDark } from "../theme.ts";
-import { texts } from "../texts.ts";
+import { isDark } from "../model/theme.ts";
+import { texts } from "../texts/texts.ts";
 
 export function ErrorCurve(): JSX.Element {
   const box = useRef<HTMLDivElement>(null);

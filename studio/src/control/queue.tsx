@@ -5,7 +5,7 @@ import { ask } from "../model/studio.ts";
 import { percent } from "../model/numbers.ts";
 import { Button } from "../parts/parts.tsx";
 import { chooseFile } from "../files/browser.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 
 const t = texts.queue;
 

@@ -1,13 +1,13 @@
 // Checks in processes of their own: conformance of a class, whether all algorithms agree, strategies apart; and beginning again with new plugins.
 import type { JSX } from "preact";
-import { guarded } from "../guarded.tsx";
+import { guarded } from "../parts/guarded.tsx";
 import { percent } from "../model/numbers.ts";
 import type { Task } from "../model/protocol.ts";
 import { readOnly, root, tasks } from "../model/state.ts";
 import { ask } from "../model/studio.ts";
 import { Button } from "../parts/parts.tsx";
 import { shownStrategies } from "../sides/strategies.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 
 const t = texts.tasks;
 

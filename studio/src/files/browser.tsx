@@ -7,7 +7,7 @@ import { document_, folders } from "../model/state.ts";
 import { demand } from "../model/studio.ts";
 import { Icon } from "../parts/icons.tsx";
 import { Button, Dialog } from "../parts/parts.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 
 const t = texts.files;
 

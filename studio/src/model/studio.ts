@@ -4,8 +4,7 @@ import { Connection } from "./connection.ts";
 import { Refused } from "./protocol.ts";
 import type { Component, DocumentState, Event, Hello, Notice, Progress, Queue, Reply, SideRender, Task, TextChange, TextState, TreeState, WorkingEvent } from "./protocol.ts";
 import * as state from "./state.ts";
-import { forgetPictures, takePixels } from "../picture/store.ts";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 
 type TextListener = (text: TextState) => void;
 const textListeners = new Set<TextListener>();
@@ -13,6 +12,14 @@ let latestText: TextState = { revision: 0, text: "" };
 const eventListeners = new Map<string, Set<(event: Event) => void>>();
 /** What to ask again after the line was lost. */
 let watched: Record<string, unknown> = { what: "linear" };
+
+/** Stores the pictures whose pixels the program sends. */
+export interface PictureStore {
+  takePixels: (message: ArrayBuffer) => void;
+  /** Pixels of another document, or of another layer, follow. */
+  forgetPictures: () => void;
+}
+let pictureStore: PictureStore | null = null;
 
 const protocol = location.protocol === "https:" ? "wss" : "ws";
 export const connection = new Connection(`${protocol}://${location.host}/socket${location.search}`, {
@@ -22,8 +29,14 @@ export const connection = new Connection(`${protocol}://${location.host}/socket$
     if (line !== "open") state.working.value = null;
   },
   event: take,
-  pixels: takePixels,
+  pixels: (message) => pictureStore?.takePixels(message),
 });
+
+/** Connects to the program. */
+export function connect(store: PictureStore): void {
+  pictureStore = store;
+  connection.connect();
+}
 
 /** Says who is here, and takes all there is to know. */
 export async function hello(): Promise<void> {
@@ -60,7 +73,7 @@ function take(event: Event): void {
       if (!state.document_.value.valid) clearTree();
       break;
     case "text":
-      if (event.text !== undefined) forgetPictures(); // another document
+      if (event.text !== undefined) pictureStore?.forgetPictures(); // another document
       takeText(event as unknown as TextState);
       break;
     case "tree":
@@ -214,7 +227,7 @@ export function watchSide(slot: number, of: { render: number } | { layer: string
 
 export function watch(what: Record<string, unknown>): void {
   if (JSON.stringify(watched) === JSON.stringify(what)) return;
-  if (watched.layer !== what.layer) forgetPictures();
+  if (watched.layer !== what.layer) pictureStore?.forgetPictures();
   watched = what;
   if (state.line.value === "open") void ask("watch", what);
 }

@@ -4,10 +4,10 @@ import type { JSX } from "preact";
 import type { Member } from "../model/classes.ts";
 import type { ColorValue, Data } from "../model/protocol.ts";
 import { knownNames } from "../model/state.ts";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { Dragging, setMember } from "./edit.ts";
 import { Entry } from "./entry.tsx";
-import type { FieldProps } from "./field.tsx";
+import type { FieldProps } from "./field_props.ts";
 import { SpectrumPlot } from "./spectrum.tsx";
 
 const t = texts.panel.color;

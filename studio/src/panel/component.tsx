@@ -5,13 +5,13 @@ import { classes, components, select } from "../model/state.ts";
 import { ask } from "../model/studio.ts";
 import { Icon, kindIcon } from "../parts/icons.tsx";
 import { Button } from "../parts/parts.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { choosing, moveTo } from "../tree/actions.ts";
 import { label } from "../tree/tree.tsx";
 import { isUse } from "../tree/rows.ts";
 import { ColorEntry, colorOf } from "./color.tsx";
 import { setMember } from "./edit.ts";
-import type { FieldProps } from "./field.tsx";
+import type { FieldProps } from "./field_props.ts";
 
 const t = texts.panel;
 

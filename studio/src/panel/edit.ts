@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import { Refused } from "../model/protocol.ts";
 import { demand } from "../model/studio.ts";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 
 /** What is wrong with the last edit of a member, by `key`. */
 export const wrong = signal<ReadonlyMap<string, string>>(new Map());

@@ -1,15 +1,15 @@
 // One member of a component: its name, what it is set by, back to the default, help, and what is wrong.
-import { signal } from "@preact/signals";
 import type { JSX } from "preact";
 import type { Member } from "../model/classes.ts";
 import { writeDefault } from "../model/classes.ts";
-import type { Component, MemberState } from "../model/protocol.ts";
-import { inline } from "../parts/markdown.tsx";
+import type { Component } from "../model/protocol.ts";
 import { Button } from "../parts/parts.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { ColorField } from "./color.tsx";
 import { ComponentField, ComponentList } from "./component.tsx";
 import { dropKept, kept, key, resetMember, wrong } from "./edit.ts";
+import { explain } from "./explanation.tsx";
+import type { FieldProps } from "./field_props.ts";
 import { FileField, FileList } from "./file.tsx";
 import { NumberField } from "./number.tsx";
 import { BooleanField, ChoiceField, ChoicesField, ExpressionField, TextField } from "./simple.tsx";
@@ -17,38 +17,6 @@ import { TransformField } from "./transform.tsx";
 import { VectorField } from "./vector.tsx";
 
 const t = texts.panel;
-
-/** The member that is told of below the panel: it must not move what a mouse is about to press. */
-const explained = signal<Member | null>(null);
-
-export function explain(member: Member | null): void {
-  explained.value = member;
-}
-
-export function Explanation(): JSX.Element {
-  const member = explained.value;
-  return (
-    <footer class="explanation">
-      {member ? (
-        <>
-          <b>{member.name}</b> {inline(member.text)}
-          <span class="facts">{facts(member)}</span>
-        </>
-      ) : (
-        <span>{t.explain}</span>
-      )}
-    </footer>
-  );
-}
-
-/** What every kind of field gets. */
-export interface FieldProps {
-  component: Component;
-  member: Member;
-  state: MemberState;
-  /** The identifier of the control, which its label names. */
-  id: string;
-}
 
 export function Field({ component, member }: { component: Component; member: Member }): JSX.Element | null {
   const told = component.members[member.name];
@@ -84,6 +52,7 @@ export function Field({ component, member }: { component: Component; member: Mem
   );
 }
 
+/** What a member is set by, chosen by its type. */
 function control(props: FieldProps): JSX.Element {
   const { member } = props;
   if (member.type === "component") return member.list ? <ComponentList {...props} /> : <ComponentField {...props} />;
@@ -116,17 +85,4 @@ function control(props: FieldProps): JSX.Element {
     default:
       return <ExpressionField {...props} />;
   }
-}
-
-/** Unit, range and default in one line. */
-function facts(member: Member): string {
-  const range = member.range;
-  const bounds = [
-    range?.low !== undefined ? `≥ ${range.low}` : range?.more_than !== undefined ? `> ${range.more_than}` : "",
-    range?.high !== undefined ? `≤ ${range.high}` : range?.less_than !== undefined ? `< ${range.less_than}` : "",
-  ].filter(Boolean).join(", ");
-  const standard = writeDefault(member.default, member.type);
-  return [member.unit ?? "", bounds, member.required ? t.required : t.default(standard.length > 60 ? "…" : standard), member.effect ? t.effects[member.effect] : ""]
-    .filter(Boolean)
-    .join(" · ");
 }

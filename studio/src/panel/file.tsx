@@ -2,11 +2,11 @@
 import type { JSX } from "preact";
 import { quote } from "../model/expressions.ts";
 import { Button } from "../parts/parts.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { chooseFile, relative } from "../files/browser.tsx";
 import { setMember } from "./edit.ts";
 import { Entry } from "./entry.tsx";
-import type { FieldProps } from "./field.tsx";
+import type { FieldProps } from "./field_props.ts";
 
 export function FileField({ component, member, state, id }: FieldProps): JSX.Element {
   const text = typeof state.value === "string" ? state.value : "";

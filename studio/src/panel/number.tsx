@@ -2,7 +2,7 @@
 import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
 import { brief, fromSlider, inUnitOf, toSlider, type Scale } from "../model/numbers.ts";
-import type { FieldProps } from "./field.tsx";
+import type { FieldProps } from "./field_props.ts";
 import { Dragging, setMember } from "./edit.ts";
 import { Entry } from "./entry.tsx";
 

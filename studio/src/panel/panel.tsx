@@ -9,10 +9,11 @@ import { ask } from "../model/studio.ts";
 import { Icon, kindIcon } from "../parts/icons.tsx";
 import { inline } from "../parts/markdown.tsx";
 import { Button } from "../parts/parts.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { choosing, renaming } from "../tree/actions.ts";
 import { forgetWrong, unanswered } from "./edit.ts";
-import { explain, Field } from "./field.tsx";
+import { explain } from "./explanation.tsx";
+import { Field } from "./field.tsx";
 
 const t = texts.panel;
 

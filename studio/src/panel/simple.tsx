@@ -1,10 +1,10 @@
 // Truth, choices, texts, and expressions that have no better field.
 import type { JSX } from "preact";
 import { quote } from "../model/expressions.ts";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { setMember } from "./edit.ts";
 import { Entry } from "./entry.tsx";
-import type { FieldProps } from "./field.tsx";
+import type { FieldProps } from "./field_props.ts";
 
 export function BooleanField({ component, member, state, id }: FieldProps): JSX.Element {
   return (

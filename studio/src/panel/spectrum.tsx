@@ -1,7 +1,7 @@
 // A spectrum as a curve over wavelengths, above the colours that they have.
 import type { JSX } from "preact";
 import { brief } from "../model/numbers.ts";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 
 interface Props {
   wavelengths: number[];

@@ -4,10 +4,10 @@ import type { JSX } from "preact";
 import { readSteps, writeSteps, type Step } from "../model/expressions.ts";
 import { brief } from "../model/numbers.ts";
 import { Button } from "../parts/parts.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { resetMember, setMember } from "./edit.ts";
 import { Entry } from "./entry.tsx";
-import type { FieldProps } from "./field.tsx";
+import type { FieldProps } from "./field_props.ts";
 
 const t = texts.panel.transform;
 const names: Record<string, string[]> = { translate: ["x", "y", "z"], rotate: ["angle", "axis"], scale: ["x", "y", "z"] };

@@ -3,7 +3,7 @@ import type { JSX } from "preact";
 import { readVector, writeVector } from "../model/expressions.ts";
 import { setMember } from "./edit.ts";
 import { Entry } from "./entry.tsx";
-import type { FieldProps } from "./field.tsx";
+import type { FieldProps } from "./field_props.ts";
 import { ExpressionField } from "./simple.tsx";
 
 const axes = ["x", "y", "z"];

@@ -1,7 +1,7 @@
 // What the page is put together from: buttons, tabs, dialogs, dividers.
 import type { ComponentChildren, JSX } from "preact";
 import { useEffect, useId, useRef } from "preact/hooks";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { Icon, type IconName } from "./icons.tsx";
 
 interface ButtonProps {

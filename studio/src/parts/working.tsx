@@ -4,7 +4,7 @@ import type { JSX } from "preact";
 import { useEffect } from "preact/hooks";
 import { duration } from "../model/numbers.ts";
 import { document_, line, opening, working, type Working } from "../model/state.ts";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 
 const t = texts.working;
 /** What is over sooner is not told. */

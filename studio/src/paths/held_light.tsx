@@ -7,7 +7,7 @@ import { progress } from "../model/state.ts";
 import { demand } from "../model/studio.ts";
 import { Button } from "../parts/parts.tsx";
 import { pathPixel } from "../picture/state.ts";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import type { Lobes, Photons } from "./light.ts";
 
 const t = texts.heldLight;

@@ -8,7 +8,7 @@ import { progress, tab } from "../model/state.ts";
 import { demand } from "../model/studio.ts";
 import { Button } from "../parts/parts.tsx";
 import { mode, pathPixel } from "../picture/state.ts";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { HeldLight } from "./held_light.tsx";
 import type { Replay, ReplayedPath, Vertex } from "./model.ts";
 import { pathColors, type Chosen } from "./space.ts";

@@ -8,7 +8,7 @@ import { classes, components, locked, placeOfSelected, selectedComponent } from 
 import { demand } from "../model/studio.ts";
 import { Dragging } from "../panel/edit.ts";
 import { Button } from "../parts/parts.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import type { Held, Mode } from "./gizmo.ts";
 
 const t = texts.space;

@@ -1,10 +1,10 @@
 // The two canvases of the picture, drawn when something that is seen has changed: the picture by the graphics processor, marks above it.
 import { tab } from "../model/state.ts";
-import { isDark } from "../theme.ts";
+import { isDark } from "../model/theme.ts";
 import { badMarks } from "./bad.ts";
 import { Film, isBad } from "./film.ts";
 import { drawOverlay } from "./overlay.ts";
-import { cursor, type Pixel } from "./readout.tsx";
+import { cursor, type Pixel } from "./probe.ts";
 import { Screen, type Look } from "./screen.ts";
 import { crop, pathPixel, zoom, type Command } from "./state.ts";
 import * as store from "./store.ts";

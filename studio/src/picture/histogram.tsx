@@ -2,8 +2,8 @@
 import { computed, useSignalEffect } from "@preact/signals";
 import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
-import { texts } from "../texts.ts";
-import { isDark } from "../theme.ts";
+import { texts } from "../texts/texts.ts";
+import { isDark } from "../model/theme.ts";
 import { useCounted } from "./counted.ts";
 import { histogram, type Histogram } from "./film.ts";
 import { falseColor, falseRange, stops } from "./store.ts";

@@ -4,7 +4,7 @@ import { readOnly, selected, tab } from "../model/state.ts";
 import { ask } from "../model/studio.ts";
 import { flyBy, moveCamera, type CameraMove } from "./camera.ts";
 import type { PictureCanvas } from "./canvas.ts";
-import { cursor, probeAt, type Pixel } from "./readout.tsx";
+import { cursor, probeAt, type Pixel } from "./probe.ts";
 import { mode, movesCamera, pathPixel, setCrop } from "./state.ts";
 import * as store from "./store.ts";
 import { zoomAbout } from "./view.ts";

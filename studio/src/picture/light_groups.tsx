@@ -1,7 +1,7 @@
 // Sliders and colours of the light groups that the render keeps as layers.
 import type { JSX } from "preact";
 import { Button } from "../parts/parts.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { gainOf, groups, most, relight, relighting, resetGains, setGain } from "./lights.ts";
 import * as store from "./store.ts";
 

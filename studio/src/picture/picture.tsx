@@ -4,7 +4,7 @@ import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { progress } from "../model/state.ts";
 import { Awaited } from "../parts/working.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { PictureCanvas } from "./canvas.ts";
 import { PictureInput } from "./input.ts";
 import { PixelNumbers } from "./readout.tsx";

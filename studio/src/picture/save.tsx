@@ -5,7 +5,7 @@ import { document_, folders, notify } from "../model/state.ts";
 import { demand } from "../model/studio.ts";
 import { Refused } from "../model/protocol.ts";
 import { Button, Dialog } from "../parts/parts.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { takeScreenshot } from "./canvas.ts";
 import { factors, relighting } from "./lights.ts";
 

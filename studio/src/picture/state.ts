@@ -1,7 +1,7 @@
 // What is chosen about the picture: what the mouse does, the zoom, the part that is rendered.
 import { signal } from "@preact/signals";
 import { demand, report } from "../model/studio.ts";
-import type { Pixel } from "./readout.tsx";
+import type { Pixel } from "./probe.ts";
 
 export type Mode = "look" | "crop" | "orbit" | "fly" | "pick" | "paths";
 export const mode = signal<Mode>("look");

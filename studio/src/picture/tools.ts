@@ -1,6 +1,6 @@
 // Which tools still have their names beside their icons: each until it was used once, or all until somebody hides them.
 import { computed, effect, signal } from "@preact/signals";
-import { remember, remembered } from "../memory.ts";
+import { remember, remembered } from "../model/memory.ts";
 import { mode, type Mode } from "./state.ts";
 
 const all: Mode[] = ["look", "pick", "orbit", "fly", "crop", "paths"];

@@ -3,8 +3,8 @@ import type { JSX } from "preact";
 import { useEffect } from "preact/hooks";
 import { pictures } from "../model/state.ts";
 import { pictureLayer, watch } from "../model/studio.ts";
-import { texts } from "../texts.ts";
-import { chosenPicture, watchedPicture } from "./readout.tsx";
+import { texts } from "../texts/texts.ts";
+import { chosenPicture, watchedPicture } from "./probe.ts";
 
 function show(name: string | undefined): void {
   if (name === undefined) return;

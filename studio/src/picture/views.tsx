@@ -7,8 +7,8 @@ import { document_, locked } from "../model/state.ts";
 import { ask, demand } from "../model/studio.ts";
 import { Icon } from "../parts/icons.tsx";
 import { Button } from "../parts/parts.tsx";
-import { guarded } from "../guarded.tsx";
-import { texts } from "../texts.ts";
+import { guarded } from "../parts/guarded.tsx";
+import { texts } from "../texts/texts.ts";
 import { cameraMoved } from "./camera.ts";
 
 const t = texts.views;

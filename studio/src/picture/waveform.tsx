@@ -2,8 +2,8 @@
 import { useSignalEffect } from "@preact/signals";
 import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
-import { texts } from "../texts.ts";
-import { isDark } from "../theme.ts";
+import { texts } from "../texts/texts.ts";
+import { isDark } from "../model/theme.ts";
 import { useCounted } from "./counted.ts";
 import { waveform, type Waveform } from "./scope.ts";
 import { stops } from "./store.ts";

@@ -7,8 +7,8 @@ import { percent } from "../model/numbers.ts";
 import { errorPlot } from "../parts/error_plot.ts";
 import { renders } from "../model/state.ts";
 import { demand } from "../model/studio.ts";
-import { isDark } from "../theme.ts";
-import { texts } from "../texts.ts";
+import { isDark } from "../model/theme.ts";
+import { texts } from "../texts/texts.ts";
 
 const t = texts.sides;
 

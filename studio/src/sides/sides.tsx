@@ -9,7 +9,7 @@ import { ask, report, watchSide } from "../model/studio.ts";
 import { forgetSides, shownFilm, sideFilms } from "../picture/store.ts";
 import type { Film } from "../picture/film.ts";
 import { Button } from "../parts/parts.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { ErrorCurves, lineColors } from "./curves.tsx";
 import { SmallPicture } from "./small_picture.tsx";
 

@@ -6,7 +6,7 @@ import { brief } from "../model/numbers.ts";
 import type { PackedPicture, Strategy, Task } from "../model/protocol.ts";
 import { Button, Dialog } from "../parts/parts.tsx";
 import { Film } from "../picture/film.ts";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { SmallPicture } from "./small_picture.tsx";
 
 const t = texts.strategies;

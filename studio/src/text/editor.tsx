@@ -17,7 +17,7 @@ import { dragged } from "../panel/edit.ts";
 import { Button } from "../parts/parts.tsx";
 import { cameraMoved } from "../picture/camera.ts";
 import { warnings } from "./warnings.ts";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import { language } from "./language.ts";
 import { Sync, type Answer } from "./sync.ts";
 

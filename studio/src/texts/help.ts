@@ -1,4 +1,4 @@
-// What the help says.
+// The texts of the help.
 
 export const help = {
   title: "Help and keyboard shortcuts",
@@ -12,7 +12,7 @@ export const help = {
         ["Ctrl+O", "open"],
         ["Ctrl+Z", "undo; with Shift redo"],
         ["Ctrl+Enter", "start or pause the render"],
-        ["Alt+1, 2, 3, 4", "picture, text, space, side by side"],
+        ["Alt+1, 2, 3, 4", "picture, text, 3D view, side by side"],
         ["F6", "next panel of the window"],
         ["F1", "this help"],
       ],
@@ -20,7 +20,7 @@ export const help = {
     {
       name: "Scene",
       keys: [
-        ["Arrows", "move through the tree, expand and collapse"],
+        ["Arrows", "move through the tree; expand and collapse"],
         ["Enter", "go to the properties"],
         ["Insert", "add a component"],
         ["Delete", "remove it"],
@@ -32,20 +32,20 @@ export const help = {
     {
       name: "Picture",
       keys: [
-        ["Arrows", "move from pixel to pixel, ten with Shift; move the camera when Orbit is chosen"],
-        ["+ −", "zoom; F fits the window, 1 shows pixels as they are"],
+        ["Arrows", "move the pixel cursor, by ten pixels with Shift; with Orbit, move the camera"],
+        ["+ −", "zoom; F fits to the window, 1 shows actual pixels"],
         ["E", "increase the exposure; with Shift decrease; 0 resets"],
         ["Wheel", "zoom; drag to pan"],
-        ["W A S D, Q E", "fly, when Fly is chosen; with Shift faster"],
-        ["Shift, Ctrl + drag", "when Orbit is chosen: pan; move closer or away"],
-        ["Enter", "select the object, or show the paths of the pixel, as the tool does"],
+        ["W A S D, Q E", "with Fly, move the camera; faster with Shift"],
+        ["Shift, Ctrl + drag", "with Orbit, pan; dolly"],
+        ["Enter", "select the object or show the paths of the pixel, depending on the tool"],
       ],
     },
     {
       name: "Numbers",
       keys: [
-        ["30 cm", "units, names and arithmetic may be typed"],
-        ["↑ ↓", "a small step up or down, ten times as large with Shift"],
+        ["30 cm", "units, names and arithmetic are allowed"],
+        ["↑ ↓", "a small step up or down; ten times as large with Shift"],
         ["Escape", "restore the value"],
       ],
     },

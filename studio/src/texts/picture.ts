@@ -1,8 +1,8 @@
-// What the page says about pictures.
+// The texts about pictures.
 import { count } from "./count.ts";
 
 export const picture = {
-  canvas: "The picture. Arrow keys move from pixel to pixel, plus and minus zoom, F fits, E and Shift+E change the exposure.",
+  canvas: "The picture. Arrow keys move the pixel cursor, plus and minus zoom, F fits to the window, E and Shift+E change the exposure.",
   none: "No picture yet.",
   noWebGl: "This browser cannot show the picture: it needs WebGL 2.",
   toolbar: "Picture",
@@ -10,16 +10,16 @@ export const picture = {
   modes: {
     look: "Pan and zoom",
     pick: "Select objects",
-    orbit: "Orbit the camera: drag; Shift+drag pans, Ctrl+drag or wheel moves closer",
+    orbit: "Orbit the camera: drag; Shift+drag pans, Ctrl+drag or the wheel dollies",
     fly: "Fly the camera: W A S D, Q E; drag to look around",
-    crop: "Region: render only a rectangle",
-    paths: "Paths of a pixel: click one",
+    crop: "Crop: render only a rectangle",
+    paths: "Show the paths of a pixel: click it",
   },
   /** Shown beside the icons until they are known. */
-  modeNames: { look: "Pan and zoom", pick: "Select", orbit: "Orbit", fly: "Fly", crop: "Region", paths: "Paths" },
+  modeNames: { look: "Pan and zoom", pick: "Select", orbit: "Orbit", fly: "Fly", crop: "Crop", paths: "Paths" },
   hideNames: "Hide the names of the tools",
-  wholePicture: "Whole picture",
-  frame: "Frame selected",
+  wholePicture: "Remove the crop",
+  frame: "Frame the selected object",
   zoom: "Zoom",
   fit: "Fit to window",
   exposure: "Exposure",
@@ -42,7 +42,7 @@ export const picture = {
   waveform: "Waveform",
   waveformSays: (low: number, high: number) => `Waveform: brightness over the columns of the picture, from 2^${low} to 2^${high}`,
   pin: "Pin for comparison",
-  pinAgain: "Pin again",
+  pinAgain: "Replace the pinned picture",
   unpin: "Unpin",
   pinnedTitle: (title: string, samples: number) => `${title} at ${samples} samples`,
   compare: "Compare with the pinned picture",
@@ -50,7 +50,7 @@ export const picture = {
   splitAt: "Split",
   save: "Save picture",
   saveFile: "File",
-  saveHelp: "The extension chooses the format: .png is tone mapped as the job says; .exr, .hdr and .npy hold linear values.",
+  saveHelp: "The extension selects the format: .png is tone mapped by the job's tone map; .exr, .hdr and .npy store linear values.",
   saved: (file: string) => `Saved ${file}`,
   exists: "The file already exists.",
   download: "Download as displayed",
@@ -64,8 +64,8 @@ export const lights = {
   button: "Lights",
   title: "Light groups",
   active: "Adjust lights",
-  help: "Change the brightness and colour of each group, without rendering again.",
-  toneMap: "The job's tone map cannot show this: the filmic curve is used instead.",
+  help: "Scale the brightness and colour of each light group without rendering again.",
+  toneMap: "The job's tone map cannot be applied to adjusted lights: the filmic curve is used instead.",
   on: (name: string) => `Show ${name}`,
   stops: (name: string) => `Brightness of ${name} in stops`,
   stopsNumber: (name: string) => `Brightness of ${name}, number of stops`,
@@ -73,7 +73,7 @@ export const lights = {
   rest: "other lights",
   reset: "Reset",
   tooMany: (most: number) => `Only the first ${most} can be adjusted here.`,
-  saved: "The lights are saved as adjusted here.",
+  saved: "The picture is saved with the lights as adjusted here.",
 };
 
 export const paths = {
@@ -86,21 +86,21 @@ export const paths = {
   loading: "Computing the paths…",
   fireflies: "Brightest samples",
   findFireflies: "List",
-  refused: (why: string) => `Their paths cannot be shown: ${why}`,
-  noFireflies: "None yet: they are recorded from the next restart on.",
+  refused: (why: string) => `The paths of these samples cannot be shown: ${why}`,
+  noFireflies: "None yet: they are recorded after the next restart.",
   vertex: (i: number) => `Vertex ${i}`,
   sample: (n: number) => `sample ${n}`,
-  noWebGl: "The view in space needs WebGL 2.",
+  noWebGl: "The 3D view needs WebGL 2.",
   share: (part: string) => `${part} of the light`,
 };
 
 export const heldLight = {
-  title: "Photons and guiding",
+  title: "Photons and path guiding",
   photons: "Show photons",
-  lobes: "Show guiding at the pixel",
+  lobes: "Show the guiding distribution at the pixel",
   some: (n: number, all: number, caustic: number) => `${n.toLocaleString("en")} of ${count(all, "photon", "photons")}, ${caustic.toLocaleString("en")} of them caustic`,
   share: (share: string, most: string) => `Sampled with probability ${share}; its pdf is at most ${most} per steradian.`,
-  nothingLearned: "Nothing learned here yet.",
+  nothingLearned: "The guiding distribution has not been learned here yet.",
 };
 
 export const space = {
@@ -119,14 +119,14 @@ export const sides = {
   same: "as in the document",
   set: "Settings",
   setHelp: "For example renderer.max_depth: 3; separate several with ;",
-  notSet: (text: string) => `"${text}" is not PATH: VALUE`,
+  notSet: (text: string) => `"${text}" must have the form PATH: VALUE`,
   own: "Document",
   remove: (what: string) => `Remove ${what}`,
   most: "At most four can be added.",
   curves: "Relative error over time",
   curvesSays: (list: string) => `Relative error over time: ${list}`,
-  help: "All follow every edit and take turns with all processors, so that errors are compared at equal time.",
-  none: "Add a render with another algorithm or other settings to compare it with the document's.",
+  help: "All renders follow every edit. They use all processors in turn, so that their errors can be compared at equal time.",
+  none: "Add a render with another algorithm or other settings to compare it with the document's render.",
   picture: (what: string) => `Picture of ${what}`,
 };
 

@@ -1,4 +1,4 @@
-// What the page says about the scene: its tree, and the panels of its components.
+// The texts about the scene: its tree, and the panels of its components.
 import { count } from "./count.ts";
 
 export const tree = {
@@ -15,7 +15,7 @@ export const tree = {
   unshare: "Make an independent copy",
   defaults: "Show defaults",
   shared: (n: number) => `Used in ${n} places`,
-  onlyInLists: "Only entries of lists can be duplicated.",
+  onlyInLists: "Only list entries can be duplicated.",
   invalid: "The file has errors; the Text view shows them.",
   nothingFound: "No component found.",
   empty: "The document is empty.",
@@ -38,7 +38,7 @@ export const chooser = {
   rename: "Rename",
   name: "Name",
   renameHelp: "A named component can be used in several places. Leave it empty for no name.",
-  renameShared: "It is used in several places and needs a name.",
+  renameShared: "This component is used in several places and needs a name.",
   share: (what: string) => `Use an existing component instead of ${what}`,
   shareHelp: "The component is then used in both places: editing it changes both.",
   nothingToShare: "There is no other component of this type.",
@@ -52,7 +52,7 @@ export const panel = {
   path: "Path in the scene",
   replace: "Replace",
   check: "Check the class: run its conformance tests",
-  checking: (name: string) => `${name} is being checked: see Details below the picture`,
+  checking: (name: string) => `${name} is being tested: see Details below the picture`,
   name: "Rename",
   usedIn: (n: number) => `Used in ${n} places:`,
   elsewhere: (file: string) => `Defined in ${file || "an included file"}: edit it there.`,
@@ -62,13 +62,13 @@ export const panel = {
     invalid: "The file has errors. Correct them in Text to edit here.",
   } as Record<string, string>,
   writtenHere: (n: number) => `${count(n, "parameter", "parameters")} set in the file`,
-  doesNotMatter: "Has no effect with the other parameters as they are",
+  doesNotMatter: "Has no effect with the current values of the other parameters",
   reset: (member: string, standard: string) => `Reset ${member} to its default: ${standard}`,
   required: "required",
-  waits: "Not valid by itself: it is tried again together with the next parameter you change.",
+  waits: "Not valid on its own: it will be applied together with the next parameter you change, if both are valid then.",
   drop: "Discard",
   default: (standard: string) => `default ${standard}`,
-  effects: { none: "does not restart the render", retone: "only tone maps again", rerender: "restarts the render", rebuild: "rebuilds the geometry and restarts the render" },
+  effects: { none: "does not restart the render", retone: "only repeats the tone mapping", rerender: "restarts the render", rebuild: "rebuilds the geometry and restarts the render" },
   large: (rows: number, width: number) => `${rows.toLocaleString("en")} × ${width} numbers: edit them in the text`,
   noComponent: "none",
   addTo: (member: string) => `Add ${member}`,

@@ -5,7 +5,7 @@ import { quote } from "../model/expressions.ts";
 import { Refused, type Component, type Use } from "../model/protocol.ts";
 import { classes, components, notify, placeOfSelected, select, selectedComponent } from "../model/state.ts";
 import { ask, demand, report } from "../model/studio.ts";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 
 /** What the window of classes is open for: adding to a component, or replacing one. */
 export const choosing = signal<{ what: "add" | "replace"; component: Component; use: Use | null; member?: string } | null>(null);

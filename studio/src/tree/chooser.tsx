@@ -6,7 +6,7 @@ import type { Use } from "../model/protocol.ts";
 import { classes, components, names } from "../model/state.ts";
 import { Button, Dialog } from "../parts/parts.tsx";
 import { inline } from "../parts/markdown.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import * as actions from "./actions.ts";
 import { slots } from "./rows.ts";
 

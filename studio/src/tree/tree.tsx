@@ -7,7 +7,7 @@ import { classes, components, document_, locked, placeOfSelected, root, select, 
 import { Icon, kindIcon } from "../parts/icons.tsx";
 import { Button } from "../parts/parts.tsx";
 import { Awaited } from "../parts/working.tsx";
-import { texts } from "../texts.ts";
+import { texts } from "../texts/texts.ts";
 import * as actions from "./actions.ts";
 import { isUse, rows, type Row } from "./rows.ts";
 

@@ -94,14 +94,13 @@ Json remove_view(const Call& call) {
   return tell(call, call.studio.document().apply(with_span(document.outline(), gone, ""), {"remove view " + name, ""}));
 }
 
-}  // namespace
+const RegisterRequests registered{
+    {"views", true, views},
+    {"save_view", false, save_view},
+    {"use_view", false, use_view},
+    {"remove_view", false, remove_view},
+};
 
-std::span<const Request> view_requests() {
-  static constexpr Request all[] = {{"views", true, views},
-                                    {"save_view", false, save_view},
-                                    {"use_view", false, use_view},
-                                    {"remove_view", false, remove_view}};
-  return all;
-}
+}  // namespace
 
 }  // namespace etendue::studio

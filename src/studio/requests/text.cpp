@@ -1,7 +1,8 @@
-// Requests about the text itself: typing, completion, explanations.
+// Requests about the document's text as it is typed: changes, completion, explanations.
 
 #include <fmt/format.h>
 
+#include "describe/guard.h"
 #include "etendue/describe/reflection.h"
 #include "requests.h"
 #include "studio/text/assistance.h"
@@ -58,7 +59,7 @@ Json text(const Call& call) {
   try {
     applied = document.apply(now, {"type", call.text_or("merge", "")});
   } catch (...) {
-    std::vector<Error> errors = errors_at_hand();
+    std::vector<Error> errors = thrown_errors();
     document.set_draft(std::move(now), errors);
     call.studio.tell_document();
     return {{"valid", false}, {"revision", document.revision()}, {"errors", errors_json(errors, &document)}};
@@ -115,14 +116,11 @@ Json definition(const Call& call) {
   return {{"begin", at.places.units(d->name.begin)}, {"end", at.places.units(d->name.begin + d->name.text.size())}};
 }
 
-}  // namespace
+const RegisterRequests registered{
+    {"text", false, text},  {"drop_draft", false, drop_draft}, {"complete", true, complete},
+    {"hover", true, hover}, {"definition", true, definition},
+};
 
-std::span<const Request> text_requests() {
-  static constexpr Request all[] = {
-      {"text", false, text},  {"drop_draft", false, drop_draft}, {"complete", true, complete},
-      {"hover", true, hover}, {"definition", true, definition},
-  };
-  return all;
-}
+}  // namespace
 
 }  // namespace etendue::studio

@@ -223,14 +223,11 @@ Json frame(const Call& call) {
   return placed(call, camera, pose);
 }
 
-}  // namespace
+const RegisterRequests registered{
+    {"view", false, view},   {"orbit", false, orbit}, {"pan", false, pan},
+    {"dolly", false, dolly}, {"fly", false, fly},     {"frame", false, frame},
+};
 
-std::span<const Request> camera_requests() {
-  static constexpr Request all[] = {
-      {"view", false, view},   {"orbit", false, orbit}, {"pan", false, pan},
-      {"dolly", false, dolly}, {"fly", false, fly},     {"frame", false, frame},
-  };
-  return all;
-}
+}  // namespace
 
 }  // namespace etendue::studio

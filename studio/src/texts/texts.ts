@@ -1,12 +1,12 @@
-// All that the page says, in one place and its folder.
-import { help } from "./texts/help.ts";
-import { heldLight, lights, paths, picture, sides, space, strategies, viewing, views } from "./texts/picture.ts";
-import { chooser, panel, tree } from "./texts/scene.ts";
+// All texts of the page. Those of the help, of pictures and of the scene have files of their own.
+import { help } from "./help.ts";
+import { heldLight, lights, paths, picture, sides, space, strategies, viewing, views } from "./picture.ts";
+import { chooser, panel, tree } from "./scene.ts";
 
 export const texts = {
   chooser, heldLight, help, lights, panel, paths, picture, sides, space, strategies, tree, viewing, views,
   common: { close: "Close", cancel: "Cancel", save: "Save", open: "Open", divider: "Resize the panel" },
-  tabs: { label: "View", picture: "Picture", text: "Text", paths: "Space", sides: "Side by side" },
+  tabs: { label: "View", picture: "Picture", text: "Text", paths: "3D view", sides: "Side by side" },
   notices: { label: "Messages", offline: "Not connected to the program. Nothing was changed." },
   top: {
     document: "Document",
@@ -26,7 +26,7 @@ export const texts = {
     dark: "Dark theme",
     help: "Help and keyboard shortcuts",
     sure: "Please confirm",
-    unsaved: "The document has unsaved changes. They will be lost.",
+    unsaved: "The document has unsaved changes, which will be lost.",
     discard: "Discard changes",
     changedOnDisk: "The file was changed by another program since it was opened. Saving replaces those changes.",
     exists: (file: string) => `${file} already exists.`,
@@ -42,7 +42,7 @@ export const texts = {
   },
   working: {
     reading: (file: string) => `Reading ${file}…`,
-    readingLong: "Meshes and images are read, and the scene is prepared for rendering.",
+    readingLong: "Reading meshes and images, and building acceleration structures.",
     other: "Working…",
     connecting: "Connecting to the program…",
     waiting: "Loading…",
@@ -65,7 +65,7 @@ export const texts = {
     keys: "Ctrl+Space: complete · F12: go to definition · F8: next error · Esc: leave the editor",
     showSelected: "Go to selected",
     dropDraft: "Revert to the last valid text",
-    draft: "The text has errors. The picture shows its last valid version.",
+    draft: "The text has errors. The picture shows the last valid version.",
     problems: "The file has errors.",
   },
   control: {
@@ -98,8 +98,8 @@ export const texts = {
     saveState: "Save checkpoint…",
     loadState: "Resume from checkpoint…",
     loaded: (file: string) => `Resumed from ${file}`,
-    goalsHelp: "For this session only: the file is not changed.",
-    notPositive: "A limit is a number above 0, or empty.",
+    goalsHelp: "Applies to this session only; the file is not changed.",
+    notPositive: "A limit must be a positive number, or empty.",
   },
   queue: {
     title: "Render queue",
@@ -113,11 +113,11 @@ export const texts = {
   tasks: {
     title: "Checks",
     verify: "Verify algorithms",
-    verifyHelp: "Test whether all algorithms converge to the same picture of the saved file",
+    verifyHelp: "Test whether all algorithms converge to the same picture; applies to the saved file",
     strategies: "Sampling strategies",
-    strategiesHelp: "Show the contribution of each sampling strategy of this renderer",
+    strategiesHelp: "Render the contribution of each sampling strategy of this renderer",
     again: "Restart program",
-    againHelp: "Restart the program, with plugins as they are on the disk now",
+    againHelp: "Restart the program and load the current versions of its plugins",
     none: "No checks yet.",
     end: (what: string) => `Stop ${what}`,
     show: "Show",

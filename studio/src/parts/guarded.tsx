@@ -1,10 +1,10 @@
 // Requests that would lose something: refused at first, and made once somebody has said that it may be lost.
 import { signal } from "@preact/signals";
 import type { JSX } from "preact";
-import { Refused } from "./model/protocol.ts";
-import { ask, demand, report } from "./model/studio.ts";
-import { Button, Dialog } from "./parts/parts.tsx";
-import { texts } from "./texts.ts";
+import { Refused } from "../model/protocol.ts";
+import { ask, demand, report } from "../model/studio.ts";
+import { Button, Dialog } from "./parts.tsx";
+import { texts } from "../texts/texts.ts";
 
 const t = texts.top;
 /** What is to be done once it is clear that unsaved changes may be lost. */

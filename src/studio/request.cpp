@@ -1,10 +1,10 @@
-// Arguments of requests, with checks.
+// The arguments of requests, with checks, and the table of all requests.
+
+#include "request.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-
-#include "studio.h"
 
 namespace etendue::studio {
 
@@ -65,6 +65,36 @@ std::optional<size_t> Call::index(const char* key) const {
 Ref<Component> Call::component(const char* key) const {
   static_cast<void>(studio.valid_render());
   return studio.document().component(int(integer(key, 0, 2'000'000'000)));
+}
+
+const ClassInfo& class_named(const std::string& name) {
+  const ClassInfo* info = Registry::instance().find(name);
+  if (!info) static_cast<void>(Registry::instance().create(name));  // throws Error with a suggestion
+  return *info;
+}
+
+// ---- the table of all requests ----------------------------------------------------------------------------------------------
+
+namespace {
+
+std::map<std::string, Request, std::less<>>& table() {
+  static std::map<std::string, Request, std::less<>> all;
+  return all;
+}
+
+}  // namespace
+
+RegisterRequests::RegisterRequests(std::initializer_list<Request> requests) {
+  for (const Request& request : requests) table().emplace(request.name, request);
+}
+
+const Request& request_named(const std::string& name) {
+  const auto found = table().find(name);
+  if (found != table().end()) return found->second;
+  std::vector<std::string> known;
+  for (const auto& [key, request] : table()) known.push_back(key);
+  throw RequestError("unknown_request",
+                     fmt::format("there is no request '{}'{}", name.substr(0, largest_echo), suggestion(name, known)));
 }
 
 }  // namespace etendue::studio

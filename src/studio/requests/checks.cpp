@@ -1,30 +1,43 @@
-// Requests for longer tasks, and for warnings about the description.
+// Requests that check the description, the classes and the renderer: warnings, and tasks that take longer.
 
 #include <fmt/format.h>
 
 #include "check/replay/strategies.h"
-#include "etendue/describe/color.h"
 #include "etendue/language/language.h"
+#include "images/base64.h"
 #include "requests.h"
 #include "studio/pixels/half.h"
+#include "studio/pixels/linear_srgb.h"
 
 namespace etendue::studio {
 
 namespace {
+
+/// The warnings that `etendue render` would print.
+Json warnings(const Call& call) {
+  const auto render = call.studio.valid_render();
+  const StudioSettings& settings = call.studio.settings();
+  Json list = Json::array(), advice = Json::array();
+  if (settings.warnings)
+    for (const auto& [kind, error] : settings.warnings(render->job())) {
+      Json one = error_json(error, &call.studio.document());
+      one["kind"] = kind;
+      list.push_back(std::move(one));
+    }
+  if (settings.advice)
+    for (const std::string& line : settings.advice(render->job())) advice.push_back(line);
+  return {{"warnings", std::move(list)}, {"advice", std::move(advice)}};
+}
+
+// ---- tasks in processes of their own ----------------------------------------------------------------------------------------
 
 std::vector<std::string> with_plugins(std::vector<std::string> arguments, const Studio& studio) {
   for (const std::string& plugin : studio.settings().plugins) arguments.insert(arguments.end(), {"--plugin", plugin});
   return arguments;
 }
 
-const ClassInfo& known_class(const std::string& name) {
-  const ClassInfo* info = Registry::instance().find(name);
-  if (!info) static_cast<void>(Registry::instance().create(name));  // throws Error with a suggestion
-  return *info;
-}
-
 Json conform(const Call& call) {
-  const std::string name = known_class(call.text("class")).name;
+  const std::string name = class_named(call.text("class")).name;
   return {{"task", call.studio.tasks().run("conform " + name, with_plugins({"conform", name, "--quick"}, call.studio))}};
 }
 
@@ -38,7 +51,7 @@ Json verify(const Call& call) {
     size_t begin = 0;
     while (begin <= renderers.size()) {  // only class names: expressions might name files
       const size_t end = std::min(renderers.find(',', begin), renderers.size());
-      static_cast<void>(known_class(renderers.substr(begin, end - begin)));
+      static_cast<void>(class_named(renderers.substr(begin, end - begin)));
       begin = end + 1;
     }
     arguments.insert(arguments.end(), {"--renderers", renderers});
@@ -61,31 +74,16 @@ Json end_task(const Call& call) {
 
 // ---- strategies -------------------------------------------------------------------------------------------------------------
 
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    const size_t count = std::min<size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0u);
-    for (size_t k = 0; k < 4; ++k) text += k <= count ? digits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
 /// The picture as linear sRGB half floats, scaled so that the largest value is near 1000.
 Json picture_json(const Image& picture) {
-  const auto& m = rgb_space("srgb").from_xyz;
+  const LinearSrgb linear_srgb;
   double largest = 0;
   for (const double v : picture.values) largest = std::max(largest, std::abs(v));
   const double scale = largest > 0 ? std::exp2(std::ceil(std::log2(largest / 1000))) : 1;
   std::vector<std::uint8_t> bytes;
   bytes.reserve(picture.values.size() * 2);
   for (size_t p = 0; p + 2 < picture.values.size(); p += 3)
-    for (size_t k = 0; k < 3; ++k) {
-      double v = 0;
-      for (size_t c = 0; c < 3; ++c) v += m[3 * k + c] * picture.values[p + c];
+    for (const double v : linear_srgb(picture.values[p], picture.values[p + 1], picture.values[p + 2])) {
       const std::uint16_t half = to_half(float(v / scale));
       bytes.push_back(std::uint8_t(half));
       bytes.push_back(std::uint8_t(half >> 8));
@@ -145,40 +143,11 @@ Json strategies(const Call& call) {
            })}};
 }
 
-// ---- the program and the description ----------------------------------------------------------------------------------------
-
-/// The warnings that `etendue render` would print.
-Json warnings(const Call& call) {
-  const auto render = call.studio.valid_render();
-  const StudioSettings& settings = call.studio.settings();
-  Json list = Json::array(), advice = Json::array();
-  if (settings.warnings)
-    for (const auto& [kind, error] : settings.warnings(render->job())) {
-      Json one = error_json(error, &call.studio.document());
-      one["kind"] = kind;
-      list.push_back(std::move(one));
-    }
-  if (settings.advice)
-    for (const std::string& line : settings.advice(render->job())) advice.push_back(line);
-  return {{"warnings", std::move(list)}, {"advice", std::move(advice)}};
-}
-
-/// Restarts the program with the current versions of its plugins, since loaded plugins are never unloaded.
-Json begin_again(const Call& call) {
-  if (call.studio.document().changed())
-    throw RequestError("busy", "there are changes that are not saved, and the program begins anew with what is on the disk");
-  call.studio.begin_again = true;
-  call.studio.shutdown(false);
-  return {};
-}
+const RegisterRequests registered{
+    {"warnings", true, warnings},      {"conform", false, conform},   {"verify", false, verify},
+    {"strategies", false, strategies}, {"end_task", false, end_task},
+};
 
 }  // namespace
-
-std::span<const Request> task_requests() {
-  static constexpr Request all[] = {{"conform", false, conform},   {"verify", false, verify},
-                                    {"end_task", false, end_task}, {"strategies", false, strategies},
-                                    {"warnings", true, warnings},  {"begin_again", false, begin_again}};
-  return all;
-}
 
 }  // namespace etendue::studio

@@ -1,4 +1,4 @@
-// Requests that add, remove and move components.
+// Requests that edit the document by its components: their members, their places in lists and under names; undo and redo.
 
 #include <fmt/format.h>
 
@@ -8,10 +8,41 @@ namespace etendue::studio {
 
 namespace {
 
-const ClassInfo& class_named(const std::string& name) {
-  const ClassInfo* info = Registry::instance().find(name);
-  if (!info || info->abstract()) static_cast<void>(Registry::instance().create(name));  // throws Error with suggestions
-  return *info;
+// ---- members ----------------------------------------------------------------------------------------------------------------
+
+Json edit(const Call& call) {
+  TextEditor editor = editor_for(call);
+  editor.set(slot_of(call), call.text("text"));
+  return apply(call, editor, "edit " + call.text("member"));
+}
+
+Json edits(const Call& call) {
+  TextEditor editor = editor_for(call);
+  if (!call.has("edits") || !call.request["edits"].is_array() || call.request["edits"].empty())
+    throw RequestError("bad_request", "'edits' must be a list of edits");
+  std::string label;
+  for (const Json& one : call.request["edits"]) {
+    if (!one.is_object()) throw RequestError("bad_request", "an edit is an object");
+    const Call part{call.studio, call.browser, one, call.id};
+    editor.set(slot_of(part), part.text("text"));
+    label += (label.empty() ? "edit " : ", ") + part.text("member");
+  }
+  return apply(call, editor, label);
+}
+
+Json reset(const Call& call) {
+  TextEditor editor = editor_for(call);
+  editor.reset(slot_of(call));
+  return apply(call, editor, "reset " + call.text("member"));
+}
+
+// ---- components -------------------------------------------------------------------------------------------------------------
+
+/// A class of which components can be made. Throws Error with suggestions if there is none of this name.
+const ClassInfo& concrete_class(const std::string& name) {
+  const ClassInfo& info = class_named(name);
+  if (info.abstract()) static_cast<void>(Registry::instance().create(name));  // throws Error
+  return info;
 }
 
 /// The id of the component in a slot; 0 if there is none.
@@ -32,7 +63,7 @@ Json with_component(Json reply, int id) {
 Json replace(const Call& call) {
   TextEditor editor = editor_for(call);
   const Ref<Component> part = call.component();
-  const ClassInfo& now = class_named(call.text("class"));
+  const ClassInfo& now = concrete_class(call.text("class"));
   if (call.has("use")) {  // only this use: it becomes a copy first
     const Json& use = call.request["use"];
     if (!use.is_object()) throw RequestError("bad_request", "'use' must be {id, member, index}");
@@ -55,7 +86,7 @@ Json replace(const Call& call) {
 Json add(const Call& call) {
   TextEditor editor = editor_for(call);
   const Slot s = slot(call.component(), call.text("member"));
-  const std::string text = call.has("text") ? call.text("text") : new_component_text(class_named(call.text("class")));
+  const std::string text = call.has("text") ? call.text("text") : new_component_text(concrete_class(call.text("class")));
   const std::optional<size_t> index = call.index();
   const Value before = s.member->get(*s.part, *s.member);
   const auto* list = before.as<Value::List>();
@@ -140,14 +171,29 @@ Json rename(const Call& call) {
   return apply(call, editor, now.empty() ? "remove the name " + old : "rename to " + now);
 }
 
-}  // namespace
+// ---- history ----------------------------------------------------------------------------------------------------------------
 
-std::span<const Request> structure_requests() {
-  static constexpr Request all[] = {
-      {"replace", false, replace}, {"add", false, add},     {"remove", false, remove},   {"duplicate", false, duplicate},
-      {"move", false, move},       {"share", false, share}, {"unshare", false, unshare}, {"rename", false, rename},
-  };
-  return all;
+Json undo_or_redo(const Call& call, bool back) {
+  require_no_draft(call.studio.document());
+  Json reply;
+  for (std::int64_t count = call.integer_or("count", 1, 1, 1'000'000); count > 0; --count) {
+    Document& document = call.studio.document();
+    if ((back ? document.undo_count() : document.redo_count()) == 0 && !reply.is_null()) break;
+    reply = tell(call, back ? document.undo() : document.redo());
+  }
+  return reply;
 }
+
+Json undo(const Call& call) { return undo_or_redo(call, true); }
+Json redo(const Call& call) { return undo_or_redo(call, false); }
+
+const RegisterRequests registered{
+    {"edit", false, edit},   {"edits", false, edits},     {"reset", false, reset},         {"replace", false, replace},
+    {"add", false, add},     {"remove", false, remove},   {"duplicate", false, duplicate}, {"move", false, move},
+    {"share", false, share}, {"unshare", false, unshare}, {"rename", false, rename},       {"undo", false, undo},
+    {"redo", false, redo},
+};
+
+}  // namespace
 
 }  // namespace etendue::studio
