@@ -32,3 +32,19 @@ for needs in "classes" "render $folder/imitation.etd --size 8x6 --samples 1 --qu
     exit 1
   fi
 done
+
+# Without that library a misspelt class of the program is told, and what might be a class of the library is told as such.
+mkdir "$folder/alone"
+cp "$1" "$folder/alone/etendue"
+cp -L "$(ldd "$1" | awk '/libetendue\.so/ { print $3 }')" "$folder/alone/$(ldd "$1" | awk '/libetendue\.so/ { print $1 }')"
+tells() {  # a class, and what is told of it
+  printf 'ball = %s {}\n' "$1" >"$folder/misspelt.etd"
+  LD_LIBRARY_PATH="$folder/alone" "$folder/alone/etendue" check "$folder/misspelt.etd" >"$folder/output" 2>&1 || true
+  if ! grep -q "$2" "$folder/output"; then
+    echo "of $1 this is told, without '$2':"
+    cat "$folder/output"
+    exit 1
+  fi
+}
+tells Sphre "there is no class 'Sphre' (did you mean 'Sphere'?)"
+tells Qwertyuiop 'cannot be loaded'

@@ -30,6 +30,11 @@ class Importing {
 
   const std::string& path() const { return path_; }
   const ImportOptions& options() const { return options_; }
+  /// All bytes of the file; if its name ends in ".gz", those that were compressed. Throws Error with the file's location if it
+  /// cannot be read, or is damaged.
+  std::string contents() const { return contents(path_, at()); }
+  /// The same for another file, by the path that `file` has returned; `at` is where the source refers to it.
+  std::string contents(const std::string& path, Location at) const;
   /// The location of a line and column in the file, or of the file as a whole (line 0).
   Location at(int line = 0, int column = 0) const { return {name_, line, column}; }
 

@@ -110,7 +110,8 @@ class SceneObject : public Component {
   /// position, error, normal, shading_normal, uv, object_position, object_normal, time, object, primitive, u, v. Scene::locate
   /// then transforms the point outwards and sets the footprint and ray_direction; walks set media.
   virtual void surface_point(const Ray&, const Hit&, SurfacePoint&) const = 0;
-  /// Fills dpdu and dpdv of a point on this object.
+  /// Fills dpdu and dpdv of a point on this object, in the coordinates of the containing scene. May leave them if either is not
+  /// zero.
   virtual void tangents(SurfacePoint&) const = 0;
 
   /// The area in world space [m^2] at the given time.

@@ -209,7 +209,13 @@ const ClassInfo* Registry::find(std::string_view name) const {
   auto found = state_->by_name.find(name);
   // Names of classes begin with a capital; the parser looks up every other name of a scene, too.
   const bool capital = !name.empty() && name[0] >= 'A' && name[0] <= 'Z';
-  if (found == state_->by_name.end() && capital && load_format_library()) {
+  bool more = false;
+  try {
+    more = found == state_->by_name.end() && capital && load_format_library();
+  } catch (const Error&) {
+    (void)meant_class(std::string(name));  // throws the same unless the name resembles one that is known
+  }
+  if (more) {
     const_cast<Registry*>(this)->adopt();
     found = state_->by_name.find(name);
   }
@@ -226,6 +232,12 @@ const ClassInfo* Registry::find(std::type_index type) const {
 std::vector<const ClassInfo*> Registry::all() const {
   const std::lock_guard lock(state_->mutex);
   load_format_library();
+  const_cast<Registry*>(this)->adopt();
+  return state_->creatable();
+}
+
+std::vector<const ClassInfo*> Registry::loaded() const {
+  const std::lock_guard lock(state_->mutex);
   const_cast<Registry*>(this)->adopt();
   return state_->creatable();
 }

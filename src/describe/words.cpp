@@ -55,13 +55,28 @@ std::string translation(std::string_view given, std::span<const ForeignWord> wor
   return found == words.end() ? std::string() : told(*found);
 }
 
-std::string meant_class(const std::string& given, const ClassInfo* of) {
+namespace {
+
+std::string meant_among(const std::vector<const ClassInfo*>& classes, const std::string& given, const ClassInfo* of) {
   std::vector<std::string> known;
-  for (const ClassInfo* c : Registry::instance().all())
+  for (const ClassInfo* c : classes)
     if (!c->abstract() && (!of || c->is_a(*of))) known.push_back(c->name);
   if (const std::string* same = same_but_for_spelling(given, known)) return " (did you mean '" + *same + "'?)";
   if (const std::string elsewhere = translation(given, foreign_classes()); !elsewhere.empty()) return elsewhere;
   return suggestion(given, known);
+}
+
+}  // namespace
+
+std::string meant_class(const std::string& given, const ClassInfo* of) {
+  const Registry& registry = Registry::instance();
+  try {
+    return meant_among(registry.all(), given, of);
+  } catch (const Error&) {  // the library of formats is missing
+    const std::string meant = meant_among(registry.loaded(), given, of);
+    if (meant.empty()) throw;
+    return meant;
+  }
 }
 
 std::string no_member(const ClassInfo& info, const std::string& given) {

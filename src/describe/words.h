@@ -32,6 +32,7 @@ std::span<const ForeignWord> foreign_options();
 std::string translation(std::string_view given, std::span<const ForeignWord>);
 
 /// A hint to follow "there is no class 'x'": the name with a similar spelling, or the equivalent of another program's name.
+/// Throws Error if there is none, and the library of formats cannot be loaded, which might have the class.
 std::string meant_class(const std::string& given, const ClassInfo* of = nullptr);
 /// "Sphere has no member 'radus' (did you mean 'radius'?)".
 std::string no_member(const ClassInfo&, const std::string& given);

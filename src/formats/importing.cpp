@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "etendue/importer.h"
+#include "files/regular_file.h"
 #include "images/linear_image.h"
 
 namespace etendue {
@@ -55,6 +56,14 @@ Importing::Importing(std::string path, ImportOptions options, std::vector<std::p
       options_(std::move(options)),
       parameters_(std::move(parameters)),
       used_(parameters_.size()) {}
+
+std::string Importing::contents(const std::string& path, Location at) const {
+  try {
+    return read_regular_file(path);
+  } catch (const Error& error) {
+    throw Error(fmt::format("cannot read '{}': {}", path, error.what()), at);
+  }
+}
 
 std::optional<std::string> Importing::parameter(const std::string& name) {
   for (size_t i = 0; i < parameters_.size(); ++i)

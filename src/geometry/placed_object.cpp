@@ -42,12 +42,16 @@ bool PlacedObject::occludes(const Ray& ray) const {
 void PlacedObject::surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const {
   Transform scratch;
   const Transform& t = placed(transform, ray.time, scratch);
+  carry(point_of(t.identity() ? ray : ray_into(t, ray), hit), ray.time, p);
+}
+
+OwnPoint PlacedObject::point_of(const Ray& ray, const Hit& hit) const {
   OwnPoint own;
   own.primitive = hit.primitive;
   own.u = hit.u;
   own.v = hit.v;
-  own_point(t.identity() ? ray : ray_into(t, ray), hit, own);
-  carry(own, ray.time, p);
+  own_point(ray, hit, own);
+  return own;
 }
 
 void PlacedObject::carry(const OwnPoint& own, float time, SurfacePoint& p) const {
@@ -67,6 +71,23 @@ void PlacedObject::carry(const OwnPoint& own, float time, SurfacePoint& p) const
   Transform scratch;
   const Transform& t = placed(transform, time, scratch);
   if (!t.identity()) carry_out(t, p);
+}
+
+void PlacedObject::tangents(SurfacePoint& p) const {
+  if (p.dpdu != Vector3{} || p.dpdv != Vector3{}) return;
+  Ray ray;  // all its points are its origin
+  ray.origin = Point3(DoublePoint3(p.object_position) - (transform.inner() - DoublePoint3{}));
+  ray.direction = {};
+  Hit hit;
+  hit.distance = 0;
+  hit.primitive = p.primitive;
+  hit.u = p.u;
+  hit.v = p.v;
+  const OwnPoint own = point_of(ray, hit);
+  Transform scratch;
+  const Transform& t = placed(transform, p.time, scratch);
+  p.dpdu = t(own.dpdu);
+  p.dpdv = t(own.dpdv);
 }
 
 float PlacedObject::area(float time) const {

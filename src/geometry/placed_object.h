@@ -39,7 +39,8 @@ class PlacedObject : public SceneObject {
   bool intersect(const Ray&, Hit&) const override;
   bool occludes(const Ray&) const override;
   void surface_point(const Ray&, const Hit&, SurfacePoint&) const override;
-  void tangents(SurfacePoint&) const override {}  // own_point and own_sample set them for every point
+  /// own_point and own_sample set the tangents of every point. Here they are computed for a point that has lost them.
+  void tangents(SurfacePoint&) const override;
   float area(float time) const override;
   float area_error(float time) const override;
   SurfaceSample sample_area(Point2 u, float time) const override;
@@ -58,7 +59,8 @@ class PlacedObject : public SceneObject {
     Hit hit;
     return own_intersect(ray, hit);
   }
-  /// The point of a hit: computed on the surface to float precision, not merely on the ray.
+  /// The point of a hit: computed on the surface to float precision, not merely on the ray. A hit at distance 0 that has the
+  /// primitive, u and v of a point, on a ray whose direction is zero and whose origin is that point, gives the point again.
   virtual void own_point(const Ray&, const Hit&, OwnPoint&) const = 0;
   /// Area in object space, before the transform.
   virtual double own_area() const = 0;
@@ -92,6 +94,8 @@ class PlacedObject : public SceneObject {
   }
 
  private:
+  /// The complete point of a hit, in object space like the ray.
+  OwnPoint point_of(const Ray&, const Hit&) const;
   /// Area [m^2] and its relative error bound.
   struct Area {
     float value = 0, error = 0;

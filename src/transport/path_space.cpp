@@ -1,7 +1,7 @@
 // Path space: traces rays, chains and walks, and connects them to paths (light_path.h).
 
 #include "etendue/transport/boundaries.h"
-#include "etendue/transport/visibility.h"
+#include "etendue/transport/light_path.h"
 #include "path_lobes.h"
 
 namespace etendue {
@@ -13,11 +13,26 @@ Point2 next_pair(ChoiceNumbers& choices) {
   return {x, next(choices)};
 }
 
-/// Homogeneous media and surfaces hidden by priority take no random numbers.
-struct NoNumbers final : NumberSource {
-  float number(SampleKey, std::uint32_t) const override { return 0.5f; }
-  Point2 pair(SampleKey, std::uint32_t) const override { return {0.5f, 0.5f}; }
-};
+/// Whether a ray with an end meets only surfaces that are hidden by priority, as PathSpace::follow passes them. `media` are
+/// those at the ray's origin.
+bool unoccluded(const Scene& scene, Ray ray, MediumStack media) {
+  const Point3 end = ray(ray.maximum);
+  for (int crossings = 0; crossings <= most_crossings; ++crossings) {
+    Hit hit;
+    if (!scene.nearest(ray, hit)) return true;
+    SurfacePoint point;
+    scene.locate(ray, hit, point);
+    resolve_coincident(scene, ray, hit, point, media);
+    if (!hidden_by_priority(media, *point.object)) return false;
+    cross_boundary(media, *point.object, point.normal, ray.direction);
+    ray.origin = point.exit(ray.direction);
+    const Vector3 rest = end - ray.origin;
+    if (!(dot(rest, ray.direction) > 0)) return true;
+    ray.maximum = length(rest);
+    ray.direction = rest / ray.maximum;
+  }
+  return false;
+}
 
 bool is_luminaire(const ChainVertex& v) { return v.point.object->luminaire() && !v.point.object->delta(); }
 
@@ -182,11 +197,8 @@ bool PathSpace::visible(const LightPath& path, int i) const {
   if (ray.of_camera && unseen(a)) return false;
   if (!context.scene.has_interiors()) return !context.scene.any(ray);
   MediumStack scratch;
-  const NoNumbers none;
-  NumberStream numbers(none, {});
-  return !shadow_transmittance(context.scene, ray, media_towards(from, ray.direction, scratch), path.wavelengths, numbers,
-                               *path.arena)
-              .black();
+  const MediumStack* const media = media_towards(from, ray.direction, scratch);
+  return !media || media->empty() ? !context.scene.any(ray) : unoccluded(context.scene, ray, *media);
 }
 
 bool PathSpace::joined(LightPath& y, const Walk& light, int b, const Walk& camera, int c) const {

@@ -1,9 +1,8 @@
-// Emissions, objects, maps, filters, media and cameras with one fault each, which `etendue conform` must find.
+// Emissions, objects, filters, media and cameras with one fault each, which `etendue conform` must find.
 
 #include "etendue/camera.h"
 #include "etendue/core/warp.h"
 #include "etendue/filter.h"
-#include "etendue/object_map.h"
 #include "etendue/phase_function.h"
 #include "etendue/scene_object.h"
 #include "etendue/shader.h"
@@ -183,20 +182,18 @@ class WrongTangentsSquare final : public Square {
 };
 const Register<WrongTangentsSquare> tangents;
 
-// ---- maps --------------------------------------------------------------------------------------------------------------
-
-class UnboundedMap final : public ObjectMap {
+class LostTangentsSquare final : public Square {
  public:
-  static void describe(Description<UnboundedMap>& d) {
-    d.summary("Stripes whose reflectance leaves [0, 1], and is not a number along a line.")
-        .member<&UnboundedMap::scale>("scale", "1", "how strong", range(1, 10));
+  static void describe(Description<LostTangentsSquare>& d) {
+    d.summary("A unit square whose tangents are set with its points only.");
   }
-  Spectrum color(const SurfacePoint& p, const Wavelengths&, ColorUse) const override { return scalar(p); }
-  float scalar(const SurfacePoint& p) const override { return scale * std::sqrt(p.uv.x - 0.05f); }
-
-  float scale = 4;
+  void surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const override {
+    Square::surface_point(ray, hit, p);
+    Square::tangents(p);
+  }
+  void tangents(SurfacePoint&) const override {}
 };
-const Register<UnboundedMap> map;
+const Register<LostTangentsSquare> lost_tangents;
 
 // ---- filters -----------------------------------------------------------------------------------------------------------
 

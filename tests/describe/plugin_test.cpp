@@ -1,6 +1,7 @@
 // Installs the package, builds plugins out of tree against it with one CMake call, and renders with them.
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -237,6 +238,16 @@ Job { camera: OrthographicCamera { from: [1, 0, 9], to: [1, 0, 0], width: 8 }, i
   const double seen = mean(atom);
   const double reflected = std::pow((0x90 / 255.0 + 0.055) / 1.055, 2.4);
   EXPECT_NEAR(seen, 1 - pi * 1.7 * 1.7 / 64 * (1 - reflected), 0.002);
+  // The same molecule, compressed.
+  gzFile packed = gzopen((f + "/atom.xyz.gz").c_str(), "wb");
+  EXPECT_GT(gzputs(packed, "1\none atom\nC 1 0 0\n"), 0);
+  gzclose(packed);
+  for (const std::string name : {"atom.xyz", "atom.xyz.gz"})
+    EXPECT_EQ(run(program + " render " + f + "/" + name + " --size 16x16 --samples 1 -o " + f + "/" + name + ".npy" + of_plugin,
+                  &output),
+              0)
+        << output;
+  EXPECT_EQ(read_image(f + "/atom.xyz.npy").values, read_image(f + "/atom.xyz.gz.npy").values);
   // A file of its ending is rendered by itself, what was added and left out is told, and errors have their place.
   std::ofstream(f + "/two.xyz") << "1\nwater, then another frame\nO 0 0 0 -0.8\n1\n\nH 0 0 0\n";
   EXPECT_EQ(run(program + " render " + f + "/two.xyz --size 16x16 --samples 1 -o " + f + "/two.npy" + of_plugin, &output), 0)

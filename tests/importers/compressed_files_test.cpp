@@ -56,6 +56,36 @@ TEST(CompressedFiles, AreMeshesAndPartsOfPbrtsScenes) {
   EXPECT_TRUE(importer_of("scene.pbrt.gz"));
 }
 
+TEST(CompressedFiles, AreGivenToImportersAsTheirContents) {
+  const TemporaryFolder folder;
+  const std::string text = "3\n\nC 0 0 0\n", packed = compressed(text);
+  const auto contents = [&](const std::string& name, const std::string& bytes) {
+    return Importing(folder.write(name, bytes), {}).contents();
+  };
+  EXPECT_EQ(contents("a.xyz", text), text);
+  EXPECT_EQ(contents("a.xyz.gz", packed), text);
+  EXPECT_EQ(contents("A.XYZ.GZ", packed), text);
+  EXPECT_EQ(contents("plain.xyz.gz", text), text);
+  EXPECT_EQ(contents("packed.xyz", packed), packed);  // the name does not say so
+  Importing importing(folder.write("main.xyz", text), {});
+  folder.write("other.xyz.gz", packed);
+  EXPECT_EQ(importing.contents(importing.file("other.xyz.gz", importing.at(2, 1)), importing.at(2, 1)), text);
+  try {
+    (void)contents("short.xyz.gz", packed.substr(0, packed.size() - 9));
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("short.xyz.gz': "), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.location.file).find("short.xyz.gz"), std::string::npos);
+  }
+  try {
+    (void)importing.contents(folder / "missing.xyz", importing.at(2, 1));
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("missing.xyz': "), std::string::npos) << error.what();
+    EXPECT_EQ(error.location.line, 2);
+  }
+}
+
 TEST(CompressedFiles, AreRefusedWhenDamagedOrMadeToFillTheMemory) {
   const std::string whole = compressed(one_triangle);
   EXPECT_NE(refusal("short.ply.gz", whole.substr(0, whole.size() / 2)).find("ends too early"), std::string::npos);

@@ -1,7 +1,7 @@
 // An importer in one file, out of tree: molecules in XYZ files, with a sphere for each atom.
 #include <algorithm>
 #include <charconv>
-#include <fstream>
+#include <sstream>
 
 #include "etendue/describe/color.h"
 #include "etendue/importer.h"
@@ -53,7 +53,7 @@ class XyzImporter final : public Importer {
     if (!factor || !(factor->value > 0)) throw Error("'radius' must be a number above 0", radius.location);
     const Ref<Scene> scene = ref_cast<Scene>(importing.make(imported_structure, importing.at()));
     std::map<const Element*, Ref<Component>> shaders;
-    std::ifstream file(importing.path());
+    std::istringstream file(importing.contents());
     int row = 0;
     double last = 3;  // the row of the last atom
     for (std::string text; row < last && std::getline(file, text);) {
@@ -80,7 +80,7 @@ class XyzImporter final : public Importer {
       scene->objects.push_back(ref_cast<SceneObject>(sphere));
     }
     if (row < last || shaders.empty())
-      throw Error(row > 0 ? "it has no atoms, or fewer than it says" : "the file is missing or empty", importing.at(row, 1));
+      throw Error(row > 0 ? "it has no atoms, or fewer than it says" : "the file is empty", importing.at(row, 1));
     if (std::string more; file >> more) importing.inexact("only the first frame is read", importing.at(row + 1, 1));
     return scene;
   }

@@ -190,6 +190,43 @@ TEST(Metropolis, PathsThroughRoughGlassKnowTheirMedia) {
   EXPECT_NEAR(light("Sphere { radius: 0.6, shader: Dielectric { ior: 2.5, roughness: 0.4 } }"), alone, 0.01 * alone);
 }
 
+// Media and null scattering are no part of path space. Walks ignore media and end at all surfaces, and so must connections: if
+// only some ways make a path, its pdf is wrong.
+TEST(Metropolis, ConnectionsPassWhatWalksPass) {
+  const auto longer = [](const std::string& objects) {
+    const Image image =
+        test::rendered(job_of(R"(Job { renderer: PathSpaceMetropolis { max_depth: 3, large_steps: 1, bootstrap: 0.1 }
+      camera: PerspectiveCamera { from: [0, -3, 1], to: [0, 0, 0.3], up: [0, 0, 1], fov: 50 }
+      image: ImageBuffer { width: 8, height: 8, path_lengths: 3 }
+      scene: BvhScene { objects: [ )" +
+                                  objects + " ] } }",
+                              1024),
+                       two_threads)
+            ->picture();
+    return means(image)["length_3.Y"];
+  };
+  // A lamp behind a pane, which lights two walls through it.
+  const auto behind = [&](const std::string& pane) {
+    return longer(
+        "Rectangle { corner: [-1, -1, 0], edge_u: [2, 0, 0], edge_v: [0, 2, 0], shader: Lambertian { color: 0.8 } },"
+        "Rectangle { corner: [-1, 1, 0], edge_u: [2, 0, 0], edge_v: [0, 0, 2], shader: Lambertian { color: 0.8 } },"
+        "Rectangle { corner: [-0.5, -0.5, 2], edge_u: [1, 0, 0], edge_v: [0, 1, 0],"
+        "            emission: DiffuseEmission { radiance: 10, sides: both } },"
+        "Rectangle { corner: [-1, -1, 1.5], edge_u: [2, 0, 0], edge_v: [0, 2, 0], shader: " +
+        pane + " }");
+  };
+  EXPECT_EQ(behind("Lambertian { color: 0 }"), 0);
+  EXPECT_EQ(behind("PassThrough {}"), 0);
+  // A medium through which nothing is seen changes nothing.
+  const auto glass = [&](const std::string& interior) {
+    return longer("Sphere { centre: [0, 0, 0.3], priority: 1, shader: Dielectric { ior: 1.5, roughness: 0.4 }" + interior +
+                  " }, Sphere { centre: [0, 3, 3], emission: DiffuseEmission { radiance: 20 } }");
+  };
+  const double clear = glass("");
+  EXPECT_GT(clear, 0);
+  EXPECT_EQ(glass(", interior: HomogeneousVolume { absorption: 10000 }"), clear);
+}
+
 TEST(Metropolis, RefusesWhatItCannotMutate) {
   const auto refused = [](const std::string& renderer, const std::string& more = "") {
     return complaint([&] { rendered(job_of(ball_text(renderer, "width: 2", "0.5", more), 16), two_threads); });

@@ -155,6 +155,8 @@ class Registry {
   const ClassInfo* find(std::type_index) const;
   /// All classes, sorted by name.
   std::vector<const ClassInfo*> all() const;
+  /// The same without those of the library of formats, unless it has been needed before.
+  std::vector<const ClassInfo*> loaded() const;
   /// The concrete classes of an interface, sorted by name.
   std::vector<const ClassInfo*> subclasses(const ClassInfo& of) const;
   /// Creates a component. Throws Error with a suggestion if there is no such class or it is abstract.

@@ -22,7 +22,8 @@
 //     L(s_1) … L(b) = p(w_a) prod q_i  J c(s_m) / d(s_m)^2,   J = (cos_b / cos_a) prod_i (radiance's weight / importance's),
 // with q_i the probabilities of the lobes of the chain. Walks from both ends can be connected between two smooth vertices only.
 //
-// No vertex is in a medium, paths contain neither subsurface nor null scattering, and luminaires have an area.
+// No vertex is in a medium, media do not absorb, paths contain neither subsurface nor null scattering, and luminaires have an
+// area. So a segment is either clear or occluded, and nothing on it is a factor of f.
 
 #include <span>
 #include <vector>
@@ -106,7 +107,8 @@ class PathSpace {
   /// holds the lens alone with a camera ray. `to_luminaire`: the last vertex must lie on a luminaire, and is the start of the
   /// path. False: the walk ended earlier, at the last vertex in `walk`, which may have no lobes.
   bool walk(Walk& walk, int count, Transport, ChoiceNumbers&, LightPath& y, bool to_luminaire = false) const;
-  /// Whether nothing occludes the segment between x_i and x_{i+1}, both of which are smooth.
+  /// Whether nothing occludes the segment between x_i and x_{i+1}, both of which are smooth. Surfaces hidden by priority do
+  /// not; those with null scattering do, as walks cannot pass them either and `pdf` assumes that all ways make the same paths.
   bool visible(const LightPath&, int i) const;
   /// Computes all quantities that follow from the positions of the vertices: directions, pdfs, f and the film point. False: f
   /// is 0.

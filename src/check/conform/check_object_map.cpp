@@ -1,11 +1,10 @@
 // Checks of every object map: numbers and colours are finite everywhere, reflectances are in [0, 1], and values filtered over a
-// footprint are the mean over it.
+// footprint are the mean over it. See also check_map_space.cpp.
 
 #include <fmt/format.h>
 
-#include "conformance.h"
-#include "etendue/object_map.h"
 #include "etendue/scene_object.h"
+#include "map_trial.h"
 #include "shader_trial.h"
 #include "statistics.h"
 
@@ -42,6 +41,7 @@ class MapTrial {
     check_extremes();
     check_constant();
     if (over_constants()) check_filter();
+    check_map_space(trial, map_);
   }
 
  private:

@@ -114,6 +114,15 @@ bool step_off(const ObjectTrial& o, const SurfacePoint& start, float phi, float 
   return true;
 }
 
+/// Whether `tangents` finds the same for a point that has lost them, as maps need that compare a point with what it was before
+/// the transforms of instances.
+bool found_again(const ObjectTrial& o, const SurfacePoint& p) {
+  SurfacePoint bare = p;
+  bare.dpdu = bare.dpdv = {};
+  o.object.tangents(bare);
+  return length(bare.dpdu - p.dpdu) <= 1e-2f * length(p.dpdu) && length(bare.dpdv - p.dpdv) <= 1e-2f * length(p.dpdv);
+}
+
 }  // namespace
 
 /// Checks that dpdu and dpdv are tangent and that they predict where a point with slightly different coordinates lies. At the
@@ -122,7 +131,7 @@ bool step_off(const ObjectTrial& o, const SurfacePoint& start, float phi, float 
 /// few per cent of all points are so near to a pole that the error for a step of a thousandth of its length exceeds `largest`.
 void check_tangents(const ObjectTrial& o) {
   constexpr float largest = 0.06f;
-  int wrong = 0, tested = 0;
+  int wrong = 0, lost = 0, tested = 0;
   for (int i = o.trial.samples(4000); i > 0; --i) {
     const SurfacePoint start = o.sample_area().point;
     const float phi = 2 * pi * o.trial.uniform(), first = 1e-3f * o.radius;
@@ -130,6 +139,7 @@ void check_tangents(const ObjectTrial& o) {
     SurfacePoint a;
     if (!step_off(o, start, phi, first, a, off)) continue;
     ++tested;
+    lost += !found_again(o, a);
     const bool spans = is_finite(a.dpdu) && is_finite(a.dpdv) &&
                        o.trial.expect(std::abs(dot(a.normal, a.dpdu)) < 2e-3f * length(a.dpdu) &&
                                           std::abs(dot(a.normal, a.dpdv)) < 2e-3f * length(a.dpdv),
@@ -144,6 +154,8 @@ void check_tangents(const ObjectTrial& o) {
   }
   o.trial.expect(ObjectTrial::few(wrong, tested, 0.01), "tangents are the change of position with surface coordinates",
                  [&] { return fmt::format("{} of {} steps lead elsewhere", wrong, tested); });
+  o.trial.expect(ObjectTrial::few(lost, tested, 0.01), "tangents are found again for a point without them",
+                 [&] { return fmt::format("{} of {} points get none, or others", lost, tested); });
 }
 
 /// A copy that is translated, rotated and scaled must give the same hits, transformed.

@@ -85,8 +85,10 @@ const Transform& placement(const SurfacePoint& p, Transform& scratch) {
   const Point3 there = own(p.object_position);
   const float size = std::max({std::abs(p.position.x), std::abs(p.position.y), std::abs(p.position.z)});
   if (distance_squared(there, p.position) <= square(1e-4f * size + 16 * p.error)) return own;
-  SurfacePoint inner = p, outer = p;
+  SurfacePoint inner = p, outer = p;  // before and after the further transforms
   with_tangents(outer);
+  inner.position = there;
+  inner.normal = inner.shading_normal = normalize(own(p.object_normal));
   inner.dpdu = inner.dpdv = {};
   p.object->tangents(inner);
   const Vector3 u = own.back(inner.dpdu), v = own.back(inner.dpdv), n(p.object_normal), area = cross(u, v);

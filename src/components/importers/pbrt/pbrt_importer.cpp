@@ -3,9 +3,6 @@
 // The conventions are those of Pharr, Jakob & Humphreys 2016 and 2023, Physically Based Rendering, third and fourth edition,
 // and of the pages "pbrt-v3 Input File Format" and "pbrt-v4 Input File Format".
 
-#include <fmt/format.h>
-
-#include "files/regular_file.h"
 #include "reader.h"
 
 namespace etendue {
@@ -52,15 +49,10 @@ class PbrtImporter final : public Importer {
   std::vector<std::string> extensions() const override { return {"pbrt"}; }
 
   Ref<Component> import(Importing& importing) const override {
-    std::unique_ptr<FileContents> contents;
-    try {
-      contents = std::make_unique<FileContents>(importing.path());
-    } catch (const Error& e) {
-      throw Error(fmt::format("cannot read '{}': {}", importing.path(), e.what()), importing.at());
-    }
-    pbrt::Reader reader(importing, version_of(contents->text()));
-    read_directives(reader, contents->text());
-    contents.reset();
+    std::string contents = importing.contents();
+    pbrt::Reader reader(importing, version_of(contents));
+    read_directives(reader, contents);
+    std::string().swap(contents);
     return reader.finish();
   }
 };

@@ -249,6 +249,20 @@ const SceneObject& Csg::operand_at(const SurfacePoint& p, SurfacePoint& there) c
   return operand;
 }
 
+void Csg::tangents(SurfacePoint& p) const {
+  if (p.dpdu != Vector3{} || p.dpdv != Vector3{}) return;
+  SurfacePoint there = p;
+  const SceneObject& operand = operand_at(p, there);
+  const bool subtracted = combined_[decode(p.primitive, there.primitive)].weight < 0;
+  there.position = Point3(DoublePoint3(p.object_position) - (transform.inner() - DoublePoint3{}));
+  there.normal = there.shading_normal = subtracted ? -p.object_normal : p.object_normal;
+  operand.tangents(there);
+  Transform scratch;
+  const Transform& t = placed(transform, p.time, scratch);
+  p.dpdu = t(subtracted ? -there.dpdu : there.dpdu);
+  p.dpdv = t(there.dpdv);
+}
+
 int Csg::attribute(int number, const SurfacePoint& p, float* values) const {
   SurfacePoint there = p;
   return operand_at(p, there).attribute(number, there, values);

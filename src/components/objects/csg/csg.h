@@ -21,7 +21,8 @@ class Csg : public SceneObject {
   bool intersect(const Ray&, Hit&) const override;
   void all_hits(const Ray&, HitList&) const override;
   void surface_point(const Ray&, const Hit&, SurfacePoint&) const override;
-  void tangents(SurfacePoint&) const override {}  // surface_point sets them for every point
+  /// surface_point sets the tangents of every point. Here they are computed for a point that has lost them.
+  void tangents(SurfacePoint&) const override;
   float area(float time) const override;
   float area_error(float time) const override;
   SurfaceSample sample_area(Point2 u, float time) const override;

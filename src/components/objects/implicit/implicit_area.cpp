@@ -175,7 +175,7 @@ bool ImplicitObject::try_patch(const Patch& patch, double a, double b, double v,
     x[(k + 1) % 3] = low[(k + 1) % 3] + a * (high[(k + 1) % 3] - low[(k + 1) % 3]);
     x[(k + 2) % 3] = low[(k + 2) % 3] + b * (high[(k + 2) % 3] - low[(k + 2) % 3]);
     if (!(field(x) < 0)) return false;
-    point_at(x, 1 + face, p);
+    point_at(x, first_face + face, p);
     return true;
   }
   double left = v * double(patch.bound);

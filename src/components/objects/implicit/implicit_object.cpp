@@ -11,8 +11,8 @@ int next(int k) { return (k + 1) % 3; }
 
 Place at(const DoubleRay& r, double t) { return {r.at(t, 0), r.at(t, 1), r.at(t, 2)}; }
 
-/// Hits on the surface are part 0, hits on a face of the box part 1 + face, where face 2 k + s is perpendicular to axis k, at
-/// its low (s = 0) or high (s = 1) end.
+/// The part of hits on the surface. A point on the surface has one of the primitives below `first_face` instead, the face of
+/// the box from which its surface coordinates are taken.
 constexpr int surface = 0;
 
 }  // namespace
@@ -142,7 +142,7 @@ void ImplicitObject::visit_crossings(const DoubleRay& r, double from, const F& v
   }
   if (!(enter < leave)) return;
   bool inside = field(at(r, enter)) < 0;
-  if (capped_ && inside && in >= 0 && visit(enter, 1 + in)) return;
+  if (capped_ && inside && in >= 0 && visit(enter, first_face + in)) return;
   const double step = 1e-9 * (leave - enter);
   double begin = enter, t = 0;
   // The number of crossings is limited, in case the field is mere noise.
@@ -150,7 +150,7 @@ void ImplicitObject::visit_crossings(const DoubleRay& r, double from, const F& v
     if (visit(t, surface)) return;
     begin = t + step;
   }
-  if (capped_ && inside && out >= 0) visit(leave, 1 + out);
+  if (capped_ && inside && out >= 0) visit(leave, first_face + out);
 }
 
 bool ImplicitObject::own_intersect(const Ray& ray, Hit& hit) const {
@@ -188,8 +188,9 @@ void ImplicitObject::own_point(const Ray& ray, const Hit& hit, OwnPoint& p) cons
 /// so that dpdu x dpdv is along the normal.
 void ImplicitObject::point_at(Place x, int part, OwnPoint& p, double off) const {
   double n[3]{}, beyond = 0;
-  if (part != surface) {
-    const int face = part - 1, k = face / 2;
+  const bool on_face = part >= first_face;
+  if (on_face) {
+    const int face = part - first_face, k = face / 2;
     x[k] = face % 2 ? high_[k] : low_[k];
     n[k] = face % 2 ? 1 : -1;
   } else {
@@ -216,7 +217,7 @@ void ImplicitObject::point_at(Place x, int part, OwnPoint& p, double off) const 
   }
   p.position = {float(x[0]), float(x[1]), float(x[2])};
   p.normal = normalize(Normal3(float(n[0]), float(n[1]), float(n[2])));
-  p.shading_normal = part == surface ? shading_normal(x, p.normal) : Normal3{};
+  p.shading_normal = on_face ? Normal3{} : shading_normal(x, p.normal);
 
   int k = 0;
   for (int i = 1; i < 3; ++i)
@@ -234,7 +235,7 @@ void ImplicitObject::point_at(Place x, int part, OwnPoint& p, double off) const 
   dv[k] = -dv[b] * n[b] / n[k];
   p.dpdu = {float(du[0]), float(du[1]), float(du[2])};
   p.dpdv = {float(dv[0]), float(dv[1]), float(dv[2])};
-  p.primitive = std::uint32_t((part == surface ? 0 : 6) + 2 * k + high);
+  p.primitive = std::uint32_t((on_face ? first_face : surface) + 2 * k + high);
   p.u = p.v = 0;
   // Rounding of the position, of an offset ray origin, and of the field in double.
   const double reach = std::max({high_[0] - low_[0], high_[1] - low_[1], high_[2] - low_[2]});

@@ -60,6 +60,9 @@ class ImplicitObject : public PlacedObject {
 
   template <class F>
   void visit_crossings(const DoubleRay&, double from, const F& visit) const;
+  /// Points on face 2 k + s of the box, which is perpendicular to axis k at its low (s = 0) or high (s = 1) end, are on part
+  /// first_face + 2 k + s; the parts below it are the surface.
+  static constexpr int first_face = 6;
   void point_at(Place, int part, OwnPoint&, double off = 0) const;
 
   double edge(int k, int i) const;
