@@ -36,6 +36,48 @@ TEST_F(UsdObjects, InstancesStandWhereTheirInstancerPutsThemAndNowhereElse) {
   EXPECT_NEAR(all.high.y, 6, 1e-5);
 }
 
+// Instance i has entry i of each list, and what a list does not have for it is left out or neutral. The instances of a unit
+// square, by their boxes along x and y.
+TEST_F(UsdObjects, InstancersMayHaveListsOfDifferentLengths) {
+  struct Row {
+    std::string lists, told;
+    std::vector<Bounds3> boxes;
+  };
+  const auto box = [](float x0, float y0, float x1, float y1) { return Bounds3{{x0, y0, 0}, {x1, y1, 0}}; };
+  const std::string positions = "point3f[] positions = [(0, 0, 0), (2, 0, 0), (4, 0, 0)]\n";
+  const Bounds3 first = box(0, 5, 1, 6), second = box(2, 5, 3, 6), third = box(4, 5, 5, 6);
+  const Row rows[] = {
+      {"point3f[] positions = [(0, 0, 0), (2, 0, 0)]\n", "number of positions", {first, second}},
+      {"point3f[] positions = [(0, 0, 0), (2, 0, 0), (4, 0, 0), (6, 0, 0)]\n", "number of positions", {first, second, third}},
+      {"", "number of positions", {}},
+      // A half turn about z, of the prototype at (0, 5) too.
+      {positions + "quath[] orientations = [(0, 0, 0, 1)]\n", "number of orientations", {box(-1, -6, 0, -5), second, third}},
+      {positions + "quath[] orientations = [(0, 0, 0, 1), (1, 0, 0, 0), (1, 0, 0, 0), (0, 0, 0, 1)]\n",
+       "number of orientations",
+       {box(-1, -6, 0, -5), second, third}},
+      {positions + "float3[] scales = [(3, 2, 1), (1, 1, 1)]\n", "number of scales", {box(0, 10, 3, 12), second, third}},
+      {positions + "int64[] ids = [7, 8]\nint64[] invisibleIds = [8]\n", "number of ids", {first, third}}};
+  for (const Row& row : rows) {
+    const Ref<Scene> s =
+        scene(y_up + "def PointInstancer \"i\" {\nrel prototypes = [</i/p>]\nint[] protoIndices = [0, 0, 0]\n" + row.lists +
+              "def Mesh \"p\" { int[] faceVertexCounts = [4]\nint[] faceVertexIndices = [0, 1, 2, 3]\npoint3f[] "
+              "points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]\nuniform token subdivisionScheme = "
+              "\"none\"\ndouble3 xformOp:translate = (0, 5, 0)\nuniform token[] xformOpOrder = "
+              "[\"xformOp:translate\"]\n}\n}\n");
+    ASSERT_TRUE(s) << row.lists << error_;
+    EXPECT_TRUE(told(row.told)) << row.lists;
+    ASSERT_EQ(s->objects.size(), row.boxes.size()) << row.lists;
+    for (size_t i = 0; i < row.boxes.size(); ++i) {
+      prepare_tree(*s->objects[i]);
+      const Bounds3 got = s->objects[i]->bounds();
+      for (int k = 0; k < 2; ++k) {
+        EXPECT_NEAR(got.low[k], row.boxes[i].low[k], 1e-4f) << row.lists << i;
+        EXPECT_NEAR(got.high[k], row.boxes[i].high[k], 1e-4f) << row.lists << i;
+      }
+    }
+  }
+}
+
 TEST_F(UsdObjects, ShapesSmoothSurfacesAndCurvesAreThemselves) {
   const std::string cube =
       "def Mesh \"l\" {\nint[] faceVertexCounts = [4, 4, 4, 4, 4, 4]\nint[] faceVertexIndices = [0, 3, 2, 1, 4, 5, 6, 7, 0, 1, "

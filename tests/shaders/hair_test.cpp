@@ -97,6 +97,7 @@ TEST(Hair, AlbedoTellsTheSides) {
   for (size_t i = 0; i < cells.size(); ++i) (i < cells.size() / 2 ? through : back) += cells[i];
   EXPECT_NEAR(scatter->albedo(out, reflection_lobes)[0], back, 3e-3);
   EXPECT_NEAR(scatter->albedo(out, transmission_lobes)[0], through, 3e-3);
+  EXPECT_EQ(hair->albedo_error(), 0);  // the albedo is a closed form
 }
 
 TEST(Hair, SamplesFollowDensity) {

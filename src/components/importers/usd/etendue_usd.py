@@ -26,6 +26,7 @@ except ImportError as missing:
 
 from etendue_usd_files import Files, words_of
 from etendue_usd_glb import Glb
+from etendue_usd_instances import WITHOUT, lists_of_instances, places_of_instances
 from etendue_usd_lights import Lights
 from etendue_usd_materials import Materials
 from etendue_usd_meshes import Meshes
@@ -135,12 +136,22 @@ class Converter:
         self.instanced += len(which)
         if self.instanced > MOST_INSTANCES:
             raise ValueError(f"{prim.GetPath()}: there are more than {MOST_INSTANCES} instances")
-        moved = instancer.ComputeInstanceTransformsAtTime(self.time, self.time, UsdGeom.PointInstancer.IncludeProtoXform,
-                                                          UsdGeom.PointInstancer.IgnoreMask) or []
-        shown = array(instancer.ComputeMaskAtTime(self.time), bool)
-        if len(moved) != len(which):
-            raise ValueError(f"{prim.GetPath()}: its lists of instances are not of the same length")
         targets = instancer.GetPrototypesRel().GetForwardedTargets()
+        lists = lists_of_instances(instancer, self.time)
+        uneven = [name for name, entries in lists.items() if len(entries) != len(which) and (len(entries) or name == "positions")]
+        for name in uneven:
+            self.glb.note(f"an instancer has another number of {name} than of protoIndices: {WITHOUT[name]}")
+        if uneven:
+            which = which[:len(lists["positions"])]
+            moved = places_of_instances(self.stage, self.time, lists, which, targets)
+        else:
+            moved = instancer.ComputeInstanceTransformsAtTime(self.time, self.time, UsdGeom.PointInstancer.IncludeProtoXform,
+                                                              UsdGeom.PointInstancer.IgnoreMask) or []
+            if len(moved) != len(which):
+                raise ValueError(f"{prim.GetPath()}: the places of its instances cannot be computed")
+        shown = array(instancer.ComputeMaskAtTime(self.time), bool)[:len(which)]
+        if len(shown):
+            shown = numpy.append(shown, numpy.ones(len(which) - len(shown), bool))
         parts = [self.prototype(path) for path in targets]
         moved = numpy.array(moved, dtype="f8").reshape(-1, 4, 4)
         for i, inner in ((i, p) for i, p in enumerate(parts) if p):

@@ -68,7 +68,8 @@ class HairScatter final : public JointScatter<HairScatter> {
     return true;
   }
 
-  // Exact: the side on which light leaves depends on phi alone.
+  // Exact: M_p integrates to 1 over sin(theta) for any theta of `out`, and the side on which light leaves depends on phi alone,
+  // so A_p is multiplied by the integral of N_p over that side.
   Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     const HairFibre::Section across = section(out);
     const float front_begins = out.z > 0 ? 0 : -pi;
@@ -220,8 +221,6 @@ class HairShader final : public Shader {
     if (!round) return scatter;
     return arena.make<WallScatter>(p, *scatter);
   }
-  /// Attenuation is taken for the middle of each lobe.
-  float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override { return WallScatter::all; }
   // Light that passes through a fibre is outside again: there is no interior for a path to enter.
   bool transmits() const override { return false; }
