@@ -59,7 +59,7 @@ void LostLight::look(const SceneObject& object, std::vector<SceneWarning>& list)
         object.origin && !object.origin->name.empty() ? "'" + object.origin->name + "'" : "the " + object.class_info().name;
     list.push_back({"lost light",
                     fmt::format("{}: {:.0f} % of its emission's light is behind the surface, which emits to the front: it is "
-                                "lost. sides: both lets it out; sides: front says that this is meant",
+                                "lost. 'sides: both' emits it as well; 'sides: front' confirms that this is intended",
                                 name, 100 * (1 - seen / all)),
                     emission->location_of()});
   } catch (const Error&) {  // errors of this emission have been reported when it was prepared

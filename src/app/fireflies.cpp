@@ -12,13 +12,12 @@ namespace etendue {
 
 std::string fireflies_text(const Render& render, const std::string& picture_command) {
   const std::vector<LargeSample> largest = render.film().largest_samples();
-  if (largest.empty()) return "No sample brought any light.\n";
+  if (largest.empty()) return "All samples are black.\n";
 
   const Image picture = render.film().develop();
   const PixelArea& area = render.job().image->area();
   const std::string refusal = replay_refusal(render);
-  std::string text = largest.size() == 1 ? "The sample that brought most light; "
-                                         : fmt::format("The {} samples that brought most light; ", largest.size());
+  std::string text = largest.size() == 1 ? "The brightest sample; " : fmt::format("The {} brightest samples; ", largest.size());
   if (!refusal.empty())
     text += fmt::format("no path can be shown ({}):\n", refusal);
   else

@@ -78,7 +78,7 @@ class Objects {
   void of_instanced() {
     for (const Scene* scene : instanced_)
       if (!nested_.contains(scene))
-        of_whole(*scene, "of the scene in an instance only its objects count; say it of the instance or of them");
+        of_whole(*scene, "only the objects of an instance's scene are used; set it on the instance or on the objects");
   }
   /// Checks the members of a scene of which only the objects are rendered.
   void of_whole(const Scene& scene, const std::string& why) {
@@ -104,11 +104,11 @@ class Objects {
   void nested(const SceneObject& object, bool instance) {
     if (instance)
       without_effect(object, {"emission", "interior", "sides", "priority", "shading_normals"},
-                     "of an instance only its shader counts; give these to the objects in its scene");
+                     "an instance overrides only the shader; set it on the objects in its scene");
     else
-      without_effect(object, {"shader", "emission", "interior", "sides", "priority", "shading_normals"},
-                     "of a nested scene only its objects count; give these to them, or put the scene into an Instance with a "
-                     "shader");
+      without_effect(
+          object, {"shader", "emission", "interior", "sides", "priority", "shading_normals"},
+          "only the objects of a nested scene are used; set it on them, or put the scene into an Instance with a shader");
   }
 
   void one(const SceneObject& object, const Shader* shader) {
@@ -116,22 +116,24 @@ class Objects {
       if (!object.interior && !object.shader)
         add("without effect", fmt::format("{} has neither an interior nor a shader: it does nothing", label(object)),
             object.location_of());
-      without_effect(object, {"sides", "priority", "shading_normals"}, "it has no surface, and all other objects displace it");
+      without_effect(object, {"sides", "priority", "shading_normals"},
+                     "it has no surface, and all other objects take precedence");
       return;
     }
     if (object.infinite() || object.delta()) {
       if (!object.luminaire())
         add("dark luminaire", fmt::format("{} has no emission: it does nothing", label(object)), object.location_of());
       without_effect(object, {"shader", "interior", "sides", "priority", "shading_normals"},
-                     "no ray meets its surface, it has only its emission");
-      if (object.delta()) without_effect(object, {"visible_to_camera"}, "it has no extent, so nobody sees it anyway");
+                     "no ray hits it; only its emission is used");
+      if (object.delta()) without_effect(object, {"visible_to_camera"}, "it has no extent, so it is never visible");
       if (object.emission && object.delta() && written(*object.emission, "sides"))
         add("without effect", fmt::format("{}: 'sides' of its emission has no effect: it has no surface", label(object)),
             object.emission->location_of("sides"));
       if (object.infinite() && written(object, "transform") && std::ranges::any_of(object.transform.keys(), moves))
         add("without effect",
-            fmt::format("{}: that 'transform' moves it has no effect: it is infinitely far away, and can only be turned",
-                        label(object)),
+            fmt::format(
+                "{}: the translation in 'transform' has no effect: it is infinitely far away, so only the rotation counts",
+                label(object)),
             object.location_of("transform"));
       return;
     }
@@ -140,7 +142,7 @@ class Objects {
     blackness(object, shader);
     if (!shader) without_effect(object, {"sides"}, "it has no shader, so both sides are black");
     if (shader && shader->possible_lobes() == null_scattering)
-      without_effect(object, {"sides"}, "what goes straight on does so from both sides");
+      without_effect(object, {"sides"}, "null scattering is the same from both sides");
     if (!enters && (!shader || !shader->transmits()))
       without_effect(object, {"priority"}, "light does not enter it, so nothing can overlap inside");
     if (object.interior) interior(object, shader, enters);
@@ -174,13 +176,13 @@ class Objects {
     if (!object.closed())
       why = fmt::format("the surface is not closed{}, so it has no inside; close it", ends_text(object));
     else if (!shader)
-      why = "it has no shader, so no light enters; PassThrough {} bounds a medium without being seen";
+      why = "it has no shader, so no light enters; PassThrough {} is an invisible boundary of a medium";
     else if (object.sides != Sides::both && shader->transmits())
       why = "with one side black, no light is refracted into it; leave out 'sides'";
     else
       why = fmt::format(
-          "its shader, {}, lets no light in; PassThrough {{}} bounds a medium without being seen, Dielectric {{}} as "
-          "glass does",
+          "its shader, {}, does not transmit light; PassThrough {{}} is an invisible boundary of a medium, Dielectric {{}} one "
+          "of glass",
           shader->class_info().name);
     add("interior", fmt::format("{}: the medium in 'interior' is never entered: {}", label(object), why),
         object.location_of("interior"));
@@ -192,7 +194,7 @@ class Objects {
     if (open > 0) return fmt::format(" ({} edge{} to one triangle alone)", grouped(open), open == 1 ? " belongs" : "s belong");
     const auto mesh = object.triangles();
     constexpr size_t fewest = 4;  // triangles that can enclose a volume
-    return mesh && mesh->triangles.size() >= fewest ? " (its triangles do not all turn the same way around the front)" : "";
+    return mesh && mesh->triangles.size() >= fewest ? " (its triangles are not consistently oriented)" : "";
   }
 
   void openness(const SceneObject& object, const Shader* shader) {
@@ -202,10 +204,9 @@ class Objects {
     const std::string& name = object.class_info().name;
     if (name == "BezierPatches" || name == "NurbsSurface") return;
     add("open body",
-        fmt::format(
-            "{}: it refracts light, but the surface is not closed{}, so it has no inside and other bodies in it are taken "
-            "to be in the air; close it, or use a shader for thin panes, such as ThinDielectric",
-            label(object), ends_text(object)),
+        fmt::format("{}: it refracts light, but the surface is not closed{}, so it has no inside, and bodies in it are treated "
+                    "as surrounded by air; close it, or use a shader for thin panes, such as ThinDielectric",
+                    label(object), ends_text(object)),
         object.location_of("shader"));
   }
 
@@ -216,8 +217,8 @@ class Objects {
     const Location at = object.location_of("file");
     if (notes.materials.size() > 1)
       add("materials",
-          fmt::format("{}: its file names {} materials ({}), which are not read: all of it has the one shader given here; to "
-                      "give each its own, write a file and an object for each",
+          fmt::format("{}: its file names {} materials ({}), which are not read: the whole mesh has the shader given here; for "
+                      "several, split it into one file and object per material",
                       label(object), notes.materials.size(), names_text(notes.materials)),
           at);
     for (const std::string& name : notes.attributes)
@@ -273,8 +274,9 @@ class Objects {
 
 void warn_of_objects(const Job& job, std::vector<SceneWarning>& list) {
   Objects objects(job, list);
-  objects.of_whole(*job.scene,
-                   "of the job's scene only its objects count; put it into an Instance, which can be placed and have a shader");
+  objects.of_whole(
+      *job.scene,
+      "only the objects of the job's scene are used; put it into an Instance, which can have a transform and a shader");
   objects.in(*job.scene, nullptr);
   objects.of_instanced();
 }

@@ -53,7 +53,7 @@ std::vector<SceneWarning> picture_warnings(const Job& job, const std::vector<Ref
   if (!any) {
     list.push_back(
         {"black picture",
-         "the picture is black: no light found its way to the camera; 'etendue check' tells what a renderer cannot find",
+         "the picture is black: no light reached the camera; 'etendue check' lists the light that a renderer cannot find",
          job.location_of("renderer")});
     return list;
   }
@@ -70,7 +70,7 @@ std::vector<SceneWarning> picture_warnings(const Job& job, const std::vector<Ref
     list.push_back(
         {"tone",
          fmt::format("{:.0f} % of the lit pixels are {} in {}: the median luminance, {:.3g}, is {:.3g} times {} middle "
-                     "grey; 'tone_map: ExposureToneMap {{ stops: {:.1f} }}' makes it that",
+                     "grey; 'tone_map: ExposureToneMap {{ stops: {:.1f} }}' maps it to middle grey",
                      100 * (dark ? s.black : s.white), dark ? "black" : "white", output->class_info().name, s.median, factor,
                      dark ? "darker than" : "as bright as", stops),
          output->tone_map ? output->location_of("tone_map") : job.location_of("tone_map")});

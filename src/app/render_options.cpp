@@ -29,22 +29,25 @@ void RenderOptions::add_to(Command& command) {
   SceneOptions::add_overrides_to(command);
   command
       .option("--frames A:B[:STEP]", frames,
-              "Render these frames, B not included: 'frame' and 'time' in the file say which, and #### in the names of files "
-              "that are written is replaced by the number")
+              "Render frames A to B - 1, with 'frame' and 'time' set in the file; #### in the names of output files is "
+              "replaced by the frame number")
       .excludes({"--frame"});
-  command.flag("--skip-existing", skip_existing, "Leave out what has whole pictures of the same file and options already");
+  command.flag("--skip-existing", skip_existing,
+               "Skip renders whose pictures exist already, complete and of the same file and options");
   command.option("-o,--output FILE", outputs,
                  "Write to this file instead of those the file names; its ending chooses the format; may be repeated");
   command.option("--samples N", samples, "Samples per pixel");
   command.option("--time TIME", time,
                  "Stop after this time, such as 90s, 5m or 1h30m; without --samples, no number of samples stops it earlier");
-  command.option("--error E", error, "Stop when the mean relative standard error of pixels is below this; likewise");
-  command.option("--seed N", seed, "Choose other random numbers");
+  command.option("--error E", error,
+                 "Stop when the mean relative standard error of pixels is below this; without --samples, no number of samples "
+                 "stops it earlier");
+  command.option("--seed N", seed, "Seed of the random numbers");
   command.option("--size WxH", size, "Size of the picture in pixels");
-  command.option("--crop X0,Y0,X1,Y1", crop, "Render these pixels only, ends not included");
+  command.option("--crop X0,Y0,X1,Y1", crop, "Render these pixels only; X1 and Y1 are excluded");
   command.flag("--denoise", denoise,
                "Write a second, denoised picture beside each, NAME.denoised.ENDING, by Open Image Denoise (pip install "
-               "pyoidn) where the file says nothing else");
+               "pyoidn) unless the file chooses another denoiser");
   add_threads_option(command, threads, ". The picture does not depend on it");
   command.flag("--quiet", quiet, "Print nothing but errors and warnings");
   command
@@ -60,26 +63,24 @@ void RenderOptions::add_to(Command& command) {
       .needs("--pixel")
       .excludes({"--sample"});
   command.option("--replay FILE", replay, "With --pixel: write the paths to this file, too, as JSON").needs("--pixel");
-  command.option("--fireflies N", fireflies, "List the N samples that brought most light, with the commands to replay them")
+  command.option("--fireflies N", fireflies, "List the N brightest samples, with the commands to replay them")
       .range(1, 1 << 20)
       .excludes({"--pixel"});
-  command
-      .option("--tev HOST[:PORT]", tev,
-              "Show the picture in the viewer tev while it is rendered; PORT is 14158 unless it is said")
+  command.option("--tev HOST[:PORT]", tev, "Show the picture in the viewer tev while it is rendered; default PORT: 14158")
       .excludes({"--pixel"});
 }
 
 void RenderOptions::add_checkpoint_options(Command& command) {
-  command.option("--checkpoint FILE", checkpoint, "Keep the state of the render in this file, to go on from");
+  command.option("--checkpoint FILE", checkpoint, "Write checkpoints to this file, from which the render can be resumed");
   command.option("--resume FILE", resume,
-                 "Go on from this checkpoint, to the same bits as without a break; and keep the state there, unless "
-                 "--checkpoint names another file");
-  command.option("--continue FILE", continue_file, "--resume this file if it is there, else begin with it as --checkpoint")
+                 "Resume from this checkpoint; the result is bit-identical to an uninterrupted render. New checkpoints replace "
+                 "it, unless --checkpoint names another file");
+  command.option("--continue FILE", continue_file, "--resume this file if it exists, else start with it as --checkpoint")
       .excludes({"--resume", "--checkpoint"});
   command.option("--every TIME", every, "How often the checkpoint is written, at the end of a pass [60s]; 0s: after each");
   command.option("--passes A:B", passes,
-                 "Render these passes only, B not included, into the checkpoint; 'image merge' makes a picture of such "
-                 "parts. Pictures of the part are written where -o says");
+                 "Render passes A to B - 1 only, into the checkpoint; 'image merge' combines such parts. Pictures of the part "
+                 "are written only if -o names them");
 }
 
 std::optional<IndexRange> RenderOptions::parse_passes() const {
@@ -87,8 +88,8 @@ std::optional<IndexRange> RenderOptions::parse_passes() const {
   const Location at{intern("--passes"), 0, 0};
   int n[2];
   parse_integers(passes, ':', 2, n, "--passes", "A:B, such as 0:16");
-  if (n[0] < 0 || n[1] <= n[0]) throw Error(fmt::format("'{}' are no passes: A:B are those from A to B - 1", passes), at);
-  if (checkpoint_file().empty()) throw Error("the passes need a file to keep their sums in: give --checkpoint as well", at);
+  if (n[0] < 0 || n[1] <= n[0]) throw Error(fmt::format("'{}' is not a range of passes: A:B is A to B - 1", passes), at);
+  if (checkpoint_file().empty()) throw Error("--passes stores its result in a checkpoint: give --checkpoint as well", at);
   return IndexRange{std::uint32_t(n[0]), std::uint32_t(n[1])};
 }
 

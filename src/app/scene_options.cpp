@@ -37,12 +37,12 @@ void SceneOptions::add_overrides_to(Command& command) {
   command.option("--set PATH=VALUE", sets,
                  "Set any member of any part, such as renderer.max_depth=4 or scene.objects[2].radius=\"1 cm\"");
   add_plugin_option(command, plugins);
-  command.flag("--strict", import.strict, "Of other programs' files: what cannot be expressed exactly is an error");
+  command.flag("--strict", import.strict, "Imported files: what cannot be expressed exactly is an error");
   command.option("--allow-path FOLDER", import.allowed_folders,
-                 "Of other programs' files: they may name files in this folder too, not in their own alone; may be repeated");
-  command.option("--frame N", frame, "What 'frame' means in the file, and with it 'time', which is frame / fps [0]")
+                 "Imported files may also read files in this folder, besides their own folder; may be repeated");
+  command.option("--frame N", frame, "Value of 'frame' in the file, and of 'time', which is frame / fps [0]")
       .range(0, most_frames);
-  command.option("--fps F", fps, "Frames in a second of 'time' [24]");
+  command.option("--fps F", fps, "Frames per second, for 'time' [24]");
 }
 
 double SceneOptions::frames_per_second() const {
@@ -50,13 +50,13 @@ double SceneOptions::frames_per_second() const {
   double value = 0;
   const auto [end, error] = std::from_chars(fps.data(), fps.data() + fps.size(), value);
   if (error == std::errc() && end == fps.data() + fps.size() && value > 0 && std::isfinite(value)) return value;
-  throw Error(fmt::format("'{}' is no number of frames in a second: give one above 0, such as 24 or 29.97", fps),
+  throw Error(fmt::format("'{}' is not a frame rate: give a number above 0, such as 24 or 29.97", fps),
               {intern("--fps"), 0, 0});
 }
 
 LoadOptions SceneOptions::load_options() const {
   if (!fps.empty() && !frame)
-    throw Error("there are no frames whose time this could tell: give --frame or --frames as well", {intern("--fps"), 0, 0});
+    throw Error("there are no frames whose time depends on it: give --frame or --frames as well", {intern("--fps"), 0, 0});
   load_plugins(plugins);
   LoadOptions options;
   options.frame = frame.value_or(0);
@@ -66,7 +66,7 @@ LoadOptions SceneOptions::load_options() const {
   for (const std::string& folder : import.allowed_folders) {
     std::error_code ignored;
     if (!std::filesystem::is_directory(folder, ignored))
-      throw Error(fmt::format("'{}' is no folder", folder), {intern("--allow-path"), 0, 0});
+      throw Error(fmt::format("'{}' is not a folder", folder), {intern("--allow-path"), 0, 0});
   }
   options.import = import;
   options.import.time = options.time;
@@ -110,8 +110,8 @@ void require_kept(const std::vector<SetOption>& sets) {
       if (replaces(sets[k].path, sets[i].path))
         throw Error(sets[k].path == sets[i].path
                         ? fmt::format("'{}' is set already, by {}: leave out one of the two", sets[k].path, sets[i].option)
-                        : fmt::format("'{}' would undo what {} says of '{}' before it: say this first", sets[k].path,
-                                      sets[i].option, sets[i].path),
+                        : fmt::format("'{}' would overwrite what {} sets in '{}': give it first", sets[k].path, sets[i].option,
+                                      sets[i].path),
                     {intern(sets[k].option), 0, 0});
 }
 

@@ -34,7 +34,7 @@ TevAddress parse_tev_address(const std::string& text) {
       !address.port.empty() && address.port.size() <= 5 && address.port.find_first_not_of("0123456789") == std::string::npos;
   constexpr int largest_port = 65535;
   if (address.host.empty() || !digits || std::stoi(address.port) > largest_port || std::stoi(address.port) == 0)
-    throw Error(fmt::format("'{}' is no address of a tev: HOST or HOST:PORT, such as 127.0.0.1:{}", text, usual_port),
+    throw Error(fmt::format("'{}' is not an address of tev: HOST or HOST:PORT, such as 127.0.0.1:{}", text, usual_port),
                 {intern("--tev"), 0, 0});
   return address;
 }
@@ -118,7 +118,7 @@ void await_room(int socket, Clock::time_point deadline) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
     const int count = left > 0 ? poll(&ready, 1, int(left)) : 0;
     if (count > 0) return;
-    if (count == 0) throw Error("there is no answer, or a slow one");
+    if (count == 0) throw Error("there is no answer in time");
     if (errno != EINTR) throw Error(std::strerror(errno));
   }
 }

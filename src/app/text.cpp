@@ -31,7 +31,7 @@ std::string duration_text(double seconds) {
 
 double parse_duration(const std::string& text, const std::string& option) {
   const auto wrong = [&] {
-    return Error(fmt::format("'{}' is no time; write seconds, or 90s, 5m, 1h, 1h30m", text), {intern(option), 0, 0});
+    return Error(fmt::format("'{}' is not a duration; write seconds, or 90s, 5m, 1h, 1h30m", text), {intern(option), 0, 0});
   };
   const char* at = text.data();
   const char* const end = at + text.size();

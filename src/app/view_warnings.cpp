@@ -70,7 +70,7 @@ void sees_nothing(const Job& job, std::vector<SceneWarning>& list) {
                    "{:.3g}), and they lie within {:.4g} m around ({:.4g}, {:.4g}, {:.4g}); look there with 'to'{}",
                    middle.origin.x, middle.origin.y, middle.origin.z, middle.direction.x, middle.direction.y,
                    middle.direction.z, length(all.diagonal()) / 2, c.x, c.y, c.z,
-                   clips ? ", or mind 'near_clip' and 'far_clip'" : ""),
+                   clips ? ", or check 'near_clip' and 'far_clip'" : ""),
        camera.location_of("to")});
 }
 
@@ -103,12 +103,11 @@ void stands_in_the_dark(const Job& job, std::vector<SceneWarning>& list) {
     for (int k = 0; k < 3; ++k) overlap &= other.low[k] <= box.high[k] && other.high[k] >= box.low[k];
     if (overlap) return;
   }
-  list.push_back(
-      {"in the dark",
-       fmt::format("the camera stands inside {}, which lets no light in, and nothing emits there: the picture will be "
-                   "black; move the camera out, or put a lamp in",
-                   name_of(*around)),
-       job.camera->location_of("from")});
+  list.push_back({"in the dark",
+                  fmt::format("the camera stands inside {}, which does not transmit light, and nothing inside emits light: the "
+                              "picture will be black; move the camera out, or add a luminaire",
+                              name_of(*around)),
+                  job.camera->location_of("from")});
 }
 
 }  // namespace

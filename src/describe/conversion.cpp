@@ -35,7 +35,8 @@ void check_range(double x, const Member& m, Location at) {
   if (m.range && std::isfinite(m.range->high) && !m.range->contains(x)) {
     // The error about the member's range, below, is more specific than that about the range of floats.
   } else if (std::abs(x) > double(std::numeric_limits<float>::max())) {
-    throw Error(fmt::format("must be at most {:.6g} in size, not {:.9g}", double(std::numeric_limits<float>::max()), x), at);
+    throw Error(fmt::format("must be at most {:.6g} in magnitude, not {:.9g}", double(std::numeric_limits<float>::max()), x),
+                at);
   }
   if (m.range && m.range->open_low && x > m.range->low && !(float(x) > float(m.range->low)))
     throw Error(fmt::format("must be {}, and {:.9g} is {:.9g} in single precision", m.range->text(), x, float(x)), at);
@@ -152,7 +153,7 @@ AnimatedTransform to_transform(const Value& v) {
     t = *moving;
   else
     mismatch("a transform", v);
-  if (!t.valid()) throw Error("is a singular transform: it cannot be undone", v.location);
+  if (!t.valid()) throw Error("is a singular transform: it has no inverse", v.location);
   return t;
 }
 
@@ -191,7 +192,7 @@ void to_rows(const Value& v, const Member& m, int width, void (*push)(void*, con
   const std::string wanted = width == 1 ? "a list of numbers" : fmt::format("a list of rows of {} numbers", width);
   if (!n || (n->width != width && n->width != 1)) mismatch(wanted, v);
   if (n->values.size() % size_t(width) != 0) {
-    throw Error(fmt::format("expects {}; {} numbers are no multiple of {}", wanted, n->values.size(), width), v.location);
+    throw Error(fmt::format("expects {}; {} numbers are not a multiple of {}", wanted, n->values.size(), width), v.location);
   }
   const size_t rows = n->values.size() / size_t(width);
   reserve(to, rows);

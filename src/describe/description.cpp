@@ -76,7 +76,7 @@ void AnyDescription::option(Member& m, Condition c) { m.conditions.push_back(std
 
 void AnyDescription::remove_member(std::string_view name, std::string_view why) {
   if (std::erase_if(info_.members, [&](const Member& m) { return m.name == name; }) == 0)
-    throw Error("there is no member '" + std::string(name) + "' that the class could be without");
+    throw Error("there is no member '" + std::string(name) + "' to remove");
   info_.absent.push_back({std::string(name), std::string(why)});
 }
 

@@ -104,8 +104,8 @@ void Expansion::fail(const Component& c, double parts, size_t written) const {
   for (const Component* part : order)
     if (part != &c && (!most_used || std::pair(named(part), places[part]) > std::pair(named(most_used), places[most_used])))
       most_used = part;
-  throw Error(fmt::format("{} is asked for {:.0f} parts at every hit, as {} stands in {:.0f} places in it; only {} parts are "
-                          "written, and {:.0f} are the most that shared parts may amount to",
+  throw Error(fmt::format("{} evaluates {:.0f} components at every hit, as {} is used in {:.0f} places in it; there are only "
+                          "{} different ones, and {:.0f} evaluations are the most that shared components may cause",
                           called(c), parts, called(*most_used), places[most_used], written, most),
               c.location_of());
 }

@@ -21,12 +21,12 @@ bool may_be_number(const Member& m) {
 
 std::string slider_fault(const Member& m) {
   if (m.soft) {
-    if (!is_numeric(m) && !may_be_number(m)) return "has the ends of a slider, and is no number";
+    if (!is_numeric(m) && !may_be_number(m)) return "has a slider, but is not a number";
     if (!(m.soft->low < m.soft->high) || !std::isfinite(m.soft->low) || !std::isfinite(m.soft->high))
       return fmt::format("has a slider from {} to {}", m.soft->low, m.soft->high);
     for (const double end : {m.soft->low, m.soft->high})
       if (m.range && !m.range->contains(end))
-        return fmt::format("has a slider that ends at {}, and must be {}", end, m.range->text());
+        return fmt::format("has a slider that ends at {}, but must be {}", end, m.range->text());
   }
   if (!m.logarithmic) return {};
   const double low = m.soft    ? m.soft->low
@@ -35,15 +35,15 @@ std::string slider_fault(const Member& m) {
                high = m.soft    ? m.soft->high
                       : m.range ? m.range->high
                                 : 0;
-  if (is_numeric(m) && (!m.range || m.range->low < 0)) return "is logarithmic, and may be negative";
-  if (!(low > 0) || !std::isfinite(high)) return "is logarithmic, which needs ends of its slider that are more than 0";
+  if (is_numeric(m) && (!m.range || m.range->low < 0)) return "is logarithmic, but may be negative";
+  if (!(low > 0) || !std::isfinite(high)) return "is logarithmic, but its slider's ends are not positive and finite";
   return {};
 }
 
 std::string choices_fault(const Member& m) {
   if (m.kind == Kind::choice && m.choices.empty()) return "does not name its choices";
   if (m.choices.empty()) return {};
-  if (m.kind != Kind::choice && m.kind != Kind::string) return "has choices, and is no text";
+  if (m.kind != Kind::choice && m.kind != Kind::string) return "has choices, but is not a string";
   if (std::set<std::string>(m.choices.begin(), m.choices.end()).size() != m.choices.size()) return "has a choice twice";
   return {};
 }
@@ -52,7 +52,7 @@ std::string meaning_fault(const Member& m) {
   if (m.meaning == Meaning::plain) return {};
   if (m.kind == Kind::color && m.meaning != Meaning::number) return {};
   if (m.kind == Kind::component) return {};
-  return fmt::format("is read as {}, and is no {}", name(m.meaning), m.meaning == Meaning::number ? "map" : "colour or map");
+  return fmt::format("is read as {}, but is not a {}", name(m.meaning), m.meaning == Meaning::number ? "map" : "colour or map");
 }
 
 /// The fault of a value that a condition compares with.
@@ -61,11 +61,11 @@ std::string wanted_fault(const Member& of, const Condition::Wanted& wanted) {
   if (std::holds_alternative<bool>(wanted))
     return of.kind == Kind::boolean ? "" : fmt::format("'{}' is not true or false", of.name);
   if (const auto* x = std::get_if<double>(&wanted)) {
-    if (of.kind != Kind::number && of.kind != Kind::integer) return fmt::format("'{}' is no number", of.name);
+    if (of.kind != Kind::number && of.kind != Kind::integer) return fmt::format("'{}' is not a number", of.name);
     return !of.range || of.range->contains(*x) ? "" : fmt::format("'{}' is never {}", of.name, *x);
   }
   const std::string& text = std::get<std::string>(wanted);
-  if (of.kind != Kind::choice && of.kind != Kind::string) return fmt::format("'{}' is no text", of.name);
+  if (of.kind != Kind::choice && of.kind != Kind::string) return fmt::format("'{}' is not a string", of.name);
   const bool known = of.choices.empty() || std::ranges::find(of.choices, text) != of.choices.end();
   return known ? "" : fmt::format("'{}' has no choice '{}'", of.name, text);
 }
@@ -89,11 +89,11 @@ std::string condition_fault(const ClassInfo& info, const Member& m, const Condit
   const Member* of = info.find(c.member);
   if (!of) return fmt::format("there is no member '{}'", c.member);
   if (of->name == m.name) return "it is the member itself";
-  if (c.values.empty() && !may_be_nothing(*of)) return fmt::format("'{}' always holds something", c.member);
+  if (c.values.empty() && !may_be_nothing(*of)) return fmt::format("'{}' can never be empty", c.member);
   for (const Condition::Wanted& wanted : c.values)
     if (const std::string wrong = wanted_fault(*of, wanted); !wrong.empty()) return wrong;
   const size_t all = of->kind == Kind::boolean ? 2 : of->choices.size();
-  if (all > 0 && c.values.size() >= all) return fmt::format("it names all that '{}' can be", c.member);
+  if (all > 0 && c.values.size() >= all) return fmt::format("it names all values of '{}'", c.member);
   return {};
 }
 
@@ -102,10 +102,10 @@ std::string member_fault(const ClassInfo& info, const Member& m) {
   if (is_numeric(m) && m.kind != Kind::integer && m.unit.empty()) return "has no unit";
   for (const auto check : {slider_fault, choices_fault, meaning_fault})
     if (const std::string wrong = check(m); !wrong.empty()) return wrong;
-  if (m.required && !m.conditions.empty()) return "must be written, and yet does not always matter";
+  if (m.required && !m.conditions.empty()) return "is required, but has no effect under its condition";
   for (const Condition& c : m.conditions)
     if (const std::string wrong = condition_fault(info, m, c); !wrong.empty())
-      return fmt::format("matters under a condition on '{}' that cannot be: {}", c.member, wrong);
+      return fmt::format("has an impossible condition on '{}': {}", c.member, wrong);
   return {};
 }
 

@@ -19,7 +19,7 @@ std::string thrown_text() {
     return e.what();
   } catch (...) {
     const std::type_info* type = abi::__cxa_current_exception_type();
-    if (!type) return "an exception of another language";
+    if (!type) return "an exception of no known type";
     int status = 0;
     const std::unique_ptr<char, void (*)(void*)> name(abi::__cxa_demangle(type->name(), nullptr, nullptr, &status), std::free);
     return fmt::format("an exception of type {}", status == 0 ? name.get() : type->name());

@@ -53,7 +53,7 @@ PluginAnswer ask(const std::string& file) {
   void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) throw Error(fmt::format("it cannot be opened: {}", dlerror()));
   const char* abi = text_of(handle, file, "etendue_plugin_abi");
-  if (!abi) throw Error("it is no Étendue plugin: it was not built with etendue/describe/description.h");
+  if (!abi) throw Error("it is not an Étendue plugin: it was not built with etendue/describe/description.h");
   const char* instructions = text_of(handle, file, "etendue_plugin_instructions");
   return {std::string(abi, strnlen(abi, longest_text)),
           instructions ? std::string(instructions, strnlen(instructions, longest_text)) : std::string()};
@@ -136,7 +136,7 @@ void try_plugin(const std::string& file, const std::function<void(const PluginAn
   if (WIFSIGNALED(status))
     throw Error(
         fmt::format("it crashed when {} ({}): the file is damaged, or its code is wrong", when, strsignal(WTERMSIG(status))));
-  throw Error(fmt::format("it ended the process when {}: it is no Étendue plugin, or its code is wrong", when));
+  throw Error(fmt::format("it ended the process when {}: it is not an Étendue plugin, or its code is wrong", when));
 }
 
 }  // namespace etendue

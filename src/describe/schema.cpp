@@ -240,7 +240,7 @@ Json root_schema() {
   };
   Json& properties = root["properties"];
   properties["$schema"] = {{"type", "string"}};
-  const Json parameters = table("What params of the file are to be.");
+  const Json parameters = table("Values of the file's params.");
   const Json inclusion = {
       {"type", "object"},
       {"required", Json::array({"file"})},
@@ -248,8 +248,7 @@ Json root_schema() {
       {"properties",
        {{"file", {{"type", "string"}}},
         {"with", parameters},
-        {"as",
-         {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}, {"description", "What stands before its names."}}}}}};
+        {"as", {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}, {"description", "Prefix of its names."}}}}}};
   properties["$include"] = {{"type", "array"}, {"items", {{"anyOf", Json::array({{{"type", "string"}}, inclusion})}}}};
   properties["$include"]["description"] = "Descriptions whose names become known here.";
   properties["$plugin"] = texts;

@@ -114,7 +114,7 @@ Value power(const Value& base, const Value& exponent, Location at) {
         at);
   const double result = std::pow(x->value, y->value);
   if (!std::isfinite(result))
-    throw Error(fmt::format("{:.9g} to the power of {:.9g} is no finite number", x->value, y->value), at);
+    throw Error(fmt::format("{:.9g} to the power of {:.9g} is not a finite number", x->value, y->value), at);
   return Value(Number{result});
 }
 
@@ -129,7 +129,7 @@ Value negate(const Value& a, Location at) {
 
 Value with_unit(Value value, const Unit& unit, Location at) {
   const auto plain = [&](Dimension d) {
-    if (d != Dimension::none) throw Error(fmt::format("cannot give {} a unit once more", words(d)), at);
+    if (d != Dimension::none) throw Error(fmt::format("cannot give {} a second unit", words(d)), at);
   };
   if (auto* number = std::get_if<Number>(&value.data)) {
     plain(number->dimension);

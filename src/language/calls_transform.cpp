@@ -9,7 +9,7 @@ namespace etendue::language {
 namespace {
 
 Value checked(const Arguments& a, const Transform& t) {
-  if (!t.valid()) a.fail(a.count(), "gives a singular transform: it cannot be undone");
+  if (!t.valid()) a.fail(a.count(), "gives a singular transform: it has no inverse");
   return Value(t);
 }
 

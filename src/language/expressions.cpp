@@ -68,7 +68,7 @@ Node Parser::comparison() {
   node.labels.push_back({symbol_text(token_.symbol), token_.at});
   take();
   node.children.push_back(range());
-  if (compares()) fail("comparisons do not follow each other: write a < b and b < c", token_.at);
+  if (compares()) fail("comparisons cannot be chained: write a < b and b < c", token_.at);
   return node;
 }
 
@@ -80,7 +80,7 @@ Node Parser::range() {
   node.at = first.at;
   node.labels.push_back({"..", take().at});
   if (token_.type == TokenType::number && token_.joined && token_.text.starts_with('.'))
-    fail("a range is written with two points: 0..3", node.labels.back().at);
+    fail("a range is written with two dots: 0..3", node.labels.back().at);
   node.children.push_back(std::move(first));
   node.children.push_back(sum());
   return node;
@@ -173,7 +173,7 @@ Node Parser::indexed(Node list) {
     node.children.push_back(std::move(list));
     node.children.push_back(expression());
     if (token_.type == TokenType::end) not_closed('[', opened);
-    if (!token_.is(']')) unexpected("']' behind the place in the list");
+    if (!token_.is(']')) unexpected("']' after the index");
     open_.pop_back();
     take();
     list = std::move(node);

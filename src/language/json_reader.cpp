@@ -56,7 +56,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     const bool table = !frames_.empty() &&
                        (frames_[0].key.text == "$include" || (frames_.size() == 1 && frames_[0].key.text.starts_with("$")));
     if (frame.node.text.empty() && !frames_.empty() && !table) {
-      diagnostics_.add(Error("an object must say its class: \"class\": \"…\"", frame.node.at));
+      diagnostics_.add(Error("an object must name its class: \"class\": \"…\"", frame.node.at));
       frame.node.type = NodeType::bad;
     }
     return put(std::move(frame.node));
@@ -77,7 +77,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     if (const size_t behind = text.find(": "); behind != std::string::npos) text.erase(0, behind + 2);
     for (const char* start : {"syntax error while parsing ", "syntax error "})
       if (text.starts_with(start)) text.erase(0, std::string_view(start).size());
-    diagnostics_.add(Error("this is no JSON: " + text, JsonPlaces::place(source_, byte == 0 ? 0 : byte - 1)));
+    diagnostics_.add(Error("invalid JSON: " + text, JsonPlaces::place(source_, byte == 0 ? 0 : byte - 1)));
     failed = true;
     return false;
   }
@@ -299,7 +299,7 @@ Document parse_json(const Source& source, Diagnostics& diagnostics) {
   if (!job.text.empty())
     document.components.push_back(std::move(job));
   else if (!job.labels.empty())
-    diagnostics.add(Error("an object must say its class: \"class\": \"…\"", job.at));
+    diagnostics.add(Error("an object must name its class: \"class\": \"…\"", job.at));
   return document;
 }
 

@@ -113,9 +113,9 @@ std::string Lexer::meant_character(size_t begin) const {
     case '|': return ": write 'or'";
     case '!': return ": write 'not'";
     case '?': return ": write if … then … else …";
-    case '%': return ": what remains of a division is mod(x, n)";
+    case '%': return ": the remainder of a division is mod(x, n)";
     case '.': return rest.size() > 1 && begin >= 2 && text_.compare(begin - 2, 2, "..") == 0 ? ": a range is written 0..3" : "";
-    case '\'': return ": texts stand in double quotes (\")";
+    case '\'': return ": strings are written in double quotes (\")";
     default: return {};
   }
 }

@@ -212,8 +212,7 @@ Node* Loader::root(bool job) {
     if (job && node.text != "Job") {
       const std::string near = suggestion(node.text, {"Job"});
       diagnostics_.add(Error(
-          fmt::format("only the Job stands for itself{}; give this a name to use it by: name = {} {{ … }}", near, node.text),
-          node.at));
+          fmt::format("only the Job needs no name{}; give this component one: name = {} {{ … }}", near, node.text), node.at));
     } else if (found) {
       diagnostics_.add(
           Error(fmt::format("there is {} already, at {}", job ? "a Job" : "a component", place(found->at, node.at)), node.at));

@@ -323,7 +323,7 @@ bool Evaluator::lacks_quotes(const Node& call, const Node& argument, const Bound
   for (const Bound* one = bound; one; one = one->outer)
     if (one->name == text) return false;
   if (!incomplete_)
-    diagnostics_.add(Error(fmt::format("'{0}' is not defined: texts stand in quotes, \"{0}\"", text), argument.at));
+    diagnostics_.add(Error(fmt::format("'{0}' is not defined: strings are written in quotes, \"{0}\"", text), argument.at));
   return true;
 }
 

@@ -161,7 +161,7 @@ void Parser::statement(Document& document) {
 bool Parser::may_be_defined(const Token& name) {
   for (const char* reserved : {"true", "false", "none", "pi"})
     if (name.text == reserved) {
-      diagnostics_.add(Error(fmt::format("'{}' has a fixed meaning and cannot be defined", reserved), name.at));
+      diagnostics_.add(Error(fmt::format("'{}' is reserved and cannot be defined", reserved), name.at));
       return false;
     }
   if (is_name(name.text)) return true;

@@ -37,8 +37,7 @@ class Path {
         size_t place = 0;
         const auto [end, error] = std::from_chars(text.data() + i + 1, text.data() + text.size(), place);
         const size_t close = size_t(end - text.data());
-        if (error != std::errc() || close >= text.size() || text[close] != ']')
-          fail("expected a place in the list such as [0]", at(i));
+        if (error != std::errc() || close >= text.size() || text[close] != ']') fail("expected an index such as [0]", at(i));
         step.places.push_back(place);
         i = close + 1;
       }
@@ -88,7 +87,7 @@ const Member& find_member(const Component& component, const PathStep& step) {
   if (const Member* member = info.find(step.name)) return *member;
   std::unordered_set<const Component*> seen;
   if (const std::string path = path_of_name(component, step.name, seen, 0); !path.empty())
-    Path::fail(fmt::format("{} has no member '{}': a path goes by members, not by names of the file, and '{}' is {}", info.name,
+    Path::fail(fmt::format("{} has no member '{}': a path consists of members, not names of the file; '{}' is {}", info.name,
                            step.name, step.name, path),
                step.at);
   Path::fail(no_member(info, step.name), step.at);
@@ -106,7 +105,7 @@ Ref<Component> follow(const Component& component, const PathStep& step) {
   std::string name = step.name;
   for (const size_t place : step.places) {
     const auto* list = value.as<Value::List>();
-    if (!list) Path::fail(fmt::format("{} is no list of components", name), step.at);
+    if (!list) Path::fail(fmt::format("{} is not a list of components", name), step.at);
     check_place(name, list->size(), place, step.at);
     Value item = (*list)[place];
     value = std::move(item);
@@ -199,12 +198,12 @@ void set_path_from(Component& root, const std::string& path, const std::string& 
   }
   const PathStep& last = parsed.steps.back();
   const Member& member = find_member(*component, last);
-  if (last.places.size() > 1) Path::fail(fmt::format("{} is a list of one level", last.name), last.at);
+  if (last.places.size() > 1) Path::fail(fmt::format("{} is not a list of lists", last.name), last.at);
   Value value;
   try {
     value = read_expression(path, expression, expression_at, member, !last.places.empty());
   } catch (const language::TooManyErrors&) {
-    throw Error("the expression is wrong in too many ways", expression_at);
+    throw Error("the expression has too many errors", expression_at);
   }
   const Location at = value.location;
   if (!last.places.empty()) value = replaced(member.get(*component, member), value, last.places.front(), last, member);

@@ -51,11 +51,10 @@ bool warn_of_long_turns(const Node& keyframes) {
     const double turn = std::copysign(b[0], b[0] * cosine) - a[0];
     if (std::abs(turn) <= 180 + 1e-4) continue;
     const double shorter = std::remainder(turn, 360.0);
-    warn(
-        fmt::format("the turn of {:.6g} degrees from the key before is made the shorter way, by {:.6g}: put keys between them, "
-                    "at most 180 degrees apart",
-                    turn, shorter),
-        after->at);
+    warn(fmt::format("the rotation of {:.6g} degrees from the previous key takes the shorter way, {:.6g} degrees: put keys "
+                     "between them, at most 180 degrees apart",
+                     turn, shorter),
+         after->at);
     warned = true;
   }
   return warned;

@@ -100,7 +100,7 @@ bool read_header(const Bytes& bytes, Checkpoint& c) {
     last = range.end;
     c.done.push_back(range);
   }
-  if (c.samples_per_pass == 0 || !(c.seconds >= 0)) throw Error("its header makes no sense");
+  if (c.samples_per_pass == 0 || !(c.seconds >= 0)) throw Error("its header is invalid");
   c.identity.text = r.text();
   for (auto n = r.count(24); n > 0; --n) {
     Identity::File& file = c.identity.files.emplace_back();
@@ -126,9 +126,9 @@ Checkpoint read(Source& file, bool states) {
   const std::uint64_t size = file.size();
   Preamble p;
   const auto get = [&](void* to, std::uint64_t bytes) { file.read(to, bytes); };
-  if (size < sizeof p.name) throw Error("it is no checkpoint");
+  if (size < sizeof p.name) throw Error("it is not a checkpoint");
   get(&p.name, sizeof p.name);
-  if (p.name != name_of_format) throw Error("it is no checkpoint");
+  if (p.name != name_of_format) throw Error("it is not a checkpoint");
   if (size < sizeof p) throw Error(fmt::format("it is cut short, to {} bytes", size));
   file.seek(0);
   get(&p, sizeof p);
@@ -223,7 +223,7 @@ void write_checkpoint(const Checkpoint& c, const std::string& path) { write_whol
 void write_checkpoint(const Checkpoint& c, std::ostream& to) {
   const Pieces pieces(c);
   for (const auto& piece : pieces.all()) to.write(reinterpret_cast<const char*>(piece.data()), std::streamsize(piece.size()));
-  if (!to.flush()) throw Error("the state could not be written: the stream does not take it");
+  if (!to.flush()) throw Error("the state could not be written to the stream");
 }
 
 Checkpoint read_checkpoint(std::istream& from) {

@@ -82,7 +82,7 @@ void Consequences::note(const Holders& holders, Component& part, const Member& m
   bool objects_in_it = of_objects;
   for_components(now, [&](Component& c) {
     objects_in_it |= dynamic_cast<SceneObject*>(&c) != nullptr;
-    if (holds(c, part)) throw Error(part.class_info().name + "." + member.name + ": a part cannot hold itself");
+    if (holds(c, part)) throw Error(part.class_info().name + "." + member.name + ": a component cannot contain itself");
   });
   everything_ |= objects_in_it;
 }

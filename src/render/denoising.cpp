@@ -154,9 +154,8 @@ void warn_of_wide_filter(const Job& job, const std::vector<Ref<Output>>& outputs
   constexpr float own_pixel = 0.5f;
   if (denoised_paths(outputs, "").empty() || job.image->filter->radius() <= own_pixel) return;
   warn(
-      "noise will stay in the denoised picture: the filter spreads each sample over several pixels, and what is alike in them "
-      "looks "
-      "like light. Render with 'filter: BoxFilter {}'",
+      "noise will stay in the denoised picture: the filter spreads each sample over several pixels, and a denoiser cannot tell "
+      "this correlated noise from detail. Render with 'filter: BoxFilter {}'",
       job.image->location_of("filter"));
 }
 

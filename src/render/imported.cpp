@@ -68,8 +68,7 @@ Ref<Component> imported(const Importer& importer, Importing& importing) {
   Surfaces surfaces;
   surfaces.add(*scene);
   if (surfaces.any && !surfaces.seen)
-    importing.inexact("all of it is fully transparent (an opacity of 0), so that nothing of it is seen: is that meant?",
-                      importing.at());
+    importing.inexact("it is fully transparent (an opacity of 0) and therefore invisible: is that intended?", importing.at());
   return read;
 }
 

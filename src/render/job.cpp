@@ -23,8 +23,8 @@ void Job::describe(Description<Job>& d) {
                                 Effect::none)
       .member<&Job::error_limit>(
           "error_limit", "1",
-          "stops when the mean relative standard error of pixels is below this; 0: no limit. A small bias: "
-          "samples that hide their error, as those do that lack rare light, end it early",
+          "stops when the mean relative standard error of pixels is below this; 0: no limit. A small bias: samples that "
+          "underestimate their error, as when rare light is missing, end the render early",
           at_least(0), Effect::none);
 }
 static const Register<Job> registered;
@@ -80,8 +80,7 @@ void refuse_heterogeneous_media_within(const Scene& scene, bool nested) {
   for (const Ref<SceneObject>& object : scene.objects) {
     if (nested && object->interior && !object->interior->homogeneous())
       object->fail("interior",
-                   "a medium that differs from place to place cannot stand in a scene within a scene; put the object "
-                   "into the outer scene");
+                   "a heterogeneous medium is not supported in a nested scene; put the object into the outer scene");
     if (const Scene* inner = scene_within(*object)) refuse_heterogeneous_media_within(*inner, true);
   }
 }

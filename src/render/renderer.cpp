@@ -52,7 +52,7 @@ void Renderer::refuse_samples_of(const Renderer& inner) const {
   if (!inner.origin) return;
   for (const char* name : {"samples", "sampler"})  // even if set to the value it would have anyway
     if (std::ranges::any_of(inner.origin->members, [&](const auto& m) { return m.first == name; }))
-      inner.fail(name, "has no effect here: say it of the " + class_info().name + " around");
+      inner.fail(name, "has no effect here: set it on the enclosing " + class_info().name + "");
 }
 
 std::string Renderer::limits() const {

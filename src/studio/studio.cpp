@@ -131,7 +131,7 @@ void Studio::answer(const Task& task) {
     try {
       request = Json::parse(task.text);
     } catch (const nlohmann::json::exception& error) {
-      throw RequestError("bad_request", fmt::format("this is no JSON: {}", std::string(error.what()).substr(0, largest_echo)));
+      throw RequestError("bad_request", fmt::format("invalid JSON: {}", std::string(error.what()).substr(0, largest_echo)));
     }
     if (!request.is_object()) throw RequestError("bad_request", "a request is a JSON object");
     const auto id = request.find("id");

@@ -75,11 +75,11 @@ TEST_F(CheckpointProgramTest, wrong_requests_are_explained) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
       {{"--passes", "0:1"}, "--checkpoint"},
       {{"--passes", "0:3", "--checkpoint", "b"}, "are 2 passes of 16384"},
-      {{"--passes", "1:1", "--checkpoint", "b"}, "no passes"},
+      {{"--passes", "1:1", "--checkpoint", "b"}, "not a range of passes"},
       {{"--passes", "a:b", "--checkpoint", "b"}, "A:B"},
       {{"--every", "5s"}, "--checkpoint"},
       {{"--resume", "absent"}, "there is no such file"},
-      {{"--resume", "scene.etd"}, "it is no checkpoint"},
+      {{"--resume", "scene.etd"}, "it is not a checkpoint"},
       {{"--resume", "a", "--continue", "a"}, "--continue"},
       {{"--resume", "a", "--seed", "4"}, "the seed differs"},
       {{"--resume", "a", "--size", "3x1"}, "the description differs"},
@@ -107,7 +107,7 @@ TEST_F(CheckpointProgramTest, an_interrupted_render_says_how_to_go_on) {
     for (int i = 0; i < 6000 && process.err().empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     process.send(SIGTERM);
     ASSERT_EQ(process.wait(), 130) << process.err();
-    EXPECT_TRUE(has(process.out(), "to go on: etendue render scene.etd --set camera.fov=41 --samples " + samples +
+    EXPECT_TRUE(has(process.out(), "to resume: etendue render scene.etd --set camera.fov=41 --samples " + samples +
                                        " -o a.npy --resume state\n"))
         << process.out();
   }

@@ -88,7 +88,7 @@ TEST_F(DenoiseProgramTest, DescriptionsAskForIt) {
   EXPECT_FALSE(exists("b.denoised.png"));
   ASSERT_EQ(run({"render", "lamp.etd", "-o", "b.npy"}), 0) << err;
   ASSERT_EQ(run({"render", "lamp.etd", "-o", "b.npy", "--skip-existing"}), 0) << err;
-  EXPECT_TRUE(has(out, "b.denoised.npy") && has(out, "is there already")) << out;
+  EXPECT_TRUE(has(out, "b.denoised.npy") && has(out, "exists already")) << out;
   std::filesystem::remove(folder / "b.denoised.npy");
   ASSERT_EQ(run({"render", "lamp.etd", "-o", "b.npy", "--skip-existing"}), 0) << err;
   EXPECT_TRUE(exists("b.denoised.npy"));

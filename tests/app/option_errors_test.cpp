@@ -48,7 +48,7 @@ TEST_F(OptionErrors, StandAtTheOptionThatWasGiven) {
 TEST_F(OptionErrors, WhatMeansNothingIsRefused) {
   EXPECT_TRUE(has(refused({"--pixel", "1,1", "-o", "a.png"}), "--output")) << err;
   EXPECT_TRUE(has(refused({"--pixel", "1,1", "--skip-existing"}), "--skip-existing")) << err;
-  EXPECT_TRUE(has(refused({"--allow-path", "nowhere"}), "--allow-path: 'nowhere' is no folder")) << err;
+  EXPECT_TRUE(has(refused({"--allow-path", "nowhere"}), "--allow-path: 'nowhere' is not a folder")) << err;
   EXPECT_EQ(run({"nonsense", "--help"}), 2);
   EXPECT_TRUE(says("there is no command 'nonsense'")) << err;
   EXPECT_EQ(run({"rendr", "--help"}), 2);
@@ -59,10 +59,10 @@ TEST_F(OptionErrors, WhatMeansNothingIsRefused) {
 
 TEST_F(OptionErrors, WhatALaterOneWouldUndoIsRefused) {
   EXPECT_TRUE(refused({"--set", "renderer.max_depth=2", "--set", "renderer=LightTracer"})
-                  .starts_with("--set: 'renderer' would undo what --set says of 'renderer.max_depth' before it"))
+                  .starts_with("--set: 'renderer' would overwrite what --set sets in 'renderer.max_depth'"))
       << err;
   EXPECT_TRUE(refused({"--set", "scene.objects[0].shader.color=0.2", "--set", "scene.objects[0].shader=PhongShader"})
-                  .starts_with("--set: 'scene.objects[0].shader' would undo"))
+                  .starts_with("--set: 'scene.objects[0].shader' would overwrite"))
       << err;
   EXPECT_TRUE(refused({"--set", "seed=3", "--seed", "4"}).starts_with("--seed: 'seed' is set already, by --set")) << err;
   EXPECT_TRUE(refused({"--set", "image.width=4", "--size", "8x8"}).starts_with("--size: 'image.width' is set already")) << err;
@@ -74,8 +74,8 @@ TEST_F(OptionErrors, WhatALaterOneWouldUndoIsRefused) {
 }
 
 TEST_F(OptionErrors, APathGoesByMembers) {
-  EXPECT_TRUE(has(refused({"--set", "ball.radius=2"}),
-                  "a path goes by members, not by names of the file, and 'ball' is scene.objects[0]"))
+  EXPECT_TRUE(
+      has(refused({"--set", "ball.radius=2"}), "a path consists of members, not names of the file; 'ball' is scene.objects[0]"))
       << err;
 }
 

@@ -83,7 +83,7 @@ TEST(SceneWarnings, MembersWithoutEffect) {
   expect("BruteForceScene { shader: Lambertian {}, objects: [ Sphere { " + diffuse + " } ] }\n" + sky, "without effect",
          {"nested scene", "shader"}, "Lambertian");
   expect("Instance { scene: BruteForceScene { transform: scale(3), objects: [ Sphere { " + diffuse + " } ] } }\n" + sky,
-         "without effect", {"scene in an instance", "transform"}, "scale");
+         "without effect", {"an instance's scene", "transform"}, "scale");
   expect("Instance { shading_normals: clipped, scene: BruteForceScene { objects: [ Sphere { " + diffuse + " } ] } }\n" + sky,
          "without effect", {"instance", "shading_normals"}, "clipped");
   expect("Point { emission: DiffuseEmission { sides: back } }\n" + sky, "without effect", {"no surface", "sides"}, "back");
@@ -114,7 +114,7 @@ TEST(SceneWarnings, GlassThatIsNotClosed) {
   // One triangle with reversed orientation: no edge is open, but the mesh has no inside.
   const auto list = said("TriangleMesh { " + tetrahedron + "[1,3,2]], shader: Dielectric {} }\n" + sky);
   ASSERT_EQ(list.size(), 1u);
-  EXPECT_NE(list[0].text.find("same way around"), std::string::npos);
+  EXPECT_NE(list[0].text.find("not consistently oriented"), std::string::npos);
   expect("Disc { shader: Dielectric {} }\n" + sky, "open body", {"not closed"}, "Dielectric");
 }
 
@@ -168,7 +168,8 @@ TEST(SceneWarnings, WhatTheCameraSees) {
 
 TEST(SceneWarnings, ACameraInTheDark) {
   const std::string inside = "PerspectiveCamera { from: [0, 0, 0], to: [0, 0, 1], fov: 40 deg }";
-  expect("Box { size: [2, 2, 2], " + diffuse + " }\n" + sky, "in the dark", {"Box", "lets no light in"}, "[0, 0, 0]", inside);
+  expect("Box { size: [2, 2, 2], " + diffuse + " }\n" + sky, "in the dark", {"Box", "does not transmit light"}, "[0, 0, 0]",
+         inside);
   EXPECT_TRUE(
       said("Box { size: [2, 2, 2], " + diffuse + " }\nPoint { position: [0, 0.9, 0], emission: DiffuseEmission {} }\n", inside)
           .empty());

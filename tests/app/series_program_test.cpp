@@ -42,12 +42,12 @@ TEST_F(SeriesProgramTest, frames_are_rendered_each_for_itself) {
 
 TEST_F(SeriesProgramTest, frames_of_one_name_are_refused) {
   EXPECT_EQ(run({"render", "film.etd", "--frames", "0:2", "-o", "a.npy"}), 2);
-  EXPECT_TRUE(says("--output: all frames would go to 'a.npy': write #### where their number goes")) << err;
+  EXPECT_TRUE(says("--output: all frames would be written to 'a.npy': write #### where the frame number belongs")) << err;
   EXPECT_EQ(run({"render", "film.etd", "--frames", "0:2", "-o", "a#.npy", "--checkpoint", "state"}), 2);
-  EXPECT_TRUE(says("--checkpoint: all frames would have the checkpoint 'state'")) << err;
+  EXPECT_TRUE(says("--checkpoint: all frames would write the checkpoint 'state'")) << err;
   folder.write("named.etd", std::string(film).insert(5, "outputs: [PngOutput { file: \"a.png\" }]\n"));
   EXPECT_EQ(run({"render", "named.etd", "--frames", "0:2"}), 2);
-  EXPECT_TRUE(says("all frames would go to 'a.png'")) << err;
+  EXPECT_TRUE(says("all frames would be written to 'a.png'")) << err;
   for (const char* wrong : {"3:3", "5:2", "0:9:0", "0", "a:b", "-1:3", "0:1:2:3", "0:9999999999"}) {
     EXPECT_EQ(run({"render", "film.etd", "--frames", wrong, "-o", "a#.npy"}), 2) << wrong;
     EXPECT_TRUE(says("--frames")) << err;
@@ -67,11 +67,12 @@ TEST_F(SeriesProgramTest, whole_frames_are_left_out) {
   ASSERT_EQ(run({"render", "film.etd", "--frame", "2", "--samples", "1", "-o", "f2.exr"}), 0) << err;
   ASSERT_EQ(run(command), 0) << err;
   EXPECT_TRUE(says("'f1.exr' cannot be read: it is rendered again")) << err;
-  EXPECT_TRUE(says("'f2.exr' is of another version of the file or of one that it names, or of other options")) << err;
-  EXPECT_TRUE(has(out, "f3.exr is there already")) << out;
+  EXPECT_TRUE(says("'f2.exr' was rendered from another version of the file or of one that it names, or with other options"))
+      << err;
+  EXPECT_TRUE(has(out, "f3.exr exists already")) << out;
   EXPECT_TRUE(exists("f0.exr"));
   ASSERT_EQ(run(command), 0) << err;
-  for (const char* name : {"f0", "f1", "f2", "f3"}) EXPECT_TRUE(has(out, std::string(name) + ".exr is there already")) << out;
+  for (const char* name : {"f0", "f1", "f2", "f3"}) EXPECT_TRUE(has(out, std::string(name) + ".exr exists already")) << out;
 }
 
 TEST_F(SeriesProgramTest, what_files_hold_that_are_included_or_named_counts_too) {
@@ -87,11 +88,11 @@ TEST_F(SeriesProgramTest, what_files_hold_that_are_included_or_named_counts_too)
   const std::vector<std::string> command = {"render", "part.etd", "-o", "p.exr", "--skip-existing"};
   ASSERT_EQ(run(command), 0) << err;
   ASSERT_EQ(run(command), 0) << err;
-  EXPECT_TRUE(has(out, "p.exr is there already")) << out;
+  EXPECT_TRUE(has(out, "p.exr exists already")) << out;
   for (const auto& [color, texel] : {std::pair("0.4", "8"), std::pair("0.4", "7")}) {
     with_color(color, texel);
     ASSERT_EQ(run(command), 0) << err;
-    EXPECT_TRUE(says("'p.exr' is of another version of the file or of one that it names")) << err;
+    EXPECT_TRUE(says("'p.exr' was rendered from another version of the file or of one that it names")) << err;
   }
 }
 
@@ -111,10 +112,10 @@ TEST_F(SeriesProgramTest, files_follow_each_other_whatever_happens_to_one) {
   EXPECT_EQ(run({"render", "film.etd", "bad.etd", "b.etd", "c.etd"}), 2);
   EXPECT_TRUE(exists("film.png") && exists("c.png"));
   EXPECT_TRUE(says("Job has no member 'sede' (did you mean 'seed'?)")) << err;
-  EXPECT_TRUE(says("'film.png' is the picture of film.etd already")) << err;
+  EXPECT_TRUE(says("'film.png' is already the picture of film.etd")) << err;
   EXPECT_TRUE(says("2 of 4 renders failed:\n  bad.etd\n  b.etd\n")) << err;
   EXPECT_EQ(run({"render", "film.etd", "c.etd", "-o", "a.png"}), 2);
-  EXPECT_TRUE(says("pictures of several files cannot go to one file")) << err;
+  EXPECT_TRUE(says("pictures of several files cannot be written to one")) << err;
   EXPECT_EQ(run({"render", "film.etd", "c.etd", "--quiet"}), 0) << err;
 }
 

@@ -167,7 +167,7 @@ TEST_F(CompareProgram, interrupted_and_continued_gives_the_same_numbers) {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     process.send(SIGINT);
     EXPECT_EQ(finish(std::move(process)), 130);
-    EXPECT_TRUE(says("the same command goes on")) << err;
+    EXPECT_TRUE(says("the same command resumes")) << err;
     EXPECT_FALSE(exists("parts.json"));
     EXPECT_FALSE(exists("parts.json.runs/scene1-variant2-run4.run"));
   }
@@ -259,7 +259,7 @@ TEST_F(CompareProgram, bad_input_exits_with_2_and_says_why) {
     EXPECT_TRUE(says(why)) << why << "\n" << err;
   };
   refused({"--samples", "4"}, "nothing to compare");
-  refused({"--renderers", "PathTracer"}, "say when runs end");
+  refused({"--renderers", "PathTracer"}, "a run needs a limit");
   refused({"--renderers", "PathTracer", "--samples", "4", "--time", "1s"}, "give one of them");
   refused({"--renderers", "PathTracr", "--samples", "4"}, "did you mean 'PathTracer'");
   refused({"--renderers", "PathTracer,PathTracer", "--samples", "4"}, "two variants 'PathTracer'");
@@ -273,11 +273,11 @@ TEST_F(CompareProgram, bad_input_exits_with_2_and_says_why) {
   refused({"--renderers", "FeatureRenderer", "--samples", "4"}, "give --reference");
   refused({"--renderers", "FeatureRenderer", "--samples", "4", "--reference-time", "1s"}, "no variant is unbiased");
   refused({"--renderers", "PathTracer", "--samples", "4", "--inset", "0,0,17,4"}, "beyond the 16 x 16");
-  refused({"--renderers", "PathTracer", "--samples", "4", "--inset", "0,0,0,4"}, "no part of a picture");
+  refused({"--renderers", "PathTracer", "--samples", "4", "--inset", "0,0,0,4"}, "not a part of the picture");
   refused({"--renderers", "PathTracer", "--samples", "4", "--report", "no/such/r.html"}, "no folder");
   refused({"--renderers", "PathTracer", "--samples", "4", "--json", "x", "--csv", "./x"}, "same file");
   refused({"--renderers", "PathTracer", "--samples", "4", "--json", "tiny.etd"}, "would be overwritten");
-  refused({"--renderers", "PathTracer", "--time", "soon"}, "is no time");
+  refused({"--renderers", "PathTracer", "--time", "soon"}, "is not a duration");
   EXPECT_FALSE(exists("tiny.etd.runs"));
   for (const auto& [option, value] : {std::pair("--runs", "2"), std::pair("--significance", "2"), std::pair("--samples", "0"),
                                       std::pair("--samples", "1e99"), std::pair("--runs", "100000"), std::pair("--tile", "-1")})

@@ -239,7 +239,7 @@ TEST_F(VerifyProgram, bad_input_exits_with_2_and_says_why) {
   EXPECT_EQ(run({"--renderers", "PathTracer,PathTracer{max_dept: 3}"}), 2);
   EXPECT_TRUE(has(err, "did you mean 'max_depth'")) << err;
   EXPECT_EQ(run({"--renderers", "PathTracer"}), 2);
-  EXPECT_TRUE(has(err, "nothing to compare")) << err;
+  EXPECT_TRUE(has(err, "no other renderer to compare")) << err;
   EXPECT_EQ(run({"--renderers", "PathTracer,FeatureRenderer"}), 2);
   EXPECT_TRUE(has(err, "FeatureRenderer: misses")) << err;
   EXPECT_EQ(run({"--renderers", "PathTracer,Sphere"}), 2);

@@ -135,9 +135,9 @@ TEST(Set, ChecksTypesRangesAndChoices) {
   EXPECT_EQ(error_of(w, "place", Value(Numbers{{1, 2}, 1, {}})),
             "Widget.place expects 3 numbers in brackets, not a list of 2 numbers");
   EXPECT_EQ(error_of(w, "points", Value(Numbers{{1, 2, 3, 4}, 1, {}})),
-            "Widget.points expects a list of rows of 3 numbers; 4 numbers are no multiple of 3");
+            "Widget.points expects a list of rows of 3 numbers; 4 numbers are not a multiple of 3");
   Transform flat = Transform::scale({1, 0, 1});
-  EXPECT_EQ(error_of(w, "transform", Value(flat)), "Widget.transform is a singular transform: it cannot be undone");
+  EXPECT_EQ(error_of(w, "transform", Value(flat)), "Widget.transform is a singular transform: it has no inverse");
   EXPECT_EQ(w.weight, 1);  // the refused settings changed nothing
 }
 

@@ -85,16 +85,16 @@ TEST(PanelFacts, a_slider_ends_within_the_range) {
   REFUSED("slider that ends at 0", d.template member<&P::x>("x", "1", "x", more_than(0), soft(0, 1)));
   REFUSED("slider from 2 to 1", d.template member<&P::x>("x", "1", "x", soft(2, 1)));
   REFUSED("slider from 2 to 2", d.template member<&P::x>("x", "1", "x", soft(2, 2)));
-  REFUSED("no number", d.template member<&P::flag>("flag", "", "flag", soft(0, 1)));
-  REFUSED("no number", d.template member<&P::map>("map", "1", "map", soft(0, 1)));  // not declared to be read as a number
+  REFUSED("not a number", d.template member<&P::flag>("flag", "", "flag", soft(0, 1)));
+  REFUSED("not a number", d.template member<&P::map>("map", "1", "map", soft(0, 1)));  // not declared to be read as a number
 }
 
 TEST(PanelFacts, ratios_are_of_positive_numbers) {
   REFUSED("may be negative", d.template member<&P::x>("x", "1", "x", soft(1, 10), logarithmic));
   REFUSED("may be negative", d.template member<&P::x>("x", "1", "x", range(-1, 10), soft(1, 10), logarithmic));
-  REFUSED("more than 0", d.template member<&P::x>("x", "1", "x", range(0, 10), logarithmic));
-  REFUSED("more than 0", d.template member<&P::x>("x", "1", "x", at_least(1), logarithmic));  // no upper end
-  REFUSED("more than 0", d.template member<&P::x>("x", "1", "x", at_least(0), soft(0, 1), logarithmic));
+  REFUSED("not positive", d.template member<&P::x>("x", "1", "x", range(0, 10), logarithmic));
+  REFUSED("not positive", d.template member<&P::x>("x", "1", "x", at_least(1), logarithmic));  // no upper end
+  REFUSED("not positive", d.template member<&P::x>("x", "1", "x", at_least(0), soft(0, 1), logarithmic));
 }
 
 TEST(PanelFacts, colours_alone_have_a_meaning) {
@@ -103,7 +103,7 @@ TEST(PanelFacts, colours_alone_have_a_meaning) {
 }
 
 TEST(PanelFacts, choices_are_texts_once_each_and_hold_the_default) {
-  REFUSED("no text", d.template member<&P::x>("x", "1", "x", choices("a", "b")));
+  REFUSED("not a string", d.template member<&P::x>("x", "1", "x", choices("a", "b")));
   REFUSED("twice", d.template member<&P::text>("text", "", "text", choices("a", "a")));
   REFUSED("its default is not allowed", d.template member<&P::text>("text", "", "text", choices("b", "c")));
   REFUSED("does not name its choices", d.template member<&P::mode>("mode", "", "mode"));
@@ -128,15 +128,16 @@ TEST(PanelFacts, conditions_name_what_can_be) {
                                    .template member<&P::x>("x", "1", "x", when("mode", "third")));
   REFUSED("it names all", d.template member<&P::mode>("mode", "", "mode", choices("first", "second"))
                               .template member<&P::x>("x", "1", "x", when("mode", "first", "second")));
-  REFUSED("always holds something", d.template member<&P::mode>("mode", "", "mode", choices("first", "second"))
-                                        .template member<&P::x>("x", "1", "x", when("mode")));
+  REFUSED("can never be empty", d.template member<&P::mode>("mode", "", "mode", choices("first", "second"))
+                                    .template member<&P::x>("x", "1", "x", when("mode")));
   REFUSED("never 20",
           d.template member<&P::y>("y", "1", "y", range(0, 10)).template member<&P::x>("x", "1", "x", when("y", 20)));
-  REFUSED("always holds something",
+  REFUSED("can never be empty",
           d.template member<&P::y>("y", "1", "y", more_than(0)).template member<&P::x>("x", "1", "x", when("y")));
   REFUSED("not true or false", d.template member<&P::y>("y", "1", "y").template member<&P::x>("x", "1", "x", when("y", true)));
-  REFUSED("no number", d.template member<&P::flag>("flag", "", "f").template member<&P::x>("x", "1", "x", unless("flag", 1)));
-  REFUSED("must be written",
+  REFUSED("not a number",
+          d.template member<&P::flag>("flag", "", "f").template member<&P::x>("x", "1", "x", unless("flag", 1)));
+  REFUSED("is required",
           d.template member<&P::flag>("flag", "", "f").template member<&P::x>("x", "1", "x", required, when("flag")));
 }
 

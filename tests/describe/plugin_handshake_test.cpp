@@ -104,7 +104,8 @@ TEST_F(PluginHandshake, names_class_and_file_of_what_is_thrown) {
 }
 
 TEST_F(PluginHandshake, refuses_what_cannot_be_asked) {
-  EXPECT_TRUE(has(loading("extern \"C\" const char* etendue_plugin_abi() { return nullptr; }"), "no Étendue plugin")) << err;
+  EXPECT_TRUE(has(loading("extern \"C\" const char* etendue_plugin_abi() { return nullptr; }"), "not an Étendue plugin"))
+      << err;
   EXPECT_TRUE(has(loading("extern \"C\" const char* etendue_plugin_abi() { return (const char*)16; }"), "crashed")) << err;
   EXPECT_TRUE(has(loading("extern \"C\" { extern const char etendue_plugin_abi[] = \"interfaces 4\"; }"), "crashed")) << err;
   EXPECT_TRUE(has(loading("extern \"C\" const char* etendue_plugin_abi() { return \"interfaces 0\"; }"), "build it again"))

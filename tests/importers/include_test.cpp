@@ -94,8 +94,9 @@ TEST_F(IncludedScenes, TakeParameters) {
   EXPECT_EQ(load("include \"room.xml\"", options)->renderer->samples, 12u);
 
   EXPECT_EQ(errors("include \"room.xml\" with { sampels: 9 }"), "main.etd:1:27: 'room.xml' has no parameter 'sampels'\n");
-  EXPECT_EQ(errors("include \"room.xml\" with { samples: 9 m }"),
-            "main.etd:1:27: a parameter of 'room.xml' is a number without a unit, a list of such, a truth or a text\n");
+  EXPECT_EQ(
+      errors("include \"room.xml\" with { samples: 9 m }"),
+      "main.etd:1:27: a parameter of 'room.xml' is a number without a unit, a list of such numbers, a boolean or a string\n");
   options.defines = {{"r.sampels", "12"}};
   EXPECT_EQ(errors(named, options), "-D r.sampels: there is no param 'r.sampels'\n");
 }

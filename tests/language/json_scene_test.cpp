@@ -84,7 +84,7 @@ TEST(JsonScene, ErrorsAreLocated) {
   EXPECT_EQ(json_errors("{ \"class\": \"LanguagePart\", \"count\": 1, \"count\": 2 }"),
             "1:40: \"count\" is already set at line 1:28");
   EXPECT_EQ(json_errors("{ \"class\": \"LanguagePart\", \"child\": {} }"),
-            "1:37: an object must say its class: \"class\": \"…\"");
+            "1:37: an object must name its class: \"class\": \"…\"");
   EXPECT_EQ(json_errors("{ \"class\": \"LanguagePart\", \"child\": { \"class\": \"Lambertain\" } }"),
             "1:37: there is no class 'Lambertain' (did you mean 'Lambertian'?)");
   EXPECT_EQ(json_errors("{ \"class\": \"LanguagePart\", \"child\": \"LanguageConstant\" }"),
@@ -96,8 +96,8 @@ TEST(JsonScene, ErrorsAreLocated) {
   EXPECT_EQ(json_errors("{ \"$names\": { \"a b\": 1 }, \"class\": \"LanguagePart\" }"),
             "1:15: 'a b' cannot be a name: names are letters, digits and '_'");
   EXPECT_EQ(json_errors("[1, 2]"), "1:1: a render description in JSON is an object: { \"class\": \"Job\", … }");
-  EXPECT_EQ(json_errors("{ \"class\": \"LanguagePart\",\n \"count\" 4 }").substr(0, 22), "2:10: this is no JSON:");
-  EXPECT_NE(json_errors("").find("this is no JSON"), std::string::npos);
+  EXPECT_EQ(json_errors("{ \"class\": \"LanguagePart\",\n \"count\" 4 }").substr(0, 22), "2:10: invalid JSON:");
+  EXPECT_NE(json_errors("").find("invalid JSON"), std::string::npos);
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "{\"child\":";
   EXPECT_EQ(json_errors(deep), "1:2305: too deeply nested: more than 256 levels of brackets");

@@ -37,7 +37,7 @@ TEST(Language, NameErrors) {
   EXPECT_EQ(part_errors("a = b\nb = c\nc = a\nLanguagePart { count: b }"), "1:5: 'b' is defined by itself: b → c → a → b");
   EXPECT_EQ(part_errors("a = LanguagePart { child: a }\nLanguagePart { child: a }"), "1:27: 'a' is defined by itself: a → a");
   EXPECT_EQ(part_errors("a = 1 m + 1\nLanguagePart { count: a, length: a }"), "1:9: cannot add a length to a plain number");
-  EXPECT_EQ(part_errors("pi = 3\nLanguagePart {}"), "1:1: 'pi' has a fixed meaning and cannot be defined");
+  EXPECT_EQ(part_errors("pi = 3\nLanguagePart {}"), "1:1: 'pi' is reserved and cannot be defined");
   EXPECT_EQ(part_errors("LanguagePart { child: LanguageConstant }"),
             "1:23: 'LanguageConstant' is a class: write LanguageConstant {}");
   EXPECT_EQ(part_errors("LanguagePart { color: rgb }"), "1:23: 'rgb' is a function: write rgb(…)");
@@ -140,9 +140,9 @@ TEST(Language, JobErrors) {
   const std::string job = job_with("seed: 1");
   EXPECT_EQ(job_errors(job + "\n" + job), "2:1: there is a Job already, at line 1:1");
   EXPECT_EQ(job_errors("LanguagePart {}\n" + job),
-            "1:1: only the Job stands for itself; give this a name to use it by: name = LanguagePart { … }");
+            "1:1: only the Job needs no name; give this component one: name = LanguagePart { … }");
   EXPECT_EQ(job_errors("Jbo {}"),
-            "1:1: only the Job stands for itself (did you mean 'Job'?); give this a name to use it by: name = Jbo { … }\n"
+            "1:1: only the Job needs no name (did you mean 'Job'?); give this component one: name = Jbo { … }\n"
             "1:1: there is no class 'Jbo' (did you mean 'Job'?)");
   EXPECT_EQ(load_job_text(job_with("seed: 12"), "text")->seed, 12u);
 }

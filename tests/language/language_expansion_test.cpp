@@ -44,12 +44,11 @@ double seconds(const std::function<void()>& work) {
 
 TEST(Expansion, OfMapsAndShadersIsBounded) {
   const std::string maps = chain("NoiseMap {}", "AddMap { first: @, second: @ }", 30);
-  EXPECT_EQ(
-      said(maps + lit("Sphere { shader: Lambertian { color: a30 } }")),
-      "13:7: 'a12' is asked for 16383 parts at every hit, as 'a0' stands in 4096 places in it; only 15 parts are written, "
-      "and 10000 are the most that shared parts may amount to");
+  EXPECT_EQ(said(maps + lit("Sphere { shader: Lambertian { color: a30 } }")),
+            "13:7: 'a12' evaluates 16383 components at every hit, as 'a0' is used in 4096 places in it; there are only 15 "
+            "different ones, and 10000 evaluations are the most that shared components may cause");
   const std::string mixes = chain("Lambertian {}", "MixShader { first: @, second: @, amount: a0a }", 20);
-  EXPECT_NE(said("a0a = NoiseMap {}\n" + mixes + lit("Sphere { shader: a20 }")).find("is asked for 1"), std::string::npos);
+  EXPECT_NE(said("a0a = NoiseMap {}\n" + mixes + lit("Sphere { shader: a20 }")).find("evaluates 1"), std::string::npos);
   // Two chains that cross: no part uses the same part twice.
   std::string crossed = "a0 = NoiseMap {}\nb0 = NoiseMap { seed: 2 }\n";
   for (int i = 1; i <= 30; ++i) {
@@ -57,13 +56,15 @@ TEST(Expansion, OfMapsAndShadersIsBounded) {
     crossed += "a" + n + " = AddMap { first: a" + m + ", second: b" + m + " }\nb" + n + " = AddMap { first: b" + m +
                ", second: a" + m + " }\n";
   }
-  EXPECT_NE(said(crossed + lit("Sphere { shader: Lambertian { color: a30 } }")).find("parts at every hit"), std::string::npos);
+  EXPECT_NE(said(crossed + lit("Sphere { shader: Lambertian { color: a30 } }")).find("components at every hit"),
+            std::string::npos);
 }
 
 TEST(Expansion, OfSolidsIsBounded) {
   const std::string solids = chain("Sphere {}", "Union { operands: [@, @] }", 30);
   const std::string text = said(solids + lit("a30"));
-  EXPECT_NE(text.find("'a13' is asked for 16383 parts at every hit, as 'a0' stands in 8192 places"), std::string::npos) << text;
+  EXPECT_NE(text.find("'a13' evaluates 16383 components at every hit, as 'a0' is used in 8192 places"), std::string::npos)
+      << text;
 }
 
 // Scenes of many objects that share a few parts, and scenes within scenes, are the purpose of sharing and are not bounded.

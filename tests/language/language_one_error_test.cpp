@@ -200,8 +200,8 @@ TEST(OneMistake, PowersAreWritten) {
   EXPECT_EQ(number("(1 + 1)^0.5 * (1+1)^.5"), 2.0000000000000004);
   EXPECT_EQ(value_errors("2 m ^ 2"), "1:5: cannot raise a length to the power of a plain number: both must be plain numbers");
   EXPECT_EQ(value_errors("[1, 2] ^ 2"), "1:8: cannot raise a list of 2 numbers to the power of a number");
-  EXPECT_EQ(value_errors("(-1) ^ 0.5"), "1:6: -1 to the power of 0.5 is no finite number");
-  EXPECT_EQ(value_errors("10 ^ 400"), "1:4: 10 to the power of 400 is no finite number");
+  EXPECT_EQ(value_errors("(-1) ^ 0.5"), "1:6: -1 to the power of 0.5 is not a finite number");
+  EXPECT_EQ(value_errors("10 ^ 400"), "1:4: 10 to the power of 400 is not a finite number");
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST(OtherHabits, OfOperatorsAndWords) {
   expect_hint("4 /* four */", "# begins a comment");
   expect_hint("if 1 = 2 then 1 else 2", "'=='");
   expect_hint("if 1 < 2 then 1 elif 2 < 3 then 2 else 3", "not 'elif' (write else if)");
-  expect_hint("count([1 for i in 0...3])", "a range is written with two points: 0..3");
+  expect_hint("count([1 for i in 0...3])", "a range is written with two dots: 0..3");
   expect_hint("p [0]", "list[0]");
   expect_hint("len(p)", "count(list)");
   expect_hint("count(range(0, 3))", "0..3");
@@ -86,8 +86,8 @@ TEST(OtherHabits, OfColoursAndTransforms) {
     return told("Job { scene: BvhScene { objects: [Sphere { " + member + "\n radius: 1 }] } }");
   };
   EXPECT_EQ(object("emission: DiffuseEmission { radiance: illuminant(D65) }"),
-            "1:93: 'D65' is not defined: texts stand in quotes, \"D65\"");
-  EXPECT_NE(object("transform: rotate(30 deg, y)").find("texts stand in quotes, \"y\""), std::string::npos);
+            "1:93: 'D65' is not defined: strings are written in quotes, \"D65\"");
+  EXPECT_NE(object("transform: rotate(30 deg, y)").find("strings are written in quotes, \"y\""), std::string::npos);
   EXPECT_NE(object("shader: Lambertian { color: rgb([1, 0, 0.5]) }").find("write rgb(1, 0, 0.5)"), std::string::npos);
   EXPECT_NE(object("shader: Lambertian { color: [1, 0, 0.5] }").find("write rgb(1, 0, 0.5)"), std::string::npos);
   EXPECT_NE(object("transform: matrix([1,0,0,0], [0,1,0,0], [0,0,1,0])").find("write matrix([[…], […], […]])"),

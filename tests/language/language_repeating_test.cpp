@@ -94,13 +94,13 @@ TEST(Conditions, AreRefusedWhereTheyHaveNoMeaning) {
   EXPECT_EQ(value_errors("1 m < 1"), "1:5: cannot compare a length with a number by '<'");
   EXPECT_EQ(value_errors("\"a\" < \"b\""), "1:5: cannot compare a string with a string by '<'");
   EXPECT_EQ(value_errors("1 == \"1\""), "1:3: cannot compare a number with a string by '=='");
-  EXPECT_EQ(value_errors("if 1 then 2 else 3"), "1:4: what 'if' asks must be true or false, not a number");
-  EXPECT_EQ(value_errors("1 < 2 < 3"), "1:7: comparisons do not follow each other: write a < b and b < c");
+  EXPECT_EQ(value_errors("if 1 then 2 else 3"), "1:4: the condition of 'if' must be true or false, not a number");
+  EXPECT_EQ(value_errors("1 < 2 < 3"), "1:7: comparisons cannot be chained: write a < b and b < c");
   EXPECT_EQ(value_errors("0..2.5"), "1:2: a range goes from a whole number to a whole number, not 2.5");
   EXPECT_EQ(value_errors("0..2 m"), "1:2: a range goes from a whole number to a whole number, not a length");
   EXPECT_EQ(part_errors("a = [1, 2]\nLanguagePart { indices: [a[2], a[-1], a[0.5]] }"),
             "2:28: there is no entry 2: the list has 2, from 0 to 1\n2:34: there is no entry -1: the list has 2, from 0 to 1\n"
-            "2:41: a place in a list is a whole number, not 0.5");
+            "2:41: an index is a whole number, not 0.5");
 }
 
 TEST(RandomNumbers, AreEvenAndUnrelated) {
@@ -175,11 +175,11 @@ TEST(Functions, ErrorsTellTheWay) {
             "1:22: there is no function 'g' (did you mean 'f'?)");
   EXPECT_EQ(part_errors("f(n) = n\nLanguagePart { count: f, flag: n(2) }\n"),
             "2:23: 'f' is a function: write f(…)\n2:32: there is no function 'n' (did you mean 'f'?)");
-  EXPECT_EQ(part_errors("a = 3\nLanguagePart { count: a(2) }"), "2:23: 'a' is no function: it is a value, defined at line 1:1");
-  EXPECT_EQ(
-      part_errors("sqrt(x) = x\npi(y) = y\nf(x, x) = x\nLanguagePart {}"),
-      "1:1: 'sqrt' is a function of the language and cannot be defined again\n2:1: 'pi' has a fixed meaning and cannot be "
-      "defined\n3:6: there is a parameter 'x' already");
+  EXPECT_EQ(part_errors("a = 3\nLanguagePart { count: a(2) }"),
+            "2:23: 'a' is not a function: it is a value, defined at line 1:1");
+  EXPECT_EQ(part_errors("sqrt(x) = x\npi(y) = y\nf(x, x) = x\nLanguagePart {}"),
+            "1:1: 'sqrt' is a function of the language and cannot be defined again\n2:1: 'pi' is reserved and cannot be "
+            "defined\n3:6: there is a parameter 'x' already");
 }
 
 /// Expects the error `said` within a CPU time; other processes may be running.

@@ -30,7 +30,7 @@ TEST(NothingSilent, BytesThatAreNoText) {
 TEST(NothingSilent, NumbersThatDoNotFit) {
   EXPECT_EQ(part_errors("LanguagePart { length: 1e999 }"), "1:24: the number 1e999 is outside the range of double precision");
   EXPECT_EQ(part_errors("LanguagePart { length: 1e39 }"),
-            "1:24: LanguagePart.length must be at most 3.40282e+38 in size, not 1e+39");
+            "1:24: LanguagePart.length must be at most 3.40282e+38 in magnitude, not 1e+39");
   EXPECT_EQ(part_errors("LanguagePart { count: 1e39 }"), "1:23: LanguagePart.count must be from 0 to 1000, not 1e+39");
   EXPECT_EQ(part_errors("LanguagePart { large: 9007199254740993 }"),
             "1:23: LanguagePart.large must be less than 2^53 = 9007199254740992");

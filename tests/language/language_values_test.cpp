@@ -91,7 +91,7 @@ TEST(Language, UnitsAreInBaseUnits) {
   EXPECT_EQ(list.as<Numbers>()->dimension, Dimension::length);
   EXPECT_EQ(list.as<Numbers>()->values, (std::vector<double>{0, 1, 0.002}));
   EXPECT_EQ(value_errors("10 cmm"), "1:4: unknown unit 'cmm' (did you mean 'cm'?)");
-  EXPECT_EQ(value_errors("(1 m) cm"), "1:7: cannot give a length a unit once more");
+  EXPECT_EQ(value_errors("(1 m) cm"), "1:7: cannot give a length a second unit");
   EXPECT_EQ(value_errors("[1, 2 m]"), "1:5: a list cannot mix a plain number and a length: give each its unit");
   EXPECT_EQ(value_errors("[1 K, 2 m]"), "1:7: a list cannot mix a temperature and a length");
 }
@@ -188,7 +188,7 @@ TEST(Language, Transforms) {
   ASSERT_TRUE(moving.as<AnimatedTransform>());
   EXPECT_EQ(moving.as<AnimatedTransform>()->keys()[1].time, 0.5f);
 
-  EXPECT_EQ(value_errors("scale(0)"), "1:1: gives a singular transform: it cannot be undone");
+  EXPECT_EQ(value_errors("scale(0)"), "1:1: gives a singular transform: it has no inverse");
   EXPECT_EQ(value_errors("rotate(1, \"w\")"), "1:11: the axis must be \"x\", \"y\", \"z\" or a vector, not \"w\"");
   EXPECT_EQ(value_errors("rotate(1, [0, 0, 0])"), "1:11: the axis has no length");
   EXPECT_EQ(value_errors("look_at([0,0,0], [0,0,0], [0,1,0])"), "1:1: look_at: from and to are the same point");

@@ -46,7 +46,7 @@ TEST(Language, SetsByPath) {
   EXPECT_EQ(wrong("points[2]", "[1,2,3]"), "1:1: points has 2 entries: there is no [2]");
   EXPECT_EQ(wrong("points[0]", "[1,2]"), "1:11: an entry of points is 3 numbers, not a list of 2 numbers");
   EXPECT_EQ(wrong("points[0]", "[1,2,3] K"), "1:11: points does not take a temperature");
-  EXPECT_EQ(wrong("parts[x].count", "1"), "1:6: expected a place in the list such as [0]");
+  EXPECT_EQ(wrong("parts[x].count", "1"), "1:6: expected an index such as [0]");
   EXPECT_EQ(wrong("child..count", "1"), "1:7: expected the name of a member, not ''");
   EXPECT_EQ(wrong("count", "4000"), "1:7: LanguagePart.count must be from 0 to 1000, not 4000");
   EXPECT_EQ(wrong("count", "1 +"), "1:10: expected a value, not the end of the text");

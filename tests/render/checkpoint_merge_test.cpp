@@ -194,11 +194,11 @@ TEST_F(CheckpointTest, damage_is_found_wherever_it_is) {
   }
   EXPECT_EQ(unseen, 0) << "of " << good.size();
   for (size_t n = 0; n < good.size(); n += 1 + random() % 60)
-    unseen += !has(read(good.substr(0, n)), n < 8 ? "no checkpoint" : "cut short");
+    unseen += !has(read(good.substr(0, n)), n < 8 ? "not a checkpoint" : "cut short");
   EXPECT_EQ(unseen, 0);
   EXPECT_TRUE(has(read(good + "x"), "damaged"));
-  EXPECT_TRUE(has(read("ply\nformat ascii 1.0\n"), "it is no checkpoint"));
-  EXPECT_TRUE(has(read(""), "it is no checkpoint"));
+  EXPECT_TRUE(has(read("ply\nformat ascii 1.0\n"), "it is not a checkpoint"));
+  EXPECT_TRUE(has(read(""), "it is not a checkpoint"));
   EXPECT_TRUE(has(complaint([&] { read_checkpoint(folder / "absent"); }), "there is no such file"));
   EXPECT_TRUE(has(complaint([&] { read_checkpoint(folder.path()); }), "it is a folder"));
   EXPECT_TRUE(has(complaint([&] { continued(ball(step), folder / "absent"); }), "absent"));

@@ -94,7 +94,7 @@ TEST(Fireflies, no_command_is_given_that_would_be_refused) {
 
 TEST(Fireflies, a_black_picture_has_none) {
   const std::string text = test::job_text("PathTracer { samples: 2 }", camera, 4, floor_disc);
-  EXPECT_EQ(fireflies_text(*rendered_keeping(3, loaded(text)), "c"), "No sample brought any light.\n");
+  EXPECT_EQ(fireflies_text(*rendered_keeping(3, loaded(text)), "c"), "All samples are black.\n");
 }
 
 }  // namespace

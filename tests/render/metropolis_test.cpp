@@ -236,8 +236,8 @@ TEST(Metropolis, RefusesWhatItCannotMutate) {
   EXPECT_TRUE(has(refused("PrimarySampleMetropolis { inner: PrimarySampleMetropolis {} }"), "no paths that could be mutated"));
   EXPECT_EQ(refused("PrimarySampleMetropolis {}"), "");
   // Members that would have no effect.
-  EXPECT_TRUE(
-      has(refused("PrimarySampleMetropolis { inner: PathTracer { samples: 9 } }"), "say it of the PrimarySampleMetropolis"));
+  EXPECT_TRUE(has(refused("PrimarySampleMetropolis { inner: PathTracer { samples: 9 } }"),
+                  "set it on the enclosing PrimarySampleMetropolis"));
   EXPECT_TRUE(
       has(refused("PrimarySampleMetropolis { inner: PathTracer { sampler: IndependentSampler {} } }"), "has no effect"));
   EXPECT_TRUE(has(refused("PrimarySampleMetropolis { light_sampler: PowerLightSampler {} }"), "inner.light_sampler"));

@@ -167,7 +167,7 @@ TEST(RenderEdit, what_is_refused_leaves_all_as_it_was) {
   EXPECT_TRUE(has(refused(*job, "scene", Value(Ref<Component>())), "needs a scene"));
   EXPECT_TRUE(has(refused(*job->camera, "to", Value(Numbers{{0, 0.5, 5}, 1, Dimension::none})), "another point than from"));
   EXPECT_TRUE(has(refused(*job->scene->objects[4], "triangles", Value(Numbers{{0, 1, 9}, 1, Dimension::none})), "vertex 9"));
-  EXPECT_TRUE(has(refused(*job->scene->objects[8], "scene", Value(Ref<Component>(job->scene))), "cannot hold itself"));
+  EXPECT_TRUE(has(refused(*job->scene->objects[8], "scene", Value(Ref<Component>(job->scene))), "cannot contain itself"));
   EXPECT_TRUE(has(refused(*make<Job>(), "seed", Value(Number{1})), "no part of the job"));
   // If one of several edits is refused, none is made.
   const Edit both[] = {{Ref<const Component>(&ball), "radius", Value(Number{0.1, Dimension::length})},

@@ -152,9 +152,9 @@ TEST(LightGroups, RefuseWhatTheyCannotTell) {
   EXPECT_TRUE(has(refused("PathTracer {}", R"(layers: ["light.wall+lamp"])"), "is called 'lamp'"));
   EXPECT_TRUE(has(refused("PathTracer {}", R"(layers: ["light."])"), "needs the name"));
   EXPECT_TRUE(has(refused("PathTracer {}", R"(layers: ["light.rest"])"), "by itself"));
-  EXPECT_TRUE(has(refused("PrimarySampleMetropolis {}", wall), "chains of mutated paths"));
-  EXPECT_TRUE(has(refused("MultiplexedMetropolis {}", wall), "chains of mutated paths"));
-  EXPECT_TRUE(has(refused("PathSpaceMetropolis {}", wall), "chains of mutated paths"));
+  EXPECT_TRUE(has(refused("PrimarySampleMetropolis {}", wall), "light groups are not supported"));
+  EXPECT_TRUE(has(refused("MultiplexedMetropolis {}", wall), "light groups are not supported"));
+  EXPECT_TRUE(has(refused("PathSpaceMetropolis {}", wall), "light groups are not supported"));
   EXPECT_TRUE(has(refused("PhotonMapper { irradiance: true, photon_walks: 20000, farthest: 2 }", wall),
                   "does not tell which luminaires"));
   EXPECT_TRUE(has(refused("FeatureRenderer { feature: albedo }", wall), "does not tell which luminaires"));

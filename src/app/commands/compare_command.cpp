@@ -99,11 +99,11 @@ void Laboratory::look_at_all() {
         source.runs = reference_runs;
         const std::optional<size_t> by = reference_variant(*subjects);
         if (!by)
-          throw Error(fmt::format("{}: no variant is unbiased and finds all light of the scene, so none can make a reference",
+          throw Error(fmt::format("{}: no variant is unbiased and finds all light of the scene, so none can render a reference",
                                   options_.files[scene]),
                       {intern("--reference-time"), 0, 0});
-        source.text = fmt::format("{} runs of {} for it alone, {:.4g} s of the processor together", reference_runs,
-                                  variants_[*by].name, reference_seconds_);
+        source.text = fmt::format("{} separate runs of {}, {:.4g} s of CPU time together", reference_runs, variants_[*by].name,
+                                  reference_seconds_);
       } else if (!reference_variant(*subjects)) {
         throw Error(
             fmt::format("{}: every variant is biased or misses light of the scene, so their mean is no reference; give "
@@ -226,8 +226,8 @@ int Laboratory::run() {
       progress_->clear();
       const std::string folder = options_.state_folder();
       fmt::print(stderr, "{}\n",
-                 folder.empty() ? std::string("interrupted: nothing was kept, as there is no --state or --report")
-                                : fmt::format("interrupted: {} of {} runs are kept in '{}'; the same command goes on",
+                 folder.empty() ? std::string("interrupted: no runs were stored, as there is no --state or --report")
+                                : fmt::format("interrupted: {} of {} runs are stored in '{}'; the same command resumes",
                                               store_->count(), all_runs, folder));
       return exit_status::interrupted;
     }
@@ -251,8 +251,8 @@ void add_compare_command(Command& program) {
       "  etendue compare box.etd --variant 'as it is:' --variant 'short: renderer.max_depth=4' --samples 256\n"
       "  etendue compare a.etd b.etd --renderers 'PathTracer,PathTracer{next_event: false}' --samples 64 --csv errors.csv\n"
       "  etendue compare box.etd --renderers LightTracer,PathTracer --time 30s --reference box-converged.exr\n"
-      "\nEvery variant makes independent runs; their errors are told at equal processor time and at equal samples, with\n"
-      "confidence bands, bias and variance apart. The first Ctrl-C keeps the runs that are done. docs/compare.md tells more.");
+      "\nEvery variant makes independent runs; their errors are compared at equal CPU time and at equal samples, with\n"
+      "confidence bands, and bias and variance separately. The first Ctrl-C keeps finished runs. See docs/compare.md.");
   command.runs([options] { return Laboratory(*options).run(); });
 }
 

@@ -12,34 +12,34 @@ void CompareOptions::add_to(Command& command) {
   command.argument("FILE", files, "Render descriptions (.etd, or .json); several make a matrix of scenes and variants")
       .required();
   add_overrides_to(command);
-  command.option(
-      "--renderers A,B,…", renderers,
-      "Compare these: classes, or expressions such as 'PathTracer{next_event: false}', with commas between. They take "
-      "over the sampler, light sampler and max_depth of the file's, unless they set their own");
+  command.option("--renderers A,B,…", renderers,
+                 "Renderers to compare, separated by commas: classes, or expressions such as 'PathTracer{next_event: false}'. "
+                 "They inherit the sampler, light sampler and max_depth of the file's renderer, unless they set their own");
   command.option("--variant 'NAME: PATH=VALUE, …'", variant_texts,
                  "Compare the file with these members set as well, as --set does, under a name; may be repeated");
-  command.option("--time TIME", time, "Each run ends after so much processor time, of all threads together");
-  command.option("--samples N", samples, "Each run ends after so many samples per pixel").range(1, 1 << 30);
+  command.option("--time TIME", time, "CPU time of each run, summed over all threads");
+  command.option("--samples N", samples, "Samples per pixel of each run").range(1, 1 << 30);
   command.option("--runs K", runs, "Independent runs of each variant").show_default().range(3, 1000);
   command.option("--reference IMAGE", references,
-                 "The true picture, of linear values (.exr, .npy) or a checkpoint; once for each FILE. Without: the mean of "
-                 "the variants that are unbiased and find all light");
+                 "The reference picture, linear (.exr, .npy) or a checkpoint; once for each FILE. Default: the mean of the "
+                 "variants that are unbiased and find all light");
   command.option("--reference-time TIME", reference_time,
-                 "Render a reference for so much processor time, with the first variant that is unbiased and finds all light");
+                 "Render a reference for this CPU time, with the first variant that is unbiased and finds all light");
   command.option("--report FILE", report, "Write a page with plots, pictures and tables, one HTML file");
   command.option("--csv FILE", csv, "Write the error curves as a table");
-  command.option("--json FILE", json, "Write all numbers");
-  command.option(
-      "--state FOLDER", state,
-      "Keep finished runs in this folder; without: beside the report, or else the table. The same command goes on from "
-      "there");
-  command.option("--inset X,Y,W,H", inset_texts, "Show this part of the picture enlarged; without: where variants differ most");
-  command.option("--tile PX", tile, "Side of the tiles in which biases are looked for [pixels]; 0: 32, less in small pictures")
+  command.option("--json FILE", json, "Write all results as JSON");
+  command.option("--state FOLDER", state,
+                 "Store finished runs in this folder, from which the same command resumes. Default: beside the report, else "
+                 "beside the table");
+  command.option("--inset X,Y,W,H", inset_texts, "Show this part of the picture enlarged. Default: where variants differ most");
+  command.option("--tile PX", tile, "Side of the tiles that are tested for bias [pixels]; 0: 32, less in small pictures")
       .range(0, 65536);
-  command.option("--significance P", significance, "Probability of calling any of several equal variants better, or biased")
+  command
+      .option("--significance P", significance,
+              "Significance level: probability of calling any of several equal variants better, or biased")
       .show_default()
       .range(1e-12, 0.5);
-  command.option("--seed N", seed, "Choose other random numbers");
+  command.option("--seed N", seed, "Seed of the random numbers");
   command.option("--size WxH", size, "Size of the pictures in pixels");
   add_threads_option(command, threads);
   command.flag("--quiet", quiet, "Print nothing but errors");
@@ -61,14 +61,14 @@ Ref<Job> CompareOptions::load(const std::string& path) const {
 
 comparing::Budget CompareOptions::budget() const {
   if ((samples > 0) == !time.empty())
-    throw Error(samples > 0 ? "runs end by --samples or by --time: give one of them"
-                            : "say when runs end: --time 1m (processor time of each) or --samples 256");
+    throw Error(samples > 0 ? "--samples and --time both limit a run: give one of them"
+                            : "a run needs a limit: give --time 1m (CPU time of each run) or --samples 256");
   return {std::uint32_t(samples), time.empty() ? 0 : parse_duration(time, "--time")};
 }
 
 double CompareOptions::reference_seconds() const {
   if (!references.empty() && !reference_time.empty())
-    throw Error("the reference is --reference or made by --reference-time: give one of them");
+    throw Error("--reference and --reference-time exclude each other: give one of them");
   if (!references.empty() && references.size() != files.size())
     throw Error(fmt::format("there are {} references for {} scenes: give one for each, in the same order", references.size(),
                             files.size()),
@@ -89,7 +89,7 @@ std::vector<PixelArea> CompareOptions::insets() const {
     parse_integers(text, ',', 4, n, "--inset", "X,Y,W,H, such as 100,80,64,48");
     constexpr int most = 1 << 24;
     if (n[0] < 0 || n[1] < 0 || n[2] < 1 || n[3] < 1 || n[0] > most || n[1] > most || n[2] > most || n[3] > most)
-      throw Error(fmt::format("'{}' is no part of a picture", text), {intern("--inset"), 0, 0});
+      throw Error(fmt::format("'{}' is not a part of the picture", text), {intern("--inset"), 0, 0});
     list.push_back({n[0], n[1], n[0] + n[2], n[1] + n[3]});
   }
   return list;

@@ -52,7 +52,7 @@ std::string compare_text(const Results& results) {
                           100 * mean.relative_error, mean.scenes);
     }
   }
-  return text + significance_text(results) + ".\nSeconds are of the processor, on all threads.\n";
+  return text + significance_text(results) + ".\nSeconds are CPU time, summed over all threads.\n";
 }
 
 }  // namespace etendue

@@ -33,12 +33,14 @@ void ConformOptions::add_to(Command& command) {
   add_plugin_option(command, plugins);
   command.flag("--quick", quick, "A quarter of the samples");
   command.flag("--thorough", thorough, "Ten times the samples").excludes({"--quick"});
-  command.option("--drawn N", drawn, "How many parts of random members to try of each class, beside the one with defaults")
+  command
+      .option("--drawn N", drawn,
+              "Number of components with random members to test of each class, besides the one with defaults")
       .show_default()
       .range(0, 100000);
-  command.option("--seed N", seed, "Draw other parts and samples").show_default();
+  command.option("--seed N", seed, "Seed of the random members and samples").show_default();
   command.option("--report FILE", report, "Write all outcomes as an HTML page");
-  command.flag("--parts", parts, "Print the parts that were tried");
+  command.flag("--parts", parts, "Print the components that were tested");
   command.flag("--interfaces", interfaces, "Only list the interfaces, and which of them have checks of their own");
   add_threads_option(command, threads);
 }
@@ -133,14 +135,15 @@ int run_conform(const ConformOptions& options) {
   };
   if (any(conform::Result::failed)) return exit_status::failed;
   if (any(conform::Result::passed)) return exit_status::done;
-  fmt::print(stderr, "nothing was tested, so nothing is known: no check is made of what was named, or none could be\n");
+  fmt::print(stderr, "nothing was tested: there are no checks of the named classes, or none could be run\n");
   return exit_status::failed;
 }
 
 }  // namespace
 
 void add_conform_command(Command& program) {
-  Command command = program.add_command("conform", "Test whether parts, plugins' too, do what their interfaces promise");
+  Command command =
+      program.add_command("conform", "Test whether components, also of plugins, fulfil the contracts of their interfaces");
   auto options = std::make_shared<ConformOptions>();
   options->add_to(command);
   command.footer(
@@ -149,8 +152,8 @@ void add_conform_command(Command& program) {
       "  etendue conform Shader --quick                         all shaders, a quick look\n"
       "  etendue conform GoldShader --plugin ./libgold.so --drawn 20\n"
       "  etendue conform --thorough --report conform.html\n"
-      "\nExit status: 0 nothing failed, 1 something did or nothing was tested, 2 bad input. docs/conform.md tells what is "
-      "tested.");
+      "\nExit status: 0 no check failed, 1 a check failed or nothing was tested, 2 bad input. docs/conform.md lists the "
+      "checks.");
   command.runs([options] { return run_conform(*options); });
 }
 

@@ -18,7 +18,7 @@ struct ConvertOptions : SceneOptions {
 /// The import's notes of what is not exact, as comments for the top of the description.
 std::string comments(const std::string& file, const std::vector<Error>& notes) {
   std::string text = fmt::format("# Converted from {}.\n", std::filesystem::path(file).filename().string());
-  if (!notes.empty()) text += "# What is not as there:\n";
+  if (!notes.empty()) text += "# Differences from it:\n";
   for (const Error& note : notes) {
     std::string words = note.what();
     for (char& c : words)
@@ -48,7 +48,7 @@ void add_convert_command(Command& program) {
   add_description_output(command, options->output);
   command.footer(
       "\nExamples\n"
-      "  etendue convert scene.xml -o scene.etd                 comments at its top say what is not as there\n"
+      "  etendue convert scene.xml -o scene.etd                 comments at its top list the differences\n"
       "  etendue convert scene.xml --strict -o scene.etd        fails instead\n"
       "  etendue convert model.glb -o -                         on the terminal");
   command.runs([options] { return convert(*options); });

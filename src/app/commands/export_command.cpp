@@ -23,7 +23,7 @@ int write(const ExportOptions& options) {
   if (!exporter) {
     std::string known;
     for (const std::string& ending : exported_extensions()) known += (known.empty() ? "." : ", .") + ending;
-    throw Error(fmt::format("no program is known whose files are named like '{}'; known are {}", options.output, known), at);
+    throw Error(fmt::format("no exporter for files named like '{}'; there are those for {}", options.output, known), at);
   }
   const Ref<Job> job = options.load();
   note_inputs_of(*job);
@@ -50,11 +50,11 @@ void add_export_command(Command& program) {
   Command command = program.add_command("export", "Write a render description as a file of another program");
   auto options = std::make_shared<ExportOptions>();
   options->add_to(command);
-  command.option("-o,--output FILE", options->output, "The file to write; its ending says for which program").required();
+  command.option("-o,--output FILE", options->output, "The file to write; its ending chooses the format").required();
   command.footer(
       "\nExamples\n"
       "  etendue export scenes/cornell_box.etd -o box.pbrt      meshes and images are written beside it\n"
-      "  etendue export box.etd --strict -o box.pbrt            fails where it cannot be the same\n"
+      "  etendue export box.etd --strict -o box.pbrt            fails if it cannot be expressed exactly\n"
       "  etendue export box.etd -o box.glb                      a model for viewers, with simple materials");
   command.runs([options] { return write(*options); });
 }

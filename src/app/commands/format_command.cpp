@@ -25,7 +25,7 @@ struct FormatOptions {
 /// Formats the file, or with --check compares it. Returns false if --check finds another layout.
 bool format(const std::string& file, const FormatOptions& options) {
   const Location at{intern(file), 0, 0};
-  if (language::is_json(file)) throw Error("JSON has no layout here: 'format' is for .etd files", at);
+  if (language::is_json(file)) throw Error("'format' is for .etd files, not for JSON", at);
   const language::Source source{at.file, {}, language::read_text_file(file, at)};
   const std::string text = language::formatted(source);
   if (options.check) {
@@ -47,7 +47,7 @@ bool format(const std::string& file, const FormatOptions& options) {
 
 int format_all(const FormatOptions& options) {
   if (options.files.size() > 1 && !options.output.empty())
-    throw Error("several files cannot go to one: format them in place, or one by one", {intern("--output"), 0, 0});
+    throw Error("several files cannot be written to one: format them in place, or one by one", {intern("--output"), 0, 0});
   int status = exit_status::done;
   for (const std::string& file : options.files)
     status =
@@ -58,7 +58,8 @@ int format_all(const FormatOptions& options) {
 }  // namespace
 
 void add_format_command(Command& program) {
-  Command command = program.add_command("format", "Give a render description one layout: indentation, blanks, comments");
+  Command command =
+      program.add_command("format", "Give a render description the standard layout: indentation, blanks, comments");
   auto options = std::make_shared<FormatOptions>();
   command.argument("FILE", options->files, "The render descriptions (.etd), which are replaced").required();
   command.option("-o,--output FILE", options->output, "Write to this file instead; - for standard output");
@@ -69,7 +70,7 @@ void add_format_command(Command& program) {
       "  etendue format box.etd                             in place, in one go or not at all\n"
       "  etendue format box.etd -o -                        on the terminal\n"
       "  etendue format --check scenes/*.etd                which of them have another layout\n"
-      "\nLines end where they did, comments stay, and the meaning is compared before anything is written.");
+      "\nLine breaks and comments stay, and a file is only written if its meaning is unchanged.");
   command.runs([options] { return format_all(*options); });
 }
 

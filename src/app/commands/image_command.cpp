@@ -134,7 +134,7 @@ struct ToneMapOptions {
 int tone_map_picture(const ToneMapOptions& options) {
   const Ref<ToneMap> tone_map = ref_cast<ToneMap>(parse_component(options.tone_map, "--tone-map"));
   if (!tone_map)
-    throw Error("'" + options.tone_map + "' is no tone map; see etendue classes ToneMap", {intern("--tone-map"), 0, 0});
+    throw Error("'" + options.tone_map + "' is not a tone map; see etendue classes ToneMap", {intern("--tone-map"), 0, 0});
   prepare_tree(*tone_map);
   note_input(options.in);
   OutputFiles files;
@@ -145,7 +145,7 @@ int tone_map_picture(const ToneMapOptions& options) {
 }
 
 void add_tonemap(Command& image) {
-  Command command = image.add_command("tonemap", "Turn a picture of radiance into one to look at");
+  Command command = image.add_command("tonemap", "Apply a tone map to a picture of radiance");
   auto options = std::make_shared<ToneMapOptions>();
   command.argument("IN", options->in, "A picture of radiance, such as an EXR or NPY file").required();
   command.argument("OUT", options->out, "The file to write; its ending chooses the format").required();

@@ -53,10 +53,11 @@ int merge(const MergeOptions& options) {
   files.raise();
   report_gaps(merged);
   for (const std::string& path : denoised_paths(outputs, stem))
-    fmt::print(stderr,
-               "note: '{}' is not written: parts hold no scene to denoise by; 'etendue render FILE --resume' of the "
-               "merged --checkpoint writes it\n",
-               path);
+    fmt::print(
+        stderr,
+        "note: '{}' is not written: checkpoints contain no scene, which denoising needs; 'etendue render FILE --resume' of the "
+        "merged --checkpoint writes it\n",
+        path);
 
   std::vector<Error> errors;
   const std::vector<std::string> written = write_each(outputs, *job, picture, stem, errors);
@@ -85,7 +86,7 @@ void add_image_merge(Command& image) {
   command.argument("PART", options->parts, "Checkpoints of 'etendue render --passes', in any order").required();
   command.option("-o,--output FILE", options->outputs,
                  "Write to this file instead of those the render description names; may be repeated");
-  command.option("--checkpoint FILE", options->checkpoint, "Write a checkpoint of all parts together, to go on from");
+  command.option("--checkpoint FILE", options->checkpoint, "Write a checkpoint of all parts together, which can be resumed");
   command.flag("--quiet", options->quiet, "Print nothing but errors and notes");
   command.footer(
       "\nExample\n"

@@ -120,10 +120,10 @@ int write_manual(const ManualOptions& options) {
 void add_manual_command(Command& program) {
   Command command = program.add_command("manual", "Write the manual of all classes, in Markdown");
   auto options = std::make_shared<ManualOptions>();
-  command.option("-o,--output FOLDER", options->folder, "A folder for one page per class; without it, all on the terminal");
+  command.option("-o,--output FOLDER", options->folder, "Folder for one page per class. Default: print all");
   add_plugin_option(command, options->plugins);
   command.flag("--pictures", options->pictures, "Render a small picture of each class that can be seen; takes minutes");
-  command.flag("--missing", options->missing, "The pictures that are not there yet");
+  command.flag("--missing", options->missing, "Render only the pictures that are missing");
   command.option("--samples N", options->samples, "Samples per pixel of the pictures").range(1, 1 << 30).show_default();
   command.footer(
       "\nExamples\n  etendue manual | less\n  etendue manual -o manual --pictures\n  etendue manual -o manual --missing");

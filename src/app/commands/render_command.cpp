@@ -58,8 +58,8 @@ void report_bad_samples(const Render& render, const RenderOptions& options) {
   const Film& film = render.film();
   if (film.bad_samples() == 0) return;
   const std::string refusal = replay_refusal(render);
-  fmt::print(stderr, "{} of {} samples were not finite and non-negative; they count as black. {}:\n",
-             grouped(film.bad_samples()), grouped(film.samples()),
+  fmt::print(stderr, "{} of {} samples were negative or not finite; they count as black. {}:\n", grouped(film.bad_samples()),
+             grouped(film.samples()),
              refusal.empty() ? "To see the path of one" : fmt::format("No path can be shown ({})", refusal));
   constexpr size_t most = 5;
   const auto& first = film.first_bad_samples();
@@ -97,7 +97,7 @@ std::string passes_text(const Render& render) {
     count += end - begin;
   }
   const std::string asked =
-      count < passes->end - passes->begin ? fmt::format(" ({}:{} were asked for)", passes->begin, passes->end) : "";
+      count < passes->end - passes->begin ? fmt::format(" ({}:{} were requested)", passes->begin, passes->end) : "";
   return fmt::format("passes {}{} of 0:{}, {} sample{} per pixel each\n",
                      made.empty() ? "none" : fmt::format("{}", fmt::join(made, ", ")), asked,
                      (std::uint32_t(render.job().renderer->samples) + step - 1) / step, step, step == 1 ? "" : "s");
@@ -129,7 +129,7 @@ void report_result(const Progress& progress, Ended ended, const Written& written
     for (const std::string& path : written.denoised) fmt::print("{}\n", path);
     fmt::print("{} sample{} per pixel in {}, {:.2f} Msamples/s{}\n{}", progress.samples, progress.samples == 1 ? "" : "s",
                duration_text(progress.seconds), progress.samples_per_second * 1e-6, reason_text(ended), passes_text(render));
-    if (ended == Ended::interrupted && !checkpoint.empty()) fmt::print("to go on: {}\n", options.resume_command());
+    if (ended == Ended::interrupted && !checkpoint.empty()) fmt::print("to resume: {}\n", options.resume_command());
   }
   std::fflush(stdout);
 }
@@ -164,7 +164,7 @@ int render(const RenderOptions& options, Series& series) {
         warn(fmt::format("'{}': '#' stands for the number of a frame only with --frames or --frame", file),
              {intern("--output"), 0, 0});
   if (options.denoise && outputs.empty())
-    throw Error("there is no picture to denoise: with --passes those alone are written that -o names",
+    throw Error("there is no picture to denoise: with --passes, only pictures that -o names are written",
                 {intern("--denoise"), 0, 0});
   if (options.denoise) outputs = with_denoising(outputs);
   require_outputs(*job, outputs, options, series);
@@ -230,7 +230,7 @@ void add_render_command(Command& program) {
       "  etendue render box.etd --pixel 17,40 --sample 3          the path of one sample, vertex by vertex\n"
       "  etendue render box.etd --pixel 17,40                     the brightest paths of a pixel\n"
       "  etendue render box.etd --fireflies 10                    and where the brightest samples are\n"
-      "  etendue render box.etd --continue box.checkpoint         begin, or go on after whatever stopped it\n"
+      "  etendue render box.etd --continue box.checkpoint         start, or resume after any interruption\n"
       "  etendue render a.etd b.etd                               one after the other, each to its own pictures\n"
       "  etendue render film.etd --frames 0:120 -o film.####.png  120 pictures of 5 seconds\n"
       "  etendue render film.etd --frames 0:120 --skip-existing   those that are not there yet\n"

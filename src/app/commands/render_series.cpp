@@ -43,7 +43,7 @@ Frames parse_frames(const std::string& text) {
   frames = {n[0], n[1], n[2]};
   if (frames.begin < 0 || frames.end <= frames.begin || frames.end > SceneOptions::most_frames || frames.step < 1)
     wrong_option("--frames",
-                 fmt::format("'{}' are no frames: A:B are those from A to B - 1, A:B:STEP each STEPth of them", text));
+                 fmt::format("'{}' is not a range of frames: A:B is A to B - 1, A:B:STEP every STEPth of them", text));
   return frames;
 }
 
@@ -55,19 +55,22 @@ std::string name_of(const RenderOptions& render) {
 /// Throws Error for options that are ambiguous for several renders.
 void refuse_for_several(const RenderOptions& options, bool several_frames) {
   const bool several_files = options.files.size() > 1;
-  if (!options.pixel.empty()) wrong_option("--pixel", "a pixel is of one picture: give one file, and --frame for one frame");
+  if (!options.pixel.empty()) wrong_option("--pixel", "--pixel is for one picture: give one file, and --frame for one frame");
   if (several_files && !options.outputs.empty())
-    wrong_option("--output", "pictures of several files cannot go to one file: name them in the files, or render one by one");
+    wrong_option("--output",
+                 "pictures of several files cannot be written to one: name them in the files, or render one by one");
   for (const auto& [option, file] : {std::pair("--checkpoint", &options.checkpoint), std::pair("--resume", &options.resume),
                                      std::pair("--continue", &options.continue_file)}) {
     if (file->empty()) continue;
-    if (several_files) wrong_option(option, "a checkpoint is of one render: give one file");
+    if (several_files) wrong_option(option, "a checkpoint belongs to one render: give one file");
     if (several_frames && !has_place_for_number(*file))
-      wrong_option(option, fmt::format("all frames would have the checkpoint '{}': write #### where their number goes", *file));
+      wrong_option(option,
+                   fmt::format("all frames would write the checkpoint '{}': write #### where the frame number belongs", *file));
   }
   for (const std::string& output : options.outputs)
     if (several_frames && !has_place_for_number(output))
-      wrong_option("--output", fmt::format("all frames would go to '{}': write #### where their number goes", output));
+      wrong_option("--output",
+                   fmt::format("all frames would be written to '{}': write #### where the frame number belongs", output));
 }
 
 /// The options of one frame of one file.
@@ -109,7 +112,7 @@ std::string what_lacks(const Image& picture, const Job& job, const RenderOptions
   if (!cropped && (picture.width != job.image->width || picture.height != job.image->height)) return "has another size";
   const std::string hash = said("file_hash"), samples = said("samples");
   if (!hash.empty() && hash != job.metadata.at("file_hash"))
-    return "is of another version of the file or of one that it names, or of other options";
+    return "was rendered from another version of the file or of one that it names, or with other options";
   const bool counted = !options.open_ended() && job.time_limit == 0 && job.error_limit == 0;
   int count = 0;
   std::from_chars(samples.data(), samples.data() + samples.size(), count);
@@ -132,7 +135,7 @@ void number_outputs(const std::vector<Ref<Output>>& outputs, const RenderOptions
     const std::string& name = output->file.text;
     // The names given by -o already have their number.
     if (options.in_series && options.outputs.empty() && !has_place_for_number(name))
-      output->fail("file", fmt::format("all frames would go to '{}': write #### where their number goes", name));
+      output->fail("file", fmt::format("all frames would be written to '{}': write #### where the frame number belongs", name));
     set(*output, "file", Value(FilePath{numbered(name, *options.frame), output->file.folder}));
   }
 }
@@ -148,7 +151,7 @@ void Series::claim(const std::vector<Ref<Output>>& outputs, const RenderOptions&
     const auto [before, fresh] = claimed_.emplace(failed ? path : spelling.string(), name);
     const Location at = output->location_of("file");
     if (!fresh && before->second != name)
-      errors.emplace_back(fmt::format("'{}' is the picture of {} already", path, before->second),
+      errors.emplace_back(fmt::format("'{}' is already the picture of {}", path, before->second),
                           at.known() ? at : Location{intern(options.file), 0, 0});
   }
   if (!errors.empty()) throw Errors(std::move(errors));
@@ -177,7 +180,7 @@ bool are_whole(const std::vector<Ref<Output>>& outputs, const Job& job, const Re
     }
     all += (all.empty() ? "" : " ") + path;
   }
-  if (!options.quiet && options.progress != "json") fmt::print("{} is there already\n", all);
+  if (!options.quiet && options.progress != "json") fmt::print("{} exists already\n", all);
   return true;
 }
 
@@ -204,7 +207,7 @@ int render_series(const RenderOptions& options, const std::function<int(const Re
       const int result = reporting_errors([&] { return render(one, series); });
       if (result == exit_status::interrupted) {
         if (one.in_series) fmt::print(stderr, "{} is not finished: no picture of it is written\n", name_of(one));
-        if (number < all) fmt::print(stderr, "{} of {} renders were not begun\n", all - number, all);
+        if (number < all) fmt::print(stderr, "{} of {} renders were not started\n", all - number, all);
         return result;
       }
       if (result == exit_status::done) continue;

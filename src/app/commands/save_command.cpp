@@ -21,7 +21,7 @@ int save(const SaveOptions& options) {
 
 void add_save_command(Command& program) {
   Command command =
-      program.add_command("save", "Write a file again as one description, with its overrides, includes and params worked in");
+      program.add_command("save", "Write a description as a single file, with overrides, includes and params resolved");
   auto options = std::make_shared<SaveOptions>();
   options->add_to(command);
   add_description_output(command, options->output);

@@ -55,11 +55,10 @@ int run_studio(const StudioOptions& options) {
   if (!options.listen.empty()) {
     server_settings.address = options.listen;
     server_settings.password = password(options);
-    fmt::print(
-        stderr,
-        "warning: others can reach this studio at {}. What they send and see, the password too, goes unencrypted: through "
-        "strange networks use a tunnel, such as ssh -L.\n",
-        options.listen);
+    fmt::print(stderr,
+               "warning: others can reach this studio at {}. The connection, including the password, is not encrypted: in "
+               "untrusted networks use a tunnel, such as ssh -L.\n",
+               options.listen);
   }
 
   settings.plugins = options.plugins;
@@ -73,16 +72,17 @@ int run_studio(const StudioOptions& options) {
 
 void add_studio_command(Command& program) {
   auto options = std::make_shared<StudioOptions>();
-  Command command = program.add_command("studio", "Describe, watch and control a render in the browser");
+  Command command = program.add_command("studio", "Edit, watch and control a render in the browser");
   command.argument("FILE", options->file, "The render description (.etd, or .json); none: an empty one");
   command.flag("--no-browser", options->no_browser, "Only print the address");
-  command.flag("--read-only", options->read_only, "Show it only: pages can change nothing");
+  command.flag("--read-only", options->read_only, "Read only: pages cannot change anything");
   command.option("--allow-path FOLDER", options->allowed,
-                 "A folder that pages may read and write, beside the file's and the working one; may be repeated");
-  command.option("--port N", options->port, "Port; 0: any that is free").range(0, 65535);
-  command.option("--listen ADDRESS", options->listen, "Let others in, at this address of the machine; needs a password");
+                 "A folder that pages may read and write, besides the file's and the working directory; may be repeated");
+  command.option("--port N", options->port, "Port; 0: any free one").range(0, 65535);
+  command.option("--listen ADDRESS", options->listen,
+                 "Listen at this address, so that other machines can connect; needs a password");
   command.option("--password-file FILE", options->password_file,
-                 "File with the password; else it is in ETENDUE_STUDIO_PASSWORD");
+                 "File with the password. Default: the variable ETENDUE_STUDIO_PASSWORD");
   command.option("--page FILE", options->page, "Another page").hidden();
   add_plugin_option(command, options->plugins);
   add_threads_option(command, options->threads);

@@ -79,7 +79,7 @@ std::vector<std::string> own_arguments() {
   while (sigtimedwait(&own_end, nullptr, &at_once) > 0) continue;
   pthread_sigmask(SIG_SETMASK, &none, nullptr);
   execv("/proc/self/exe", list.data());
-  throw Error("the program could not begin again");
+  throw Error("the program could not be restarted");
 }
 
 /// Reads "PORT TOKEN FILE" of a restart and removes the variable, as the token is secret. Returns the file; empty: no restart,
@@ -141,7 +141,7 @@ int serve(studio::StudioSettings settings, studio::ServerSettings server_setting
   waiter.join();
   // While the scene is still being loaded nothing can have been edited, and loading cannot be interrupted.
   if (by_others && studio.beginning()) std::_Exit(exit_status::done);
-  if (const std::string aside = studio.end(); !aside.empty()) fmt::print(stderr, "What was not saved is in {}\n", aside);
+  if (const std::string aside = studio.end(); !aside.empty()) fmt::print(stderr, "Unsaved changes are in {}\n", aside);
   if (studio.begin_again && !by_others) begin_again(server.port_and_token(), studio.document().file());
   return exit_status::done;
 }

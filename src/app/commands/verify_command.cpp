@@ -33,30 +33,32 @@ struct VerifyOptions : SceneOptions {
 
 void VerifyOptions::add_to(Command& command) {
   SceneOptions::add_to(command);
-  command.option(
-      "--renderers A,B,…", renderers,
-      "Compare these: classes, or expressions such as 'PathTracer{next_event: false}', with commas between. Without: "
-      "the file's own and all others that find all the light of the scene");
+  command.option("--renderers A,B,…", renderers,
+                 "Renderers to compare, separated by commas: classes, or expressions such as 'PathTracer{next_event: false}'. "
+                 "Default: the file's renderer and all others that find all light of the scene");
   command.flag("--force", force, "Compare the named renderers even if they miss light that the scene has");
   command.option("--samples N", samples, "Samples per pixel of each renderer, in all passes together");
   command.option("--passes K", passes, "Independent passes of each renderer").show_default().range(8, 10000);
-  command.option(
-      "--time TIME", time,
-      "As many passes as this time takes, for each renderer (at least 8); --samples over --passes are the size of one");
-  command.option("--lengths L", lengths, "Compare path lengths from 1 to this one by one, and all longer ones together")
+  command.option("--time TIME", time,
+                 "Render as many passes of --samples / --passes samples as fit into this time, at least 8, with each renderer");
+  command.option("--lengths L", lengths, "Compare path lengths from 1 to L separately, and all longer ones together")
       .show_default()
       .range(0, 63);
   command.option("--tile PX", tile, "Side of the tiles compared [pixels]; 0: 32, less in small pictures").range(0, 65536);
-  command.option("--significance P", significance, "Probability of reporting any disagreement where there is none")
+  command
+      .option("--significance P", significance,
+              "Significance level: probability of reporting any disagreement where there is none")
       .show_default()
       .range(1e-12, 0.5);
   command.option("--report FILE", report, "Write a report with maps of the differences, one HTML file");
   command.flag("--json", json, "Print everything as JSON");
-  command.option("--seed N", seed, "Choose other random numbers");
+  command.option("--seed N", seed, "Seed of the random numbers");
   command.option("--size WxH", size, "Size of the picture in pixels");
   add_threads_option(command, threads);
-  command.flag("--quiet", quiet, "Print nothing but errors: the exit status tells");
-  command.option("--inject FACTOR", inject, "Self test: multiply what the first renderer measures, to see that it is noticed")
+  command.flag("--quiet", quiet, "Print nothing but errors; the exit status is the result");
+  command
+      .option("--inject FACTOR", inject,
+              "Self test: multiply the first renderer's result by this factor, which must be detected")
       .heading("Self test")
       .range(0.0, 1e6);
 }
@@ -136,9 +138,9 @@ int verify_file(const VerifyOptions& options) {
 
   verify::Choice choice = verify::choose_renderers(*job, options.renderers, options.force);
   if (choice.candidates.size() < 2) {
-    std::string message = choice.candidates.empty()
-                              ? "there is no renderer to compare"
-                              : "there is only " + choice.candidates.front().name + ", and nothing to compare it with";
+    std::string message = choice.candidates.empty() ? "there is no renderer to compare"
+                                                    : "there is only " + choice.candidates.front().name +
+                                                          ", and no other renderer to compare it with";
     for (const verify::LeftOut& left : choice.left_out) message += fmt::format("\n  {}: {}", left.name, left.reason);
     throw Error(message +
                 "\nname others with --renderers, such as 'PathTracer{next_event: false}'; --force keeps those that miss light");
@@ -167,7 +169,7 @@ int verify_file(const VerifyOptions& options) {
 }  // namespace
 
 void add_verify_command(Command& program) {
-  Command command = program.add_command("verify", "Prove that renderers agree on a scene, or show where they do not");
+  Command command = program.add_command("verify", "Test whether renderers agree on a scene, and show where they do not");
   auto options = std::make_shared<VerifyOptions>();
   options->add_to(command);
   command.footer(
@@ -176,7 +178,7 @@ void add_verify_command(Command& program) {
       "  etendue verify box.etd --renderers 'PathTracer,PathTracer{next_event: false}' --report box.html\n"
       "  etendue verify box.etd --time 1m --json\n"
       "\nWhole renders with independent random numbers are compared by tiles and path lengths. Exit status: 0 no disagreement, "
-      "1 disagreement, 2 bad input. docs/verify.md tells the statistics.");
+      "1 disagreement, 2 bad input. docs/verify.md describes the statistics.");
   command.runs([options] { return verify_file(*options); });
 }
 

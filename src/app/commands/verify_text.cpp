@@ -161,7 +161,7 @@ std::string verify_text(const Choice& choice, const Collected& collected, const 
   for (const PairAgreement& pair : agreement.pairs) undecided |= pair.verdict == Verdict::undecided;
   return text + fmt::format("\n{}: {} comparisons, significance {} for all of them together\n",
                             agreement.disagrees() ? "They do not all agree"
-                            : undecided           ? "No disagreement, but some places need more samples to tell"
+                            : undecided           ? "No disagreement, but some tests are undecided and need more samples"
                                                   : "They agree",
                             grouped(agreement.tests), agreement.significance);
 }

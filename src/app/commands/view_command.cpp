@@ -92,7 +92,7 @@ void add_view_command(Command& program) {
   Command command = program.add_command("view", "Show pictures in the browser: EXR, PNG, NPY and others, checkpoints");
   command.argument("IMAGE", options->files, "The pictures").required();
   command.flag("--no-browser", options->no_browser, "Only print the address");
-  command.option("--port N", options->port, "Port; 0: any that is free").range(0, 65535);
+  command.option("--port N", options->port, "Port; 0: any free one").range(0, 65535);
   command.option("--page FILE", options->page, "Another page").hidden();
   command.runs([options] { return view(*options); });
 }

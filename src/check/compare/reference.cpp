@@ -65,7 +65,7 @@ Reference read_reference(const std::string& path, int width, int height) {
       try {
         image = picture_of(read_checkpoint(path)).picture;
       } catch (const Error& no_checkpoint) {
-        throw Error(fmt::format("{}; and it is no checkpoint: {}", no_image.what(), no_checkpoint.what()));
+        throw Error(fmt::format("{}; and it is not a checkpoint: {}", no_image.what(), no_checkpoint.what()));
       }
     }
     image = convert_color_space(image, "xyz");

@@ -201,7 +201,7 @@ std::vector<std::string> remarks(const SceneResult& scene, const VariantResult& 
         "rare, "
         "bright paths; more runs tell, and so does etendue verify");
   if (v.bad_samples > 0)
-    list.push_back(fmt::format("{} samples were not finite and non-negative and count as black", v.bad_samples));
+    list.push_back(fmt::format("{} samples were negative or not finite and count as black", v.bad_samples));
   if (v.at_time.empty())
     list.push_back(fmt::format("has no error at {:.3g} s: its first step took longer", scene.equal_seconds));
   if (v.at_samples.empty()) list.push_back("has no error at the common number of samples: its first step had more");

@@ -112,7 +112,7 @@ std::string remark(const Measured& measured, const RendererRun& run, const Candi
   else if (std::abs(run.length_share - 1) > 1e-3)
     add(fmt::format("tells the path length of {:.2f} % of its light only", 100 * run.length_share));
   if (run.bad_samples > 0)
-    add(fmt::format("{} of {} samples were not finite and non-negative and count as black", run.bad_samples, run.samples));
+    add(fmt::format("{} of {} samples were negative or not finite and count as black", run.bad_samples, run.samples));
   return text;
 }
 

@@ -65,9 +65,10 @@ std::vector<std::pair<std::string, std::string>> Loader::parameters_of(Other& ot
     if (text)
       all.emplace_back(given.name.text, *text);
     else
-      diagnostics_.add(Error(
-          fmt::format("a parameter of '{}' is a number without a unit, a list of such, a truth or a text", other.file.text),
-          given.name.at));
+      diagnostics_.add(
+          Error(fmt::format("a parameter of '{}' is a number without a unit, a list of such numbers, a boolean or a string",
+                            other.file.text),
+                given.name.at));
   }
   const std::string prefix = evaluator_.prefix(*other.space);
   for (const auto& [name, text] : left_defines_) {
@@ -135,10 +136,12 @@ void Loader::read_others(bool job) {
 void Loader::warn_of_unused_others() const {
   for (const Other& other : others_)
     if (other.read && !other.named && !job_ && std::ranges::none_of(other.used, [](const bool* used) { return *used; }))
-      warn(fmt::format("nothing uses what is in '{}': its Job gives way to the one that is written; include it as a name, and "
-                       "its parts are name.scene, name.objects, name.camera …",
-                       other.file.text),
-           other.file.at);
+      warn(
+          fmt::format(
+              "nothing uses what is in '{}': its Job is not used, as the including file has its own; include it as a name, and "
+              "its parts are name.scene, name.objects, name.camera …",
+              other.file.text),
+          other.file.at);
 }
 
 }  // namespace etendue::language

@@ -115,7 +115,7 @@ bool Evaluator::foresee(Loop& loop) {
 bool Evaluator::run(Loop& loop, size_t clause) {
   if (clause == loop.clauses()) return take_entry(loop);
   if (loop.is_condition(clause)) {
-    const std::optional<bool> condition = truth(loop.of(clause), loop.context, "what 'if' asks");
+    const std::optional<bool> condition = truth(loop.of(clause), loop.context, "the condition of 'if'");
     return condition && (!*condition || run(loop, clause + 1));
   }
   const Label& name = loop.node.labels[clause];

@@ -34,7 +34,7 @@ std::string signature(const Definition& function) {
 void Evaluator::not_a_function(const Entry& entry, const Node& call) {
   if (entry.definition.value.type == NodeType::bad || entry.state == State::failed) return;
   diagnostics_.add(Error(
-      fmt::format("'{}' is no function: it is a value, defined at {}", call.text, place(entry.definition.name.at, call.at)),
+      fmt::format("'{}' is not a function: it is a value, defined at {}", call.text, place(entry.definition.name.at, call.at)),
       call.at));
 }
 

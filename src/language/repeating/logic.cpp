@@ -50,7 +50,7 @@ Value compare(const std::string& operation, const Value& a, const Value& b, Loca
   const auto* list_a = a.as<Numbers>();
   const auto* list_b = b.as<Numbers>();
   if (list_a && list_b && list_a->dimension != list_b->dimension)
-    throw Error(fmt::format("cannot compare {} with {}: they differ in what they measure", a.kind(), b.kind()), at);
+    throw Error(fmt::format("cannot compare {} with {}: they have different dimensions", a.kind(), b.kind()), at);
   return Value(holds(operation, equal(a, b) ? 0 : 1));
 }
 
@@ -119,11 +119,11 @@ std::optional<bool> Evaluator::truth(Node& node, const Context& context, const c
 std::optional<Value> Evaluator::connection(Node& node, const Context& context) {
   if (repeating_ == 0 && !check(node, nullptr, context)) return std::nullopt;
   if (node.type == NodeType::inversion) {
-    const std::optional<bool> inner = truth(node.children[0], context, "what 'not' stands before");
+    const std::optional<bool> inner = truth(node.children[0], context, "the operand of 'not'");
     return inner ? std::optional(Value(!*inner, node.at)) : std::nullopt;
   }
   const bool decisive = node.type == NodeType::disjunction;
-  const char* what = decisive ? "what 'or' connects" : "what 'and' connects";
+  const char* what = decisive ? "an operand of 'or'" : "an operand of 'and'";
   for (Node& child : node.children) {
     const std::optional<bool> one = truth(child, context, what);
     if (!one) return std::nullopt;
@@ -134,7 +134,7 @@ std::optional<Value> Evaluator::connection(Node& node, const Context& context) {
 
 std::optional<Value> Evaluator::conditional(Node& node, const Context& context) {
   if (repeating_ == 0 && !check(node, nullptr, context)) return std::nullopt;
-  const std::optional<bool> condition = truth(node.children[0], context, "what 'if' asks");
+  const std::optional<bool> condition = truth(node.children[0], context, "the condition of 'if'");
   return condition ? evaluate(node.children[*condition ? 1 : 2], context) : std::nullopt;
 }
 
@@ -153,7 +153,7 @@ std::optional<Value> Evaluator::index(Node& node, const Context& context) {
   return reporting(node.at, [&] {
     const size_t size = list_size(*list, node.at);
     const std::optional<std::int64_t> at = whole(*place);
-    if (!at) throw Error(fmt::format("a place in a list is a whole number, not {}", kind_of(*place)), node.children[1].at);
+    if (!at) throw Error(fmt::format("an index is a whole number, not {}", kind_of(*place)), node.children[1].at);
     if (*at < 0 || size_t(*at) >= size)
       throw Error(size == 0 ? std::string("the list is empty")
                             : fmt::format("there is no entry {}: the list has {}, from 0 to {}", *at, size, size - 1),

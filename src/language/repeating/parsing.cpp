@@ -14,7 +14,7 @@ void Parser::function(Document& document, const Token& name) {
   Definition made{{name.text, name.at}, false, {}, true};
   try {
     parameters(made);
-    if (!token_.is('=') || token_.first_in_line) unexpected(fmt::format("'=' behind the parameters of '{}'", name.text));
+    if (!token_.is('=') || token_.first_in_line) unexpected(fmt::format("'=' after the parameters of '{}'", name.text));
     take();
     lost_ = false;
     made.value = expression();
@@ -121,13 +121,13 @@ void Parser::comprehension(Node& list) {
     const Location at = take().at;
     Label label{{}, at};
     if (loop) {
-      if (token_.type != TokenType::name || !is_name(token_.text)) unexpected("a name behind 'for'");
+      if (token_.type != TokenType::name || !is_name(token_.text)) unexpected("a name after 'for'");
       const Token name = take();
       for (const Label& before : list.labels)
         if (before.text == name.text)
           fail(fmt::format("there is a 'for {}' already, at {}", name.text, place(before.at, name.at)), name.at);
       label = {name.text, name.at};
-      if (!token_.is_word("in")) unexpected(fmt::format("'in' behind 'for {}'", name.text));
+      if (!token_.is_word("in")) unexpected(fmt::format("'in' after 'for {}'", name.text));
       take();
     }
     list.labels.push_back(std::move(label));

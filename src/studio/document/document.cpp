@@ -13,7 +13,7 @@ namespace etendue::studio {
 namespace {
 
 /// The message of Render::edit for a cyclic component graph, which may arise between several edits applied one by one.
-constexpr std::string_view a_part_cannot_hold_itself = "a part cannot hold itself";
+constexpr std::string_view cannot_contain_itself = "a component cannot contain itself";
 
 }  // namespace
 
@@ -190,7 +190,7 @@ Applied Document::follow(const std::string& text, const std::map<std::string, st
     edit_render(merge);
   } catch (const Error& error) {
     // Edits that exchange a component with its own holder cannot be applied one by one: then a new render is made.
-    anew = std::string_view(error.what()).ends_with(a_part_cannot_hold_itself);
+    anew = std::string_view(error.what()).ends_with(cannot_contain_itself);
     if (!anew) throw;
   }
   if (anew) {

@@ -22,7 +22,7 @@ std::string canonical_path(const std::string& path) {
 
 void Folders::allow(const std::string& folder) {
   const std::string path = canonical_path(folder);
-  if (!fs::is_directory(path)) throw Error(fmt::format("'{}' is no folder", folder));
+  if (!fs::is_directory(path)) throw Error(fmt::format("'{}' is not a folder", folder));
   if (std::find(folders_.begin(), folders_.end(), path) == folders_.end()) folders_.push_back(path);
 }
 

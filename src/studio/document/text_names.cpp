@@ -235,7 +235,7 @@ void TextEditor::rename(const std::string& old, const std::string& now) {
   }
   if (!language::is_name(now)) throw Error(fmt::format("'{}' is no name: letters, digits and _, and no digit first", now));
   for (const char* reserved : {"true", "false", "none", "pi", "param", "include", "plugin"})
-    if (now == reserved) throw Error(fmt::format("'{}' has a fixed meaning and cannot be a name", now));
+    if (now == reserved) throw Error(fmt::format("'{}' is reserved and cannot be a name", now));
   if (outline_->definition(now)) throw Error(fmt::format("'{}' is defined already", now));
   uses.push_back({d->name.begin, d->name.begin + old.size()});
   std::sort(uses.begin(), uses.end(), [](Span a, Span b) { return a.begin > b.begin; });

@@ -31,7 +31,7 @@ std::string Writer::write() {
   asked.tell(job, exporting);
   std::string head = "# Written by Etendue for pbrt-v4.\n";
   const std::vector<Error> notes = exporting.notes();
-  if (!notes.empty()) head += "# What is not as there:\n";
+  if (!notes.empty()) head += "# Differences from it:\n";
   for (const Error& note : notes) {
     std::string words = note.what();
     for (char& c : words)

@@ -32,7 +32,7 @@ double one_number(std::string_view s, Location at) {
   // from_chars does not distinguish overflow from underflow; underflow gives 0.
   if (code == std::errc::result_out_of_range && std::abs(std::strtod(std::string(digits).c_str(), nullptr)) < 1) return 0;
   if (code != std::errc{} || !std::isfinite(value) || std::abs(value) > 1e38)
-    throw Error(fmt::format("'{}' is no number that can be used: it must be finite and below 1e38", shortened(s)), at);
+    throw Error(fmt::format("'{}' is not a number that can be used: it must be finite and below 1e38", shortened(s)), at);
   return value;
 }
 

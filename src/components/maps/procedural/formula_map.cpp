@@ -22,7 +22,7 @@ class FormulaMap final : public ObjectMap {
             "clamp mix smoothstep, and mean over wavelengths; angles in radians). Names are those below, u, v, x, y, z, nx, ny "
             "and "
             "nz (the direction of the true surface's normal) and pi. "
-            "What is no finite number, such as 1 / 0, is 0. A colour is kept from being negative, and a reflectance below 1")
+            "What is not a finite number, such as 1 / 0, is 0. A colour is kept from being negative, and a reflectance below 1")
         .member<&FormulaMap::names>("names", "", "what the maps are called in the formula")
         .member<&FormulaMap::maps>("maps", "1", "a map for each name")
         .member<&FormulaMap::space>("space", "",

@@ -29,7 +29,7 @@ class ImplicitSurface final : public ImplicitObject {
             "of numbers, x, y, z (in m, the object's own), pi, + - * / ( ) and functions (abs sqrt exp log sin cos tan atan2 "
             "floor "
             "fract mod pow min max step clamp mix smoothstep; angles in radians). pow takes negative numbers when its exponent "
-            "is a whole number. What is no finite number, such as 1 / 0, is 0",
+            "is a whole number. What is not a finite number, such as 1 / 0, is 0",
             Effect::rebuild)
         .group("Box")
         .member<&ImplicitSurface::low>("low", "m", "the corner of the box with the lowest coordinates", Effect::rebuild)
