@@ -107,7 +107,7 @@ Point2 Render::replay(int x, int y, std::uint32_t sample, PathRecord& record) co
   PathSink sink;
   sink.record = &record;
   const Point2 film = rendering(*m->job, [&] { return process->sample(x, y, sample, arena, sink); }).film;
-  record.count_from_world(m->job->world_centre());
+  record.to_world_space(m->job->rendering_origin());
   return film;
 }
 

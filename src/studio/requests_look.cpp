@@ -4,6 +4,7 @@
 
 #include "check/replay/replay.h"
 #include "etendue/describe/color.h"
+#include "etendue/mesh_facts.h"
 #include "etendue/shader.h"
 #include "requests_look.h"
 
@@ -40,7 +41,7 @@ Json pick(const Call& call) {
   path.push_back(id);
   const Vector3 from_centre = point.position - Point3{};
   const DoublePoint3 place =
-      job.world_centre() + DoubleVector3{double(from_centre.x), double(from_centre.y), double(from_centre.z)};
+      job.rendering_origin() + DoubleVector3{double(from_centre.x), double(from_centre.y), double(from_centre.z)};
   return {{"component", id ? Json(id) : Json()},
           {"shader", object.shader ? Json(document.id_of(*object.shader)) : Json()},
           {"position", triple(place)},
@@ -178,17 +179,17 @@ class Wires {
 
 /// The wireframe of one object of the main scene; objects in nested scenes have no world space bounds.
 Json wires_of(const Job& job, const Component& wanted, size_t most) {
-  Wires wires(job.world_centre(), most);
+  Wires wires(job.rendering_origin(), most);
   Json reply = {{"lines", Json::array()}, {"whole", true}, {"low", nullptr}, {"high", nullptr}};
   for (const Ref<SceneObject>& object : job.scene->objects) {
     if (object.get() != &wanted || object->unbounded() || object->infinite()) continue;
     const Bounds3 bounds = object->bounds();
     if (bounds.empty()) continue;
-    if (const auto triangles = object->triangles())
+    if (const auto triangles = still_triangles(*object))
       wires.mesh(*triangles, most);
     else
       wires.box(bounds);
-    const auto world = [&](const Point3& p) { return triple(job.world_centre() + DoubleVector3(p - Point3{})); };
+    const auto world = [&](const Point3& p) { return triple(job.rendering_origin() + DoubleVector3(p - Point3{})); };
     reply = {
         {"lines", std::move(wires.lines)}, {"whole", !wires.full()}, {"low", world(bounds.low)}, {"high", world(bounds.high)}};
     break;
@@ -201,11 +202,11 @@ Json wireframe(const Call& call) {
   const Job& job = call.studio.document().job();
   if (call.has("component")) return wires_of(job, *call.component(), size_t(call.integer_or("most", 5000, 100, 1'000'000)));
   const auto most = size_t(call.integer_or("most", 50000, 100, 1'000'000));
-  Wires wires(job.world_centre(), most);
+  Wires wires(job.rendering_origin(), most);
   const auto& objects = job.scene->objects;
   for (const Ref<SceneObject>& object : objects) {
     if (!object || object->unbounded() || wires.full()) continue;
-    const auto triangles = object->triangles();
+    const auto triangles = still_triangles(*object);
     if (triangles)
       wires.mesh(*triangles, most / std::max<size_t>(objects.size(), 1));
     else

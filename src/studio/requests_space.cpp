@@ -46,7 +46,7 @@ Json photons(const Call& call) {
   const std::unique_ptr<RenderProcess> process = last_process(*render);
   const std::optional<ShownPhotons> shown = shown_of(*process, *render, "photons").photons(wanted);
   if (!shown) has_none(*render, "photons as it is set");
-  const DoublePoint3 centre = render->job().world_centre();
+  const DoublePoint3 centre = render->job().rendering_origin();
   const auto& m = rgb_space("srgb").from_xyz;
   const auto finite = [](double v) { return std::isfinite(v) ? v : 0; };
   Json positions = Json::array(), directions = Json::array(), powers = Json::array(), segments = Json::array(),
@@ -80,7 +80,7 @@ Json lobes(const Call& call) {
   const Normal3 normal = dot(point.normal, ray.direction) > 0 ? -point.normal : point.normal;
   const std::optional<ShownLobes> found = shown.lobes(point.position, normal);
   if (!found) has_none(*render, "guide");
-  const DoublePoint3 place = job.world_centre() + DoubleVector3(point.position - Point3{});
+  const DoublePoint3 place = job.rendering_origin() + DoubleVector3(point.position - Point3{});
   return {{"position", {place.x, place.y, place.z}},
           {"normal", {normal.x, normal.y, normal.z}},
           {"share", found->share},

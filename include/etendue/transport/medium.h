@@ -39,18 +39,19 @@ class Medium {
   Ray own(const Ray&) const;
 
   VolumeCoefficients coefficients(const Point3& p, float time, const Wavelengths& w) const {
-    return volume->coefficients(counted(p, time), time, w);
+    return volume->coefficients(volume_point(p, time), time, w);
   }
   /// See VolumeShader; directions are in world space.
   float phase(const Point3& p, float time, const Vector3& out, const Vector3& in) const {
-    return volume->phase(counted(p, time), out, in);
+    return volume->phase(volume_point(p, time), out, in);
   }
   Vector3 sample_phase(const Point3& p, float time, const Vector3& out, Point2 u, float& pdf) const {
-    return volume->sample_phase(counted(p, time), out, u, pdf);
+    return volume->sample_phase(volume_point(p, time), out, u, pdf);
   }
 
  private:
-  Point3 counted(const Point3& p, float time) const { return volume->homogeneous() ? p : own(p, time); }
+  /// The point that is passed to the volume shader.
+  Point3 volume_point(const Point3& p, float time) const { return volume->homogeneous() ? p : own(p, time); }
 };
 
 /// The medium at the top of a stack.
