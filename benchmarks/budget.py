@@ -21,8 +21,8 @@ import peer_scenes
 import processes
 
 GROUPS = (
-    ("rays", r"Scene::(nearest|any|all)\b|BlockHit|own_intersect|occlu|::intersect|visible_fraction|coincident|all_hits|Ball::nearest"),
-    ("point", r"fill|surface_point|own_point|point_on|::carry|Transform|error_bound|SurfacePoint|own_place|tangents"),
+    ("rays", r"Scene::(nearest|any|all)\b|BlockHit|local_intersect|occlu|::intersect|visible_fraction|coincident|all_hits|Ball::nearest"),
+    ("point", r"fill|surface_point|local_point|point_on|::carry|Transform|error_bound|SurfacePoint|object_position_of|tangents"),
     ("numbers", r"Sobol|NumberStream|IndependentSampler"),
     ("light", r"sample_visible|LightSampler|LightTree|Emission|SphericalRect|visible_density|TexelDistribution|Environment"),
     ("colour", r"Wavelengths|igmoid|Rgb|Map\b|Map::|Texture|Texels|to_xyz|Spectrum|ColorUse"),

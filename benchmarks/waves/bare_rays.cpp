@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "etendue/scene_object.h"
+#include "etendue/mesh_facts.h"
 
 namespace etendue::waves {
 
@@ -53,7 +53,7 @@ BareTriangles::BareTriangles(const Scene& scene) : device_(rtcNewDevice(nullptr)
   rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
   for (const Ref<SceneObject>& object : scene.objects) {
     if (object->infinite()) continue;
-    if (const std::optional<TriangleView> view = object->triangles()) {
+    if (const std::optional<TriangleView> view = still_triangles(*object)) {
       std::vector<Point3> points;
       std::vector<std::array<std::uint32_t, 3>> corners;
       for (size_t i = 0; i < view->triangles.size(); ++i) {

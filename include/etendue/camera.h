@@ -67,7 +67,7 @@ class Camera : public Component {
   virtual std::optional<Place> place() const { return std::nullopt; }
   /// The origin of rendering space, in world space. For a camera that implements `place`, all rays, lens points and scene
   /// points are relative to it. Set by the Job before the camera is prepared.
-  DoublePoint3 world_centre;
+  DoublePoint3 rendering_origin;
 
   /// The interval of distances from the lens point in which a ray sees surfaces [m]. A camera may have near and far clipping
   /// planes perpendicular to its axis. Surfaces beyond them are ignored by camera rays and by connections to the lens; for all

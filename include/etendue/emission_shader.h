@@ -6,18 +6,12 @@
 // `power`. Optional, for light from infinity: `sample_incident`, `incident_pdf` and `knows_incident` (importance sampling of an
 // environment map), `only_at_infinity`. Optional: `objects_changed` to drop cached values.
 
-#include "etendue/core/ray.h"
 #include "etendue/core/spectrum.h"
+#include "etendue/core/surface_point.h"
 #include "etendue/describe/component.h"
 #include "etendue/describe/description.h"
 
 namespace etendue {
-
-/// The sides of a surface that emit, or that scatter.
-enum class Sides : std::uint8_t { front, back, both };
-/// The treatment of light that a shading normal would send through the surface: the mirrored shading-normal correction, or
-/// dropped (see scatter_corrections.h).
-enum class ShadingNormals : std::uint8_t { folded, clipped };
 
 /// A sampled direction with its pdf per solid angle.
 struct DirectionSample {

@@ -3,8 +3,8 @@
 //
 // A new map must implement `color` and `scalar`. Optional: `constant` if it is the same everywhere, `largest`.
 
-#include "etendue/core/ray.h"
 #include "etendue/core/spectral_function.h"
+#include "etendue/core/surface_point.h"
 #include "etendue/describe/component.h"
 #include "etendue/describe/description.h"
 

@@ -6,26 +6,25 @@
 // surfaces are found. Everything else (lists of luminaires, nesting, invisible objects, media) is implemented here.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "etendue/scene_object.h"
+#include "etendue/infinite_object.h"
+#include "etendue/object_container.h"
 
 namespace etendue {
 
 class CoincidentLuminaires;
 class NestedLuminaires;
 
-class Scene : public SceneObject {
+class Scene : public SceneObject, public ObjectContainer {
  public:
   using Interface = Scene;
   using Parent = SceneObject;
   static void describe(Description<Scene>&);
 
   std::vector<Ref<SceneObject>> objects;
-  /// Set by the Job for a nested scene that may choose the origin of its object space when it is prepared (see
-  /// AnimatedTransform): the time at which the shutter opens [s].
-  std::optional<float> chooses_centre;
 
   /// Finds the nearest hit with t in (0, ray.maximum).
   bool nearest(const Ray& ray, Hit& hit) const { return careful_ ? nearest_with_care(ray, hit) : find_nearest(ray, hit); }
@@ -94,8 +93,10 @@ class Scene : public SceneObject {
       if (box.contains(position)) return interior_tree_.empty() || in_interior_tree(position);
     return false;
   }
-  /// The object whose interior fills all space outside of other objects (SceneObject::surrounds); null: vacuum.
-  const SceneObject* surroundings() const { return surroundings_; }
+  /// The object whose interior fills all space outside of other objects; null: vacuum.
+  const SurroundingObject* surroundings() const { return surroundings_; }
+  /// Whether the scene chooses the origin of its object space when it is prepared (see AnimatedTransform).
+  bool chooses_origin() const { return chooses_origin_at_.has_value(); }
   /// The depth of nested scenes; 0: the scene contains no other scene.
   int nesting() const { return nesting_; }
   /// A new unique number each time a scene is prepared.
@@ -109,7 +110,7 @@ class Scene : public SceneObject {
   void prepare() override;
   void prepare_again() override;
   Bounds3 bounds() const override;
-  bool unbounded() const override { return unbounded_; }
+  Extent extent() const override { return unbounded_ ? Extent::unbounded : Extent::bounded; }
   std::vector<SceneObject*> placed_within() const override;
   bool intersect(const Ray&, Hit&) const override;
   bool occludes(const Ray&) const override;
@@ -133,13 +134,14 @@ class Scene : public SceneObject {
 
  private:
   friend class Instance;
+  friend struct SceneRecordAccess;
   void require_good_objects();
   struct Finite {
     std::vector<const SceneObject*> seen, unseen;  // visible and invisible to the camera
   };
   Finite survey();
   void note_interior(const SceneObject&);
-  void choose_centre();
+  void choose_origin();
   void locate_nested(const Ray&, const Hit&, SurfacePoint&) const;
   Bounds3 placed_bounds(const AnimatedTransform& placed) const;
   bool nearest_with_care(const Ray&, Hit&) const;
@@ -159,7 +161,7 @@ class Scene : public SceneObject {
   Ref<Scene> unseen_;                                       // finite objects invisible to the camera; null: none
   std::shared_ptr<const CoincidentLuminaires> coincident_;  // null: none, or this scene is nested in another one
   bool careful_ = false;                                    // whether unseen_ or coincident_ is set
-  const SceneObject* surroundings_ = nullptr;
+  const SurroundingObject* surroundings_ = nullptr;
   std::shared_ptr<const NestedLuminaires> nested_;  // null: none, or this scene is nested in another one
   std::vector<Bounds3> interiors_;  // bounds of the objects that paths can enter, and of scenes with such objects; if there are
                                     // many, only their union, and interior_tree_
@@ -171,6 +173,7 @@ class Scene : public SceneObject {
   std::vector<Node> interior_tree_;  // in depth-first order
   int nesting_ = 0;
   std::uint64_t version_ = 0;
+  std::optional<float> chooses_origin_at_;  // set by the Job: the time at which the shutter opens [s]
 };
 
 class ShaderReplacement;
@@ -190,7 +193,7 @@ class Instance final : public SceneObject {
 
   void prepare() override;
   Bounds3 bounds() const override;
-  bool unbounded() const override;
+  Extent extent() const override { return scene ? scene->extent() : Extent::bounded; }
   bool intersect(const Ray&, Hit&) const override;
   bool occludes(const Ray&) const override;
   void all_hits(const Ray&, HitList&) const override;

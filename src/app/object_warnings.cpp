@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "etendue/describe/registry.h"
+#include "etendue/mesh_facts.h"
 #include "etendue/object_map.h"
 #include "etendue/transport/medium_stack.h"
 #include "scene_warnings.h"
@@ -165,7 +166,7 @@ class Objects {
   void blackness(const SceneObject& object, const Shader* shader) {
     if (shader || object.luminaire() || !shows_light(*job_.renderer)) return;
     std::string text = fmt::format("{} has no shader, so it is black", label(object));
-    if (const std::vector<std::string> materials = object.notes().materials; !materials.empty())
+    if (const std::vector<std::string> materials = notes_of(object).materials; !materials.empty())
       text += fmt::format("; the materials that its file names ({}) are not read", names_text(materials));
     add("no shader", text + "; give it one, such as Lambertian { color: 0.5 }", object.location_of());
   }
@@ -190,9 +191,10 @@ class Objects {
 
   /// For example " (12 of its edges belong to one triangle alone)".
   static std::string ends_text(const SceneObject& object) {
-    const std::uint64_t open = object.open_edges();
+    const MeshFacts* facts = object.mesh_facts();
+    const std::uint64_t open = facts ? facts->open_edges() : 0;
     if (open > 0) return fmt::format(" ({} edge{} to one triangle alone)", grouped(open), open == 1 ? " belongs" : "s belong");
-    const auto mesh = object.triangles();
+    const auto mesh = still_triangles(object);
     constexpr size_t fewest = 4;  // triangles that can enclose a volume
     return mesh && mesh->triangles.size() >= fewest ? " (its triangles are not consistently oriented)" : "";
   }
@@ -213,7 +215,7 @@ class Objects {
   /// Warns of data in the object's file that are not used: materials and vertex colours.
   void file(const SceneObject& object, const Shader* shader) {
     if (!shader) return;
-    const ObjectNotes notes = object.notes();
+    const MeshNotes notes = notes_of(object);
     const Location at = object.location_of("file");
     if (notes.materials.size() > 1)
       add("materials",
@@ -252,7 +254,7 @@ class Objects {
         // These maps replace the coordinates of the textures in them.
         return name != "PlanarMap" && name != "CylindricalMap" && name != "SphericalMap" && name != "TriplanarMap";
       });
-      if (!image || !object.notes().without_uv) continue;
+      if (!image || !notes_of(object).without_uv) continue;
       add("no uv",
           fmt::format(
               "{}: the mesh has no surface coordinates (uv), so every triangle shows the image's lower left half; put the "

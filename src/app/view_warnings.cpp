@@ -98,7 +98,7 @@ void stands_in_the_dark(const Job& job, std::vector<SceneWarning>& list) {
   const Bounds3 box = around->bounds();
   for (const SceneObject* luminaire : scene.luminaires()) {
     if (luminaire->infinite()) continue;
-    const Bounds3 other = luminaire->luminaire_bounds();
+    const Bounds3 other = luminaire->luminaire_bounds().box;
     bool overlap = true;
     for (int k = 0; k < 3; ++k) overlap &= other.low[k] <= box.high[k] && other.high[k] >= box.low[k];
     if (overlap) return;

@@ -9,13 +9,13 @@ namespace {
 
 using Matrix3 = std::array<double, 9>;
 
-double determinant(const Matrix3& a) {
+double determinant_of(const Matrix3& a) {
   return a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
 }
 
 /// The inverse by cofactors; the determinant must not be zero.
 Matrix3 inverse_of(const Matrix3& a) {
-  const double s = 1 / determinant(a);
+  const double s = 1 / determinant_of(a);
   return {s * (a[4] * a[8] - a[5] * a[7]), s * (a[2] * a[7] - a[1] * a[8]), s * (a[1] * a[5] - a[2] * a[4]),
           s * (a[5] * a[6] - a[3] * a[8]), s * (a[0] * a[8] - a[2] * a[6]), s * (a[2] * a[3] - a[0] * a[5]),
           s * (a[3] * a[7] - a[4] * a[6]), s * (a[1] * a[6] - a[0] * a[7]), s * (a[0] * a[4] - a[1] * a[3])};
@@ -96,7 +96,7 @@ Transform::Transform(const Matrix& matrix) : Transform(in_double(matrix)) {}
 Transform::Transform(const DoubleMatrix& matrix) : exact_(matrix) {
   for (size_t k = 0; k < 12; ++k) m_[k] = float(exact_[k]);
   const Matrix3 a = linear_part(exact_);
-  const double det = determinant(a), largest = column_product(a);
+  const double det = determinant_of(a), largest = column_product(a);
   bool finite = true;
   for (float x : m_) finite = finite && std::isfinite(x);
   // A determinant so much smaller than the product of the column lengths is the rounding error of a singular matrix.
@@ -189,16 +189,16 @@ AnimatedTransform::AnimatedTransform(std::vector<Key> keys) : keys_(std::move(ke
   }
 }
 
-void AnimatedTransform::count_from(const DoublePoint3& outer, const DoublePoint3& inner) {
+void AnimatedTransform::set_origins(const DoublePoint3& outer, const DoublePoint3& inner) {
   outer_ = outer;
   inner_ = inner;
-  still_ = counted(keys_.front().transform);
+  still_ = shifted(keys_.front().transform);
   if (factors_.empty()) return;
-  factors_[0].count_from(outer, factors_[0].inner_);
-  factors_[1].count_from(factors_[1].outer_, inner);
+  factors_[0].set_origins(outer, factors_[0].inner_);
+  factors_[1].set_origins(factors_[1].outer_, inner);
 }
 
-Transform AnimatedTransform::counted(const Transform& written, const DoublePoint3& inner) const {
+Transform AnimatedTransform::shifted(const Transform& written, const DoublePoint3& inner) const {
   if ((outer_ == DoublePoint3{} && inner == DoublePoint3{}) || !written.valid()) return written;
   Transform::DoubleMatrix m = written.exact();
   const DoubleVector3 translation = written(inner) - outer_;
@@ -230,7 +230,7 @@ AnimatedTransform::Parts AnimatedTransform::decompose(const Transform& transform
       }
     if (change < 1e-12) break;
   }
-  if (determinant(r) < 0)
+  if (determinant_of(r) < 0)
     for (double& x : r) x = -x;  // a reflection becomes part of the stretch
   Parts parts;
   parts.translation = {transform.exact()[3], transform.exact()[7], transform.exact()[11]};
@@ -248,7 +248,7 @@ AnimatedTransform AnimatedTransform::operator*(const AnimatedTransform& b) const
   AnimatedTransform product;
   if (!animated() && !b.animated()) {
     product = keys_.front().transform * b.keys_.front().transform;
-    product.count_from(outer_, b.inner_);
+    product.set_origins(outer_, b.inner_);
     return product;
   }
   std::vector<float> times;
@@ -260,8 +260,8 @@ AnimatedTransform AnimatedTransform::operator*(const AnimatedTransform& b) const
   product.keys_.clear();
   for (const float time : times) product.keys_.push_back({time, written(time) * b.written(time)});
   product.factors_ = {*this, b};
-  product.factors_[1].count_from(inner_, b.inner_);
-  product.count_from(outer_, b.inner_);
+  product.factors_[1].set_origins(inner_, b.inner_);
+  product.set_origins(outer_, b.inner_);
   return product;
 }
 

@@ -188,7 +188,7 @@ class AxialDirections {
     const double inside = own_pdf(p.object_position);
     if (t.identity()) return float(inside);
     const double stretch = double(distance(p.position, from)) / view_.distance_to(p.object_position);
-    return float(inside * stretch * stretch * stretch / double(std::abs(linear_determinant(t))));
+    return float(inside * stretch * stretch * stretch / double(std::abs(t.determinant())));
   }
 
  private:

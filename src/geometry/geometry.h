@@ -2,7 +2,6 @@
 // Functions that several shapes share: transforms between world space and object space, and bounds of rounding errors.
 
 #include "etendue/scene_object.h"
-#include "etendue/shader.h"  // objects own shaders
 
 namespace etendue {
 
@@ -14,23 +13,33 @@ inline const Transform& placed(const AnimatedTransform& transform, float time, T
   return scratch;
 }
 
-/// Converts a point given relative to the transform's `inner` point to object space.
-inline Point3 own_place(const AnimatedTransform& transform, const Point3& counted) {
-  return transform.inner() == DoublePoint3{} ? counted : Point3(transform.inner() + (DoublePoint3(counted) - DoublePoint3{}));
+/// Converts a point given relative to the transform's inner origin to object space.
+inline Point3 object_position_of(const AnimatedTransform& transform, const Point3& p) {
+  return transform.inner_origin() == DoublePoint3{} ? p : Point3(transform.inner_origin() + (DoublePoint3(p) - DoublePoint3{}));
 }
 
-/// Sets the transform's `inner` point to the scene's origin of coordinates, carried into object space. An identity transform
-/// then remains an identity, and points that several objects place at the same position round to the same floats.
-inline void count_with_scene(AnimatedTransform& transform) {
+/// Sets the transform's inner origin to the scene's origin, transformed to object space. An identity transform then remains an
+/// identity, and points that several objects place at the same position round to the same floats.
+inline void use_scene_origin(AnimatedTransform& transform) {
   const Transform& first = transform.keys().front().transform;
-  const bool far = transform.outer() != DoublePoint3{};
-  const DoublePoint3 own = far && first.valid() ? first.back(transform.outer()) : DoublePoint3{};
-  transform.count_from(transform.outer(), is_finite(own) ? own : DoublePoint3{});
+  const bool far = transform.outer_origin() != DoublePoint3{};
+  const DoublePoint3 own = far && first.valid() ? first.back(transform.outer_origin()) : DoublePoint3{};
+  transform.set_inner_origin(is_finite(own) ? own : DoublePoint3{});
 }
 
 /// The bounding box of a box over the whole motion of its object.
 inline Bounds3 swept(const AnimatedTransform& transform, const Bounds3& box) {
   return transform.sweep(box, transform.keys().front().time, transform.keys().back().time);
+}
+
+/// The bounds of an object whose box in object space is given: over its whole motion, and enlarged, as rounding may move points
+/// out of the exact box.
+inline Bounds3 bounds_of(const AnimatedTransform& transform, const Bounds3& box) {
+  Bounds3 bounds = transform.animated() ? swept(transform, box) : transform.still()(box);
+  const Vector3 margin = rounding_bound(8) * (bounds.diagonal() + abs(bounds.centre() - Point3{}));
+  bounds.low = bounds.low - margin;
+  bounds.high = bounds.high + margin;
+  return bounds;
 }
 
 /// The bounding box of an unbounded object.
@@ -59,10 +68,10 @@ inline Normal3 normal_into(const Transform& transform, const Normal3& n) {
 /// point's time.
 inline void fill_object_coordinates(const AnimatedTransform& transform, const Transform& now, SurfacePoint& p) {
   if (now.shifts_only()) [[likely]] {
-    p.object_position = own_place(transform, p.position + now.shift_back());
+    p.object_position = object_position_of(transform, p.position + now.shift_back());
     p.object_normal = p.normal;
   } else {
-    p.object_position = own_place(transform, now.back(p.position));
+    p.object_position = object_position_of(transform, now.back(p.position));
     p.object_normal = normalize(normal_into(now, p.normal));
   }
 }
@@ -93,12 +102,6 @@ inline void carry_out(const Transform& transform, SurfacePoint& p) {
   p.dpdv = transform(p.dpdv);
   const Vector3 back = transform.error_bound_back(p.position);
   p.error = p.error / stretch + 2 * along(p.normal, transform.error_bound(inside, back));
-}
-
-/// The determinant of the linear part: the factor by which a transform enlarges volumes; negative if it mirrors.
-inline float linear_determinant(const Transform& transform) {
-  const auto& m = transform.matrix();
-  return dot(cross(Vector3{m[0], m[4], m[8]}, Vector3{m[1], m[5], m[9]}), Vector3{m[2], m[6], m[10]});
 }
 
 /// The scale factor of a similarity transform; 0 if the transform is not a similarity.

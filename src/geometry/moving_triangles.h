@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "etendue/core/math.h"
-#include "etendue/scene_object.h"
+#include "etendue/mesh_facts.h"
 
 namespace etendue {
 

@@ -1,4 +1,6 @@
-#include "placed_object.h"
+#include "etendue/placed_object.h"
+
+#include "geometry.h"
 
 namespace etendue {
 
@@ -8,26 +10,22 @@ void PlacedObject::place() {
     still_area_ = {infinity, 0};
     return;
   }
-  const Bounds3 own = own_bounds();
-  bounds_ = transform.animated() ? swept(transform, own) : transform.still()(own);
-  // Rounding may move points out of the exact box.
-  const Vector3 margin = rounding_bound(8) * (bounds_.diagonal() + abs(bounds_.centre() - Point3{}));
-  bounds_.low = bounds_.low - margin;
-  bounds_.high = bounds_.high + margin;
-  // The margin covers the rounding of object-space and of world-space coordinates. |M^-T n| is the reciprocal of the factor by
-  // which the transform widens slabs across n.
+  const Bounds3 local = local_bounds();
+  bounds_ = bounds_of(transform, local);
+  // The least distance of points from an edge (see `border`) covers the rounding of object-space and of world-space
+  // coordinates. |M^-T n| is the reciprocal of the factor by which the transform widens slabs across n.
   const auto largest = [](const Bounds3& b) { return max_component(abs(b.centre() - Point3{}) + 0.5f * b.diagonal()); };
   float shrunk = 0;
   for (const Normal3& axis : {Normal3(1, 0, 0), Normal3(0, 1, 0), Normal3(0, 0, 1)})
     shrunk = std::max(shrunk, length(Vector3(transform.still()(axis))));
-  margin_ = border * (largest(own) + largest(bounds_) * shrunk);
+  margin_ = border * (largest(local) + largest(bounds_) * shrunk);
   still_area_ = area_of(transform.still());
 }
 
 bool PlacedObject::intersect(const Ray& ray, Hit& hit) const {
   Transform scratch;
   const Transform& t = placed(transform, ray.time, scratch);
-  if (!own_intersect(t.identity() ? ray : ray_into(t, ray), hit)) return false;
+  if (!local_intersect(t.identity() ? ray : ray_into(t, ray), hit)) return false;
   hit.object = this;
   hit.depth = 0;
   return true;
@@ -36,7 +34,7 @@ bool PlacedObject::intersect(const Ray& ray, Hit& hit) const {
 bool PlacedObject::occludes(const Ray& ray) const {
   Transform scratch;
   const Transform& t = placed(transform, ray.time, scratch);
-  return own_occludes(t.identity() ? ray : ray_into(t, ray));
+  return local_occludes(t.identity() ? ray : ray_into(t, ray));
 }
 
 void PlacedObject::surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const {
@@ -45,29 +43,29 @@ void PlacedObject::surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p
   carry(point_of(t.identity() ? ray : ray_into(t, ray), hit), ray.time, p);
 }
 
-OwnPoint PlacedObject::point_of(const Ray& ray, const Hit& hit) const {
-  OwnPoint own;
-  own.primitive = hit.primitive;
-  own.u = hit.u;
-  own.v = hit.v;
-  own_point(ray, hit, own);
-  return own;
+LocalPoint PlacedObject::point_of(const Ray& ray, const Hit& hit) const {
+  LocalPoint local;
+  local.primitive = hit.primitive;
+  local.u = hit.u;
+  local.v = hit.v;
+  local_point(ray, hit, local);
+  return local;
 }
 
-void PlacedObject::carry(const OwnPoint& own, float time, SurfacePoint& p) const {
-  p.position = own.position;
-  p.object_position = own_place(transform, own.position);
-  p.normal = p.object_normal = own.normal;
-  p.shading_normal = own.shading_normal == Normal3{} ? own.normal : own.shading_normal;
-  p.error = own.error;
-  p.uv = own.uv;
-  p.dpdu = own.dpdu;
-  p.dpdv = own.dpdv;
+void PlacedObject::carry(const LocalPoint& local, float time, SurfacePoint& p) const {
+  p.position = local.position;
+  p.object_position = object_position_of(transform, local.position);
+  p.normal = p.object_normal = local.normal;
+  p.shading_normal = local.shading_normal == Normal3{} ? local.normal : local.shading_normal;
+  p.error = local.error;
+  p.uv = local.uv;
+  p.dpdu = local.dpdu;
+  p.dpdv = local.dpdv;
   p.time = time;
   p.object = this;
-  p.primitive = own.primitive;
-  p.u = own.u;
-  p.v = own.v;
+  p.primitive = local.primitive;
+  p.u = local.u;
+  p.v = local.v;
   Transform scratch;
   const Transform& t = placed(transform, time, scratch);
   if (!t.identity()) carry_out(t, p);
@@ -83,7 +81,7 @@ void PlacedObject::tangents(SurfacePoint& p) const {
   hit.primitive = p.primitive;
   hit.u = p.u;
   hit.v = p.v;
-  const OwnPoint own = point_of(ray, hit);
+  const LocalPoint own = point_of(ray, hit);
   Transform scratch;
   const Transform& t = placed(transform, p.time, scratch);
   p.dpdu = t(own.dpdu);
@@ -100,29 +98,29 @@ float PlacedObject::area_error(float time) const {
 
 SurfaceSample PlacedObject::sample_area(Point2 u, float time) const {
   SurfaceSample s;
-  OwnPoint own;
-  const float pdf = own_sample(u, own);
+  LocalPoint local;
+  const float pdf = local_sample(u, local);
   if (!(pdf > 0)) return s;
-  carry(own, time, s.point);
+  carry(local, time, s.point);
   Transform scratch;
   const Transform& t = placed(transform, time, scratch);
-  s.pdf = t.identity() ? pdf : pdf / area_stretch(t, own.normal);
+  s.pdf = t.identity() ? pdf : pdf / t.area_stretch(local.normal);
   return s;
 }
 
 float PlacedObject::area_pdf(const SurfacePoint& p) const {
   Transform scratch;
   const Transform& t = placed(transform, p.time, scratch);
-  const float pdf = own_pdf(p);
-  return t.identity() ? pdf : pdf / area_stretch(t, p.object_normal);
+  const float pdf = local_pdf(p);
+  return t.identity() ? pdf : pdf / t.area_stretch(p.object_normal);
 }
 
 PlacedObject::Area PlacedObject::area_of(const Transform& t) const {
-  const double own = own_area();
-  if (const float s = similarity_scale(t); s > 0) return {float(own * double(s) * double(s)), own_area_error()};
-  // Integrates the stretch factor over the object-space area, piece by piece in the coordinates of own_sample: between the
+  const double own = local_area();
+  if (const float s = similarity_scale(t); s > 0) return {float(own * double(s) * double(s)), local_area_error()};
+  // Integrates the stretch factor over the object-space area, piece by piece in the coordinates of local_sample: between the
   // seams, stretch and map are smooth, so Gauss-Legendre quadrature converges fast.
-  const Seams seams = own_seams();
+  const Seams seams = local_seams();
   double sum = 0, off = 0;
   for (size_t i = 0; i <= seams.x.size(); ++i)
     for (size_t k = 0; k <= seams.y.size(); ++k) {
@@ -143,7 +141,7 @@ PlacedObject::Area PlacedObject::area_of(const Transform& t) const {
       sum += fine;
       off += std::abs(fine - coarse);
     }
-  return {float(sum), sum > 0 ? own_area_error() + float(off / sum) : 0};
+  return {float(sum), sum > 0 ? local_area_error() + float(off / sum) : 0};
 }
 
 double PlacedObject::stretched(const Transform& t, const Piece& piece, int panels) const {
@@ -155,10 +153,10 @@ double PlacedObject::stretched(const Transform& t, const Piece& piece, int panel
   double sum = 0;
   for (int i = 0; i < panels * points; ++i)
     for (int k = 0; k < panels * points; ++k) {
-      OwnPoint p;
+      LocalPoint p;
       const float pdf =
-          own_sample({float(std::lerp(piece.x0, piece.x1, place(i))), float(std::lerp(piece.y0, piece.y1, place(k)))}, p);
-      if (pdf > 0) sum += weights[i % points / 2] * weights[k % points / 2] * double(area_stretch(t, p.normal)) / double(pdf);
+          local_sample({float(std::lerp(piece.x0, piece.x1, place(i))), float(std::lerp(piece.y0, piece.y1, place(k)))}, p);
+      if (pdf > 0) sum += weights[i % points / 2] * weights[k % points / 2] * double(t.area_stretch(p.normal)) / double(pdf);
     }
   return sum * (piece.x1 - piece.x0) * (piece.y1 - piece.y0) / (double(panels) * panels);
 }

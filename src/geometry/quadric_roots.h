@@ -2,7 +2,8 @@
 // Intersections of a ray with quadrics and slabs, as intervals of the ray parameter, so that entries into and exits from a
 // solid pair up.
 
-#include "placed_object.h"
+#include "etendue/placed_object.h"
+#include "geometry.h"
 
 namespace etendue {
 
@@ -83,7 +84,7 @@ inline double exact_distance(const Hit& hit) { return double(hit.distance) + dou
 
 /// Fills a point of a flat face of constant z, with Cartesian surface coordinates over the square around a disc of the given
 /// radius, as Disc has them. u is reversed on a face that faces down, so that dpdu x dpdv points to the front.
-inline void flat_point(double x, double y, double z, double radius, bool up, double extent, OwnPoint& p) {
+inline void flat_point(double x, double y, double z, double radius, bool up, double extent, LocalPoint& p) {
   const float r = float(radius), side = up ? 1.0f : -1.0f;
   p.position = {float(x), float(y), float(z)};
   p.normal = {0, 0, side};

@@ -2,6 +2,9 @@
 
 #include <unordered_map>
 
+#include "etendue/object_container.h"
+#include "scene_record.h"
+
 namespace etendue {
 namespace {
 
@@ -20,7 +23,7 @@ struct Space {
 
 class Plan {
  public:
-  Plan(Scene& scene, const DoublePoint3& centre, float time) : scene_(scene), centre_(centre), time_(time) {
+  Plan(Scene& scene, const DoublePoint3& origin, float time) : scene_(scene), rendering_origin_(origin), time_(time) {
     look_into(scene);
     for (auto& [owner, space] : spaces_) {
       SceneObject* const end = end_of(owner);
@@ -28,22 +31,24 @@ class Plan {
     }
   }
 
-  void tell() {
-    scene_.transform.count_from({}, centre_);
+  void apply() {
+    scene_.transform.set_origins({}, rendering_origin_);
     for (auto& [owner, space] : spaces_) {
-      const DoublePoint3 here = centre(owner);
-      if (owner != &scene_) owner->transform.count_from(owner->transform.outer(), here);
+      const DoublePoint3 here = origin_of(owner);
+      if (owner != &scene_) owner->transform.set_inner_origin(here);
       const bool alone = spaces_.at(end_of(owner)).members == 1;
-      owner->follows_scene = alone && space.places.size() == 1;
+      scene_record(*owner).follows_scene = alone && space.places.size() == 1;
       if (auto* nested = dynamic_cast<Scene*>(owner)) {
-        nested->chooses_centre.reset();
-        if (alone && !counts_with_renderer(owner)) nested->chooses_centre = time_;
+        std::optional<float>& chooses_origin_at = SceneRecordAccess::chooses_origin_at(*nested);
+        chooses_origin_at.reset();
+        if (alone && !follows_rendering_origin(owner)) chooses_origin_at = time_;
       }
-      for (SceneObject* part : owner->placed_within()) {
+      for (SceneObject* part : objects_within(*owner)) {
         if (!part) continue;
         SceneObject* const within = space_brought_by(*part);
-        part->transform.count_from(here, within ? centre(within) : DoublePoint3{});
-        if (!part->infinite()) part->world_centre = centre_;  // the points of an infinite object are directions
+        part->transform.set_origins(here, within ? origin_of(within) : DoublePoint3{});
+        if (!part->infinite())  // the points of an infinite object are directions
+          scene_record(*part).rendering_origin = rendering_origin_;
       }
     }
   }
@@ -58,12 +63,12 @@ class Plan {
 
   void look_into(SceneObject& owner) {
     if (!spaces_.try_emplace(&owner, Space{{}, &owner}).second) return;
-    for (SceneObject* part : owner.placed_within()) {
+    for (SceneObject* part : objects_within(owner)) {
       if (!part) continue;
       if (const auto [first, fresh] = stands_in_.try_emplace(part, &owner); !fresh) join(first->second, &owner);
       SceneObject* within = part;
       if (const auto* instance = dynamic_cast<const Instance*>(part)) within = instance->scene.get();
-      if (!within || (within == part && part->placed_within().empty())) continue;
+      if (!within || (within == part && objects_within(*part).empty())) continue;
       look_into(*within);
       // An object listed by several owners counts as one placement, since its owners are joined and have the same origin.
       std::vector<Space::Place>& places = spaces_.at(within).places;
@@ -77,26 +82,26 @@ class Plan {
   }
   void join(SceneObject* a, SceneObject* b) { spaces_.at(end_of(a)).group = end_of(b); }
 
-  /// Whether its origin is the renderer's origin, transformed into this space.
-  bool counts_with_renderer(SceneObject* owner) const {
+  /// Whether the origin of an owner's space is that of rendering space, transformed into it.
+  bool follows_rendering_origin(SceneObject* owner) const {
     SceneObject* const end = end_of(owner);
     if (end == end_of(&scene_)) return true;
     const Space& space = spaces_.at(owner);
-    return spaces_.at(end).members == 1 && space.places.size() == 1 && counts_with_renderer(space.places[0].in);
+    return spaces_.at(end).members == 1 && space.places.size() == 1 && follows_rendering_origin(space.places[0].in);
   }
 
-  DoublePoint3 centre(SceneObject* owner) const {
+  DoublePoint3 origin_of(SceneObject* owner) const {
     SceneObject* const end = end_of(owner);
-    if (end == end_of(&scene_)) return centre_;
+    if (end == end_of(&scene_)) return rendering_origin_;
     const Space& space = spaces_.at(owner);
     if (spaces_.at(end).members > 1 || space.places.size() != 1) return {};
     const Transform t = space.places[0].by->transform.written(time_);
-    const DoublePoint3 found = t.valid() ? t.back(centre(space.places[0].in)) : DoublePoint3{};
+    const DoublePoint3 found = t.valid() ? t.back(origin_of(space.places[0].in)) : DoublePoint3{};
     return is_finite(found) ? found : DoublePoint3{};
   }
 
   Scene& scene_;
-  DoublePoint3 centre_;
+  DoublePoint3 rendering_origin_;
   float time_;
   std::unordered_map<SceneObject*, Space> spaces_;
   std::unordered_map<SceneObject*, SceneObject*> stands_in_;
@@ -104,6 +109,6 @@ class Plan {
 
 }  // namespace
 
-void count_from(Scene& scene, const DoublePoint3& centre, float time) { Plan(scene, centre, time).tell(); }
+void set_rendering_origin(Scene& scene, const DoublePoint3& origin, float time) { Plan(scene, origin, time).apply(); }
 
 }  // namespace etendue

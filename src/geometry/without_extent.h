@@ -2,7 +2,6 @@
 // Shared by delta lights (point and distant lights).
 
 #include "etendue/scene_object.h"
-#include "etendue/shader.h"  // objects own shaders
 
 namespace etendue {
 

@@ -71,9 +71,9 @@ void Consequences::spread(const Holders& holders, const Component& part, Effect 
 void Consequences::note(const Holders& holders, Component& part, const Member& member, const Value& now) {
   spread(holders, part, member.effect);
   if (auto* object = dynamic_cast<SceneObject*>(&part); object && member.kind == Kind::transform) {
-    moved_.emplace(object, object->transform.outer());
+    moved_.emplace(object, object->transform.outer_origin());
     // The origin of the objects within depends on this transform.
-    everything_ |= !object->placed_within().empty() || dynamic_cast<Instance*>(object) != nullptr;
+    everything_ |= !objects_within(*object).empty() || dynamic_cast<Instance*>(object) != nullptr;
   }
   if (member.kind != Kind::component) return;
   structure_ = true;
@@ -89,21 +89,21 @@ void Consequences::note(const Holders& holders, Component& part, const Member& m
 
 void Consequences::prepare(Job& job, const Holders& before) const {
   if (effect_ >= Effect::rerender) {
-    bool everything = everything_ || job.centre_is_stale();
+    bool everything = everything_ || job.rendering_origin_is_stale();
     if (effect_ == Effect::rebuild) {
       // The positions of its objects determine the origin of a scene that is far from the camera, or that is instanced.
-      everything |= !job.counts_from_camera();
+      everything |= !job.origin_is_near_camera();
       for (const auto& [part, effect] : parts_) {
         const auto* scene = dynamic_cast<const Scene*>(part);
-        everything |= scene && effect == Effect::rebuild && scene->chooses_centre;
+        everything |= scene && effect == Effect::rebuild && scene->chooses_origin();
       }
     }
     if (everything) return prepare_tree(job);
-    for (const auto& [object, outer] : moved_) object->transform.count_from(outer, {});
-    if (job.camera) job.camera->world_centre = job.world_centre();
+    for (const auto& [object, outer] : moved_) object->transform.set_origins(outer, {});
+    if (job.camera) job.camera->rendering_origin = job.rendering_origin();
   }
   prepare_parts(job, before);
-  if (effect_ == Effect::rebuild && job.centre_is_stale()) prepare_tree(job);
+  if (effect_ == Effect::rebuild && job.rendering_origin_is_stale()) prepare_tree(job);
 }
 
 /// Prepares parts before their holders. Uses an explicit stack, as prepare_tree does: chains of components may be long.

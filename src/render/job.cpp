@@ -46,10 +46,10 @@ Job::Job()
 
 Job::~Job() = default;
 
-void Job::count_from(const DoublePoint3& centre) {
-  centre_ = centre;
-  camera->world_centre = centre;
-  etendue::count_from(*scene, centre, camera->shutter_open);
+void Job::set_rendering_origin(const DoublePoint3& origin) {
+  rendering_origin_ = origin;
+  camera->rendering_origin = origin;
+  etendue::set_rendering_origin(*scene, origin, camera->shutter_open);
 }
 
 /// The camera's position, rounded to multiples of 16 times its viewing distance (the distance rounded up to a power of two).
@@ -69,7 +69,7 @@ void Job::before_prepare() {
   if (!camera || !scene) return;
   viewpoint_ = viewpoint();
   opened_ = camera->shutter_open;
-  count_from(viewpoint_);
+  set_rendering_origin(viewpoint_);
 }
 
 namespace {
@@ -109,7 +109,7 @@ void Job::require_parts() const {
 void Job::prepare() {
   require_parts();
   if (is_far(*camera, *scene)) {
-    count_from(centre_ + DoubleVector3(scene->centre() - Point3{}));
+    set_rendering_origin(rendering_origin_ + DoubleVector3(scene->centre() - Point3{}));
     prepare_tree(*scene);
     camera->prepare();
   }
@@ -125,9 +125,9 @@ void Job::prepare_again() {
   const LightGroups known(*scene, *image);
 }
 
-bool Job::centre_is_stale() const {
+bool Job::rendering_origin_is_stale() const {
   if (!camera || !scene) return false;  // preparing reports it
-  return viewpoint() != viewpoint_ || camera->shutter_open != opened_ || (counts_from_camera() && is_far(*camera, *scene));
+  return viewpoint() != viewpoint_ || camera->shutter_open != opened_ || (origin_is_near_camera() && is_far(*camera, *scene));
 }
 
 }  // namespace etendue

@@ -57,7 +57,7 @@ struct BeamEvents final : SegmentEvents {
     beam.vertices = std::uint32_t(walk.size());
     beam.hero_only = wavelengths.single();
     beam.caustic = caustic;
-    beam.luminaire = walk[0].point.object->luminaire_index;
+    beam.luminaire = walk[0].point.object->luminaire_index();
   }
 };
 

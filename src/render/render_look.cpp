@@ -109,7 +109,7 @@ Point2 Render::replay(int x, int y, std::uint32_t sample, PathRecord& record) co
   PathSink sink;
   sink.record = &record;
   const Point2 film = rendering(*members_->job, [&] { return process->sample(x, y, sample, arena, sink); }).film;
-  record.count_from_world(members_->job->world_centre());
+  record.to_world_space(members_->job->rendering_origin());
   return film;
 }
 

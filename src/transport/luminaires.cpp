@@ -50,11 +50,11 @@ bool emit_from_infinity(const Scene& scene, const Point3& through, const Surface
   light.ray.origin = through + (scene.radius() - dot(through - scene.centre(), s.direction)) * s.direction;
   if (scene.unbounded() && !begin_before_all(scene, light.ray.origin, s.direction, light.ray.time, light.ray.origin))
     return false;
-  if (const SceneObject* around = scene.surroundings()) {
+  if (const SurroundingObject* around = scene.surroundings()) {
     Ray back;
     back.origin = light.ray.origin;
     back.direction = s.direction;
-    const float reach = around->surrounding_reach(back);
+    const float reach = around->reach(back);
     if (std::isfinite(reach)) light.ray.origin = light.ray.origin + reach * s.direction;
   }
   light.radiance = s.point.object->emission->radiance(s.point, light.ray.direction, w);

@@ -123,19 +123,19 @@ float reach_within(const Medium& medium, const Ray& ray, float reach) {
 
 MediumInterval medium_interval(const Medium& medium, const Ray& ray, float reach) {
   if (!medium.object || !medium.object->surrounds()) return {0, reach_within(medium, ray, reach)};
-  const float far = medium.object->surrounding_reach(ray);
+  const float far = surroundings_of(*medium.object).reach(ray);
   if (!std::isfinite(far)) return {0, reach};
   // The near end of the surroundings: a ray from the far end backwards gives the length inside, and the rest of the distance
   // lies before it.
   Ray back = ray;
   back.origin = ray(far);
   back.direction = -ray.direction;
-  const float begin = std::max(far - medium.object->surrounding_reach(back), 0.0f);
+  const float begin = std::max(far - surroundings_of(*medium.object).reach(back), 0.0f);
   return {std::min(begin, reach), std::min(far, reach)};
 }
 
 float within_object(const Medium& medium, const Ray& ray) {
-  if (medium.object && medium.object->surrounds()) return medium.object->surrounding_reach(ray);
+  if (medium.object && medium.object->surrounds()) return surroundings_of(*medium.object).reach(ray);
   if (!medium.object || medium.object->unbounded() || medium.object->infinite()) return infinity;
   const Bounds3 box = medium.object->bounds();
   float end = infinity;

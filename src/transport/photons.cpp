@@ -117,7 +117,7 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
       p.hero_only = v.hero_only;
       p.in_medium = v.in_medium();
       p.caustic = caustic;
-      p.luminaire = walk[0].point.object->luminaire_index;
+      p.luminaire = walk[0].point.object->luminaire_index();
       if (against) p.weight = weight_of(walk, i, luminaire_pdf, *against, front);
     }
   }

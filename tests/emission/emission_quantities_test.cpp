@@ -2,6 +2,7 @@
 
 #include "etendue/describe/color.h"
 #include "etendue/emission_shader.h"
+#include "etendue/infinite_object.h"
 #include "etendue/object_map.h"
 #include "support/component_test_support.h"
 
@@ -109,8 +110,8 @@ TEST(EmissionQuantities, LuxFromInfinity) {
   const Objects o;
   const auto diffuse = create<EmissionShader>("DiffuseEmission", {{"illuminance", 1000.0}, {"radiance", lamp}});
   const Ref<SceneObject> environment = o.environment, distant = o.distant;
-  environment->enclose({0, 0, 0}, 3);
-  distant->enclose({0, 0, 0}, 3);
+  dynamic_cast<InfiniteObject&>(*environment).enclose({0, 0, 0}, 3);
+  dynamic_cast<InfiniteObject&>(*distant).enclose({0, 0, 0}, 3);
   const auto seen = [](const EmissionShader& e, const SceneObject& from, const Vector3& towards) {
     Ray ray;
     ray.direction = normalize(towards);

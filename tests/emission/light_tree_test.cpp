@@ -65,7 +65,7 @@ TEST(LightTree, ProbabilitiesAreThoseOfTheChoices) {
       const LightChoice c = tree->choose(p, n, (float(i) + random()) / choices);
       if (!c.luminaire) continue;
       EXPECT_NEAR(c.probability, tree->probability(p, n, *c.luminaire), 1e-4f * c.probability + 1e-7f);
-      ++counts[size_t(c.luminaire->luminaire_index)];
+      ++counts[size_t(c.luminaire->luminaire_index())];
     }
     for (size_t i = 0; i < counts.size(); ++i) EXPECT_NEAR(counts[i], expected[i], 5 * std::sqrt(expected[i]) + 3) << i;
   }

@@ -59,7 +59,7 @@ TEST(NestedLuminaires, DensitiesAreThoseOfTheSamples) {
       const std::string what = std::string(shape).substr(0, 12) + " in " + chain.outer;
       ASSERT_EQ(scene->luminaires().size(), 1u);
       const SceneObject& light = *scene->luminaires()[0];
-      EXPECT_EQ(light.luminaire_index, 0);
+      EXPECT_EQ(light.luminaire_index(), 0);
       const float time = 0.37f;
       Mean area, seen, met;
       const Point3 from = scene->centre() + 1.3f * scene->radius() * random.direction();
@@ -103,7 +103,7 @@ TEST(NestedLuminaires, DensitiesAreThoseOfTheSamples) {
       const double said = double(light.area(time));
       EXPECT_NEAR(area.value() / said, 1, 4.5 * area.error() / said + 1e-3) << what;
       EXPECT_NEAR(seen.value() / met.value(), 1, 4.5 * std::hypot(seen.error(), met.error()) / met.value() + 2e-3) << what;
-      EXPECT_TRUE(light.luminaire_bounds().contains(light.sample_area({0.3f, 0.6f}, time).point.position));
+      EXPECT_TRUE(light.luminaire_bounds().box.contains(light.sample_area({0.3f, 0.6f}, time).point.position));
     }
 }
 
@@ -113,7 +113,7 @@ TEST(NestedLuminaires, BoundsOfNormalsHoldThemAll) {
     for (const Chain& chain : chains) {
       const Ref<Scene> scene = scene_of(in_scenes(shape, chain.inner, chain.outer));
       const SceneObject& light = *scene->luminaires()[0];
-      const NormalCone cone = light.normals();
+      const NormalCone cone = light.luminaire_bounds().normals;
       if (shape == plate && std::string(chain.outer).find("keyframes") == std::string::npos) {
         EXPECT_GT(cone.cosine, 0.999f);
       }
@@ -143,11 +143,11 @@ TEST(NestedLuminaires, EachPlaceHasItsOwn) {
         ASSERT_TRUE(scene.nearest(down, hit));
         SurfacePoint p;
         scene.locate(down, hit, p);
-        ASSERT_GE(p.object->luminaire_index, 0);
-        EXPECT_EQ(scene.luminaires()[size_t(p.object->luminaire_index)], p.object);
+        ASSERT_GE(p.object->luminaire_index(), 0);
+        EXPECT_EQ(scene.luminaires()[size_t(p.object->luminaire_index())], p.object);
         EXPECT_EQ(&p.object->original(), &hit.object->original());
         EXPECT_EQ(bool(p.object->shader), x == 2 || y == 1);
-        EXPECT_TRUE(p.object->luminaire_bounds().contains(p.position));
+        EXPECT_TRUE(p.object->luminaire_bounds().box.contains(p.position));
         met.insert(p.object);
       }
   EXPECT_EQ(met.size(), 18u);
@@ -212,7 +212,7 @@ TEST(NestedLuminaires, PointsAndDistantLightsGoWithTheirScenes) {
   test::expect_near(s.point.position - there, {});
   EXPECT_NEAR(s.pdf, 9, 1e-4);
   EXPECT_EQ(s.point.normal, Normal3{});
-  EXPECT_TRUE(light.luminaire_bounds().contains(s.point.position));
+  EXPECT_TRUE(light.luminaire_bounds().box.contains(s.point.position));
   const Wavelengths w = test::wavelengths();
   EXPECT_GT(light.emission->radiance(s.point, {-1, 0, 0}, w)[0], 0);
   EXPECT_EQ(light.emission->radiance(s.point, {1, 0, 0}, w)[0], 0);

@@ -4,6 +4,7 @@
 
 #include "etendue/describe/color.h"
 #include "etendue/emission_shader.h"
+#include "etendue/infinite_object.h"
 #include "support/component_test_support.h"
 
 namespace etendue {
@@ -168,7 +169,7 @@ TEST(SkyNumbers, AWideSunOnTheHorizon) {
     const std::vector<Setting> settings = {{"sun_diameter", 12.0}, {"turbidity", 2.5}};
     const Ref<EmissionShader> e = sky(elevation, true, settings);
     const Ref<SceneObject> environment = create<SceneObject>("Environment");
-    environment->enclose({}, 1);
+    dynamic_cast<InfiniteObject&>(*environment).enclose({}, 1);
     for (const float l : {480.f, 600.f, 680.f}) {
       const Wavelengths w = one(l);
       const auto light = [&](const Vector3& d) { return d.y > 0 ? double(seen(*e, d, w)[0]) : 0; };

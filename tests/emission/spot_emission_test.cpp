@@ -1,6 +1,7 @@
 // SpotEmission. Statistical tests have fixed seeds and a significance of 1e-3 over all their cases together.
 
 #include "etendue/describe/color.h"
+#include "etendue/infinite_object.h"
 #include "etendue/object_map.h"
 #include "support/cone_emission_support.h"
 
@@ -136,7 +137,7 @@ TEST(SpotEmission, OnAnEnvironmentIsASun) {
       "Environment { transform: rotate(90 deg, [1, 0, 0]), emission: SpotEmission { radiance: 7, inner_angle: 0.2, "
       "outer_angle: "
       "0.3 } }");
-  sky->enclose({0, 0, 0}, 2);
+  dynamic_cast<InfiniteObject&>(*sky).enclose({0, 0, 0}, 2);
   const double omega = M_PI * (one_minus_cosine(0.2) + one_minus_cosine(0.3));
   Random random(3);
   for (int i = 0; i < 1000; ++i) {

@@ -59,8 +59,8 @@ AnimatedTransform moving(const Transform& from, const Transform& to) {
 /// Traces rays from the camera in both scenes: hits, points, normals and world positions agree except for rounding.
 void expect_same(const Ref<Scene>& there, const Where& w, const Ref<Scene>& here, const std::string& what) {
   const Where home;
-  count_from(*there, w.at(0.1, -1.6, 0.1), 0);
-  count_from(*here, home.at(0.1, -1.6, 0.1), 0);
+  set_rendering_origin(*there, w.at(0.1, -1.6, 0.1), 0);
+  set_rendering_origin(*here, home.at(0.1, -1.6, 0.1), 0);
   prepare_tree(*there);
   prepare_tree(*here);
   Random random(3);
@@ -220,7 +220,7 @@ Ref<SceneObject> room(int kind, const Where& w) {
 /// inside.
 long leaks(const std::string& structure, const Where& w, const DoublePoint3& centre, int kind, long rays) {
   const Ref<Scene> scene = make_scene(structure, {room(kind, w)});
-  count_from(*scene, centre, 0);
+  set_rendering_origin(*scene, centre, 0);
   prepare_tree(*scene);
   Random random(7);
   Ray begin, ray;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "etendue/describe/color.h"
+#include "etendue/infinite_object.h"
 #include "etendue/object_map.h"
 #include "support/luminaire_test_support.h"
 
@@ -71,7 +72,7 @@ TEST(Distant, LightTravelsItsWay) {
   EXPECT_TRUE(sun->infinite());
   EXPECT_TRUE(sun->bounds().empty());
   EXPECT_EQ(sun->sample_area({0.5f, 0.5f}, 0).pdf, 0);
-  sun->enclose({1, 1, 1}, 3);
+  dynamic_cast<InfiniteObject&>(*sun).enclose({1, 1, 1}, 3);
   EXPECT_FLOAT_EQ(sun->area(0), 9);
   const Point3 from{2, 0, 1};
   SurfaceSample s = sun->sample_visible(from, {0.1f, 0.2f}, 0.5f);
@@ -99,14 +100,14 @@ TEST(Distant, LightTravelsItsWay) {
 TEST(Distant, PowerIsIrradianceTimesTheScenesDisc) {
   const Wavelengths w = wavelengths();
   const Ref<SceneObject> sun = prepared_as<SceneObject>("Distant { emission: DiffuseEmission { radiance: 2 } }");
-  sun->enclose({0, 0, 0}, 3);
+  dynamic_cast<InfiniteObject&>(*sun).enclose({0, 0, 0}, 3);
   EXPECT_NEAR(double(sun->emission->power(*sun, w)[0]), 2 * M_PI * 9, 1e-4);
   // On the axis of a spot's profile, and within its edge.
   for (const double angle : {0.0, 25.0}) {
     const Ref<SceneObject> beam =
         prepared_as<SceneObject>("Distant { direction: [" + std::to_string(std::sin(angle * M_PI / 180)) + ", 0, " +
                                  std::to_string(std::cos(angle * M_PI / 180)) + "], emission: SpotEmission { radiance: 2 } }");
-    beam->enclose({0, 0, 0}, 3);
+    dynamic_cast<InfiniteObject&>(*beam).enclose({0, 0, 0}, 3);
     const SurfaceSample s = beam->sample_visible({0.1f, 0.2f, 0.3f}, {}, 0);
     const double irradiance = double(beam->emission->radiance(s.point, -s.direction, w)[0] / s.pdf);
     const double t =

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "etendue/core/error.h"
+#include "etendue/mesh_facts.h"
 #include "etendue/object_map.h"
 #include "support/component_test_support.h"
 #include "support/geometry_support.h"
@@ -63,11 +64,11 @@ SurfacePoint first_hit(const SceneObject& o, const Point3& from, const Vector3& 
   return p;
 }
 
-size_t count(const SceneObject& o) { return o.triangles()->triangles.size(); }
+size_t count(const SceneObject& o) { return still_triangles(o)->triangles.size(); }
 
 /// The vertex nearest to a place, as a point of an adjacent triangle.
 SurfacePoint at_vertex(const SceneObject& o, const Point3& place) {
-  const TriangleView view = *o.triangles();
+  const TriangleView view = *still_triangles(o);
   Hit nearest;
   float least = infinity;
   for (std::uint32_t i = 0; i < view.triangles.size(); ++i)
@@ -281,14 +282,14 @@ TEST(DisplacedMesh, EdgesAreNoLongerThanAskedForAndAttributesAreKept) {
     return settings;
   }());
   const auto o = object("DisplacedMesh", {{"surface", mesh}, {"edge_length", 0.3}});
-  const TriangleView view = *o->triangles();
+  const TriangleView view = *still_triangles(*o);
   for (const auto& t : view.triangles)
     for (size_t k = 0; k < 3; ++k) EXPECT_LE(distance(view.positions[t[k]], view.positions[t[(k + 1) % 3]]), 0.3f);
   Random random(3);
   for (int i = 0; i < 500; ++i) {
     const SurfacePoint p = first_hit(*o, {}, random.direction());
     float color[4];
-    ASSERT_EQ(o->attribute(attribute_number("color"), p, color), 3);
+    ASSERT_EQ(o->mesh_facts()->attribute(attribute_number("color"), p, color), 3);
     EXPECT_NEAR(color[0], p.position.x, 1e-5);
     EXPECT_NEAR(color[1], p.position.y, 1e-5);
   }

@@ -38,7 +38,7 @@ class FisheyeCamera final : public Camera {
       fail("shutter_closing", "opening and closing must not take longer than the shutter is open");
     right_ = normalize(cross(forward_, up));
     up_ = cross(right_, forward_);
-    position_ = Point3(DoublePoint3{} + (from - world_centre));
+    position_ = Point3(DoublePoint3{} + (from - rendering_origin));
   }
   void set_film(int width, int height) override { w_ = float(width), h_ = float(height); }
 

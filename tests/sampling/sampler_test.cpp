@@ -228,7 +228,7 @@ TEST(LightSampler, ProbabilitiesSumToOneAndAreKept) {
       const LightChoice c = sampler->choose({}, {}, (float(i) + 0.5f) / count);
       ASSERT_NE(c.luminaire, nullptr);
       EXPECT_EQ(c.probability, sampler->probability({}, {}, *c.luminaire));
-      ++counts[size_t(c.luminaire->luminaire_index)];
+      ++counts[size_t(c.luminaire->luminaire_index())];
     }
     for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(counts[i], expected[i], 2.02) << name;  // two ranges of u at most
     EXPECT_EQ(sampler->probability(*lights.scene->objects[3]), 0);                     // no luminaire

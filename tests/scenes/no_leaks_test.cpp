@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "etendue/language/language.h"
+#include "etendue/mesh_facts.h"
 #include "support/geometry_support.h"
 
 namespace etendue {
@@ -34,7 +35,7 @@ struct Leaks {
   long random = 0, aimed = 0;
 };
 Leaks leaks(const Scene& scene, const SceneObject& solid, const Place& place, long rays) {
-  const std::optional<TriangleView> view = solid.triangles();
+  const std::optional<TriangleView> view = still_triangles(solid);
   std::atomic<long> random_ones = 0, aimed_ones = 0;
   constexpr long batch = 10000;
   tbb::parallel_for(0L, rays / batch, [&](long i) {
@@ -66,7 +67,8 @@ TEST(NoLeaks, OutOfClosedObjects) {
       const Ref<SceneObject> solid = ref_cast<SceneObject>(parse_component(text));
       solid->transform = Transform::translate(place.offset) * Transform::scale({place.scale, place.scale, place.scale});
       for (const std::string structure : {"EmbreeScene", "BvhScene", "OctreeScene", "GridScene", "BruteForceScene"}) {
-        const bool slow = structure != "EmbreeScene" && structure != "BvhScene" && solid->triangles()->triangles.size() > 100;
+        const bool slow =
+            structure != "EmbreeScene" && structure != "BvhScene" && still_triangles(*solid)->triangles.size() > 100;
         const Leaks n = leaks(*scene(structure, {solid}), *solid, place, slow ? rays / 20 : rays);
         // Embree's own triangle test lets a few of the rays through that are aimed at corners.
         const long allowed = structure == "EmbreeScene" ? rays / 500 : 0;

@@ -299,7 +299,7 @@ TEST(SceneStructures, AllHitsOnOneObjectInSeveralScenes) {
 class TestFloor final : public SceneObject {
  public:
   Bounds3 bounds() const override { return {{-endless, -endless, -endless}, {endless, endless, endless}}; }
-  bool unbounded() const override { return true; }
+  Extent extent() const override { return Extent::unbounded; }
   bool intersect(const Ray& r, Hit& hit) const override {
     const float t = -r.origin.z / r.direction.z;
     if (!(t > 0 && t < r.maximum)) return false;

@@ -10,7 +10,7 @@
 #include "etendue/describe/component.h"
 #include "etendue/describe/registry.h"
 #include "etendue/scene_object.h"
-#include "etendue/shader.h"  // Ref<Shader> in SceneObject needs the whole class
+#include "etendue/shader.h"
 
 namespace etendue::test {
 

@@ -7,7 +7,7 @@
 
 #include "etendue/describe/registry.h"
 #include "etendue/scene.h"
-#include "etendue/shader.h"  // objects own shaders
+#include "etendue/shader.h"
 
 namespace etendue::geometry_test {
 

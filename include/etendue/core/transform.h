@@ -37,6 +37,12 @@ class Transform {
   Vector3 shift_back() const { return {inverse_[3], inverse_[7], inverse_[11]}; }
   /// Whether it changes handedness: the determinant is negative.
   bool flips() const { return flips_; }
+  /// The determinant of the linear part: the factor by which it enlarges volumes; negative if it mirrors.
+  float determinant() const {
+    return dot(cross(Vector3{m_[0], m_[4], m_[8]}, Vector3{m_[1], m_[5], m_[9]}), Vector3{m_[2], m_[6], m_[10]});
+  }
+  /// The factor by which it enlarges area at a surface of unit normal n: |det M| |M^-T n|.
+  float area_stretch(const Normal3& n) const { return std::abs(determinant()) * length(Vector3((*this)(n))); }
   Transform inverse() const;
   /// First b, then this.
   Transform operator*(const Transform& b) const;
@@ -124,16 +130,17 @@ class AnimatedTransform {
   AnimatedTransform operator*(const AnimatedTransform& b) const;
 
   /// Sets the shifted origins: `outer` for the space that the transform maps to, `inner` for the space that it maps from.
-  void count_from(const DoublePoint3& outer, const DoublePoint3& inner);
-  const DoublePoint3& outer() const { return outer_; }
-  const DoublePoint3& inner() const { return inner_; }
+  void set_origins(const DoublePoint3& outer, const DoublePoint3& inner);
+  void set_inner_origin(const DoublePoint3& inner) { set_origins(outer_, inner); }
+  const DoublePoint3& outer_origin() const { return outer_; }
+  const DoublePoint3& inner_origin() const { return inner_; }
 
   bool animated() const { return keys_.end() > keys_.begin() + 1; }  // size() would need a division
   /// The transform of the first key: the only one when not animated.
   const Transform& still() const { return still_; }
-  Transform at(float time) const { return counted(written(time)); }
+  Transform at(float time) const { return shifted(written(time)); }
   /// The same with `inner` at the true origin.
-  Transform from_origin(float time) const { return counted(written(time), {}); }
+  Transform from_origin(float time) const { return shifted(written(time), {}); }
   /// As written in the description, with both origins unshifted.
   Transform written(float time) const;
   const std::vector<Key>& keys() const { return keys_; }
@@ -151,8 +158,9 @@ class AnimatedTransform {
     std::array<double, 9> stretch{};   // 3x3, row major
   };
   static Parts decompose(const Transform&);
-  Transform counted(const Transform& written) const { return counted(written, inner_); }
-  Transform counted(const Transform& written, const DoublePoint3& inner) const;
+  /// A transform as written, between the shifted origins.
+  Transform shifted(const Transform& written) const { return shifted(written, inner_); }
+  Transform shifted(const Transform& written, const DoublePoint3& inner) const;
 
   std::vector<Key> keys_;                   // as written
   std::vector<Parts> parts_;                // one for each key if animated

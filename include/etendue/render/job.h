@@ -43,19 +43,19 @@ class Job final : public Component {
   void prepare() override;
   void prepare_again() override;
 
-  /// The origin of the rendering coordinates, as a point of world space. Valid once the job is prepared.
-  const DoublePoint3& world_centre() const { return centre_; }
+  /// The origin of rendering space, in world space. Valid once the job is prepared.
+  const DoublePoint3& rendering_origin() const { return rendering_origin_; }
   /// Whether preparing the job anew would choose another origin, because the camera or the time was moved too far.
-  bool centre_is_stale() const;
+  bool rendering_origin_is_stale() const;
   /// Whether the origin was chosen from the camera alone; otherwise it is the centre of a scene that is far from the camera.
-  bool counts_from_camera() const { return centre_ == viewpoint_; }
+  bool origin_is_near_camera() const { return rendering_origin_ == viewpoint_; }
 
  private:
   void require_parts() const;
-  void count_from(const DoublePoint3& centre);
+  void set_rendering_origin(const DoublePoint3&);
   DoublePoint3 viewpoint() const;
 
-  DoublePoint3 viewpoint_, centre_;
+  DoublePoint3 viewpoint_, rendering_origin_;
   float opened_ = 0;  // the time at which the shutter opens, for which the origin of the scene was chosen [s]
 };
 

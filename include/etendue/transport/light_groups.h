@@ -28,8 +28,8 @@ class LightGroups {
   int count() const { return count_; }
   /// The group of a luminaire; null: light without a luminaire, such as that of a medium.
   int of(const SceneObject* luminaire) const {
-    if (!luminaire || luminaire->luminaire_index < 0) return count_ - 1;
-    return group_[size_t(luminaire->luminaire_index)];
+    if (!luminaire || luminaire->luminaire_index() < 0) return count_ - 1;
+    return group_[size_t(luminaire->luminaire_index())];
   }
 
  private:

@@ -39,18 +39,21 @@ class Medium {
   Ray own(const Ray&) const;
 
   VolumeCoefficients coefficients(const Point3& position, float time, const Wavelengths& wavelengths) const {
-    return volume->coefficients(counted(position, time), time, wavelengths);
+    return volume->coefficients(volume_point(position, time), time, wavelengths);
   }
   /// See VolumeShader; directions are in world space.
   float phase(const Point3& position, float time, const Vector3& out, const Vector3& in) const {
-    return volume->phase(counted(position, time), out, in);
+    return volume->phase(volume_point(position, time), out, in);
   }
   Vector3 sample_phase(const Point3& position, float time, const Vector3& out, Point2 u, float& pdf) const {
-    return volume->sample_phase(counted(position, time), out, u, pdf);
+    return volume->sample_phase(volume_point(position, time), out, u, pdf);
   }
 
  private:
-  Point3 counted(const Point3& position, float time) const { return volume->homogeneous() ? position : own(position, time); }
+  /// The point that is passed to the volume shader.
+  Point3 volume_point(const Point3& position, float time) const {
+    return volume->homogeneous() ? position : own(position, time);
+  }
 };
 
 /// The medium at the top of a stack.

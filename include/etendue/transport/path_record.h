@@ -14,7 +14,7 @@ struct PathRecord {
   struct Vertex {
     std::string kind;       ///< "camera", "surface", "escaped", …
     std::string object;     ///< the name of the object, or its class
-    DoublePoint3 position;  ///< in rendering space while the path is traced, then in world space (count_from_world)
+    DoublePoint3 position;  ///< in rendering space while the path is traced, then in world space (to_world_space)
     Normal3 normal;
     std::string lobe;     ///< the lobe that was sampled; empty: the path ended
     float pdf = 0;        ///< [1/sr] of the sampled direction (a probability for specular lobes)
@@ -41,11 +41,10 @@ struct PathRecord {
   void contribute(Contribution contribution) {
     add_to(contributions, std::move(contribution), [](Contribution& last) { last.strategy += ", others before it left out"; });
   }
-  /// Converts positions from rendering space, with the origin `centre`, to world space. To be called once, when the record is
-  /// complete.
-  void count_from_world(const DoublePoint3& centre) {
+  /// Converts positions from rendering space to world space. To be called once, when the record is complete.
+  void to_world_space(const DoublePoint3& rendering_origin) {
     for (auto* list : {&vertices, &light_vertices})
-      for (Vertex& v : *list) v.position = v.position + (centre - DoublePoint3{});
+      for (Vertex& v : *list) v.position = v.position + (rendering_origin - DoublePoint3{});
   }
 
   std::vector<Vertex> vertices;        ///< from the camera

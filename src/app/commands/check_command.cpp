@@ -8,6 +8,7 @@
 #include "app/scene_options.h"
 #include "app/scene_warnings.h"
 #include "app/text.h"
+#include "etendue/mesh_facts.h"
 
 namespace etendue {
 
@@ -44,7 +45,7 @@ class Counter {
         continue;
       }
       add(here.objects, {1, 1});
-      const auto view = object->triangles();
+      const auto view = still_triangles(*object);
       const double triangles = view ? double(view->triangles.size()) : 0;
       add(here.triangles, {triangles, triangles});
     }

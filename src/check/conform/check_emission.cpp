@@ -6,8 +6,8 @@
 
 #include "conformance.h"
 #include "etendue/describe/color.h"
+#include "etendue/infinite_object.h"
 #include "etendue/object_map.h"
-#include "etendue/scene_object.h"
 #include "shader_trial.h"
 #include "sphere_cells.h"
 #include "statistics.h"
@@ -26,7 +26,7 @@ Ref<SceneObject> host_of(EmissionShader& emission, const std::string& name) {
   host->emission = Ref<EmissionShader>(&emission);
   emission.prepare();  // as before every render: discards data of objects that are gone, whose address the new host may have
   host->prepare();
-  if (host->infinite()) host->enclose({0.1f, 0.2f, 0.3f}, 1.5f);
+  if (const Ref<InfiniteObject> infinite = ref_cast<InfiniteObject>(host)) infinite->enclose({0.1f, 0.2f, 0.3f}, 1.5f);
   return host;
 }
 

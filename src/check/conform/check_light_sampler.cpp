@@ -50,7 +50,7 @@ class LightTrial {
 
  private:
   static std::string name(const SceneObject& luminaire) {
-    return fmt::format("luminaire {} (a {})", luminaire.luminaire_index, luminaire.class_info().name);
+    return fmt::format("luminaire {} (a {})", luminaire.luminaire_index(), luminaire.class_info().name);
   }
 
   /// Samples many times and compares with `said`, the probability of each luminaire, by a chi-square test.
@@ -70,7 +70,7 @@ class LightTrial {
         ++counts.back();
         continue;
       }
-      const size_t k = size_t(c.luminaire->luminaire_index);
+      const size_t k = size_t(c.luminaire->luminaire_index());
       if (!trial.expect(k < said.size(), "choices are luminaires of the scene", [&] { return where; })) return;
       ++counts[k];
       trial.expect(std::abs(double(c.probability) - said[k]) <= 1e-3 * said[k] + 1e-7,

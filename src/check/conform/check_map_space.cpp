@@ -8,6 +8,7 @@
 
 #include "etendue/scene_object.h"
 #include "geometry/geometry.h"
+#include "geometry/scene_record.h"
 #include "map_trial.h"
 #include "shader_trial.h"
 
@@ -18,8 +19,8 @@ namespace {
 Ref<SceneObject> placed_object(const char* name, const Transform& transform, const DoublePoint3& origin = {}) {
   Ref<SceneObject> object = ref_cast<SceneObject>(Registry::instance().create(name));
   object->transform = transform;
-  object->transform.count_from(origin, {});
-  object->world_centre = origin;
+  object->transform.set_origins(origin, {});
+  scene_record(*object).rendering_origin = origin;
   object->prepare();
   return object;
 }
@@ -94,7 +95,7 @@ class SpaceTrial {
       object->tangents(q);
       compare(p, q, by_tangents_);
       q.object = far.get();
-      q.position = Point3(DoublePoint3(p.position) - (far->world_centre - DoublePoint3{}));
+      q.position = Point3(DoublePoint3(p.position) - (far->rendering_origin() - DoublePoint3{}));
       compare(p, q, by_origin_);
     }
   }

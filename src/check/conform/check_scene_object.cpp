@@ -117,8 +117,7 @@ bool found_nearby(const ObjectTrial& o, const SurfacePoint& p) {
 }
 
 void check_points(const ObjectTrial& o) {
-  const Bounds3 lit = o.object.luminaire_bounds();
-  const NormalCone cone = o.object.normals();
+  const auto [lit, cone] = o.object.luminaire_bounds();
   statistics::Mean area;
   int missed = 0;
   const int n = o.trial.samples(20000);

@@ -77,7 +77,7 @@ ReplayedPath replay(const RenderProcess& process, int x, int y, std::uint32_t sa
   sink.record = &path.record;
   sink.splats = &splats;
   const CameraSample s = process.sample(x, y, sample, arena, sink);
-  path.record.count_from_world(process.context.camera.world_centre);
+  path.record.to_world_space(process.context.camera.rendering_origin);
   path.film = s.film;
   path.bad = !luminance_of(s.value, s.wavelengths, path.luminance);
   path.splatted = splatted_luminance(process.context.image, splats);

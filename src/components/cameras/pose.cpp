@@ -22,7 +22,7 @@ void Placement::set(const Camera& camera, const DoublePoint3& from, const Double
         camera.fail("transform", "a camera can be moved and turned but not scaled or sheared");
   }
   transform_ = transform;
-  transform_.count_from(camera.world_centre, from);
+  transform_.set_origins(camera.rendering_origin, from);
   base_ = Transform::look_at({}, {way.x, way.y, way.z}, up);
   moving_ = transform.animated();
   still_ = Pose(transform_.still() * base_);

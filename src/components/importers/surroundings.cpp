@@ -20,7 +20,7 @@ bool holds(const SceneObject& object, const DoublePoint3& p) {
   body->emission = nullptr;
   body->interior = nullptr;
   // The point becomes the origin, where floats are most precise.
-  body->transform.count_from(p, body->transform.inner());
+  body->transform.set_origins(p, body->transform.inner_origin());
   try {
     prepare_tree(*body);
   } catch (const Error&) {  // reported again when the scene is prepared

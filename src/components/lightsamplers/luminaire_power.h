@@ -97,7 +97,7 @@ class PowerTable {
     return {luminaires_[i], probabilities_[i]};
   }
   float probability(const SceneObject& luminaire) const {
-    const size_t index = size_t(luminaire.luminaire_index);
+    const size_t index = size_t(luminaire.luminaire_index());
     return index < luminaires_.size() && luminaires_[index] == &luminaire ? probabilities_[index] : 0;
   }
 

@@ -31,14 +31,15 @@ class TreeLightSampler final : public LightSampler {
     places_.assign(all.size(), nowhere);
     for (size_t i = 0; i < all.size(); ++i) {
       LightBounds light;
-      if (!all[i]->infinite()) light.bounds = all[i]->luminaire_bounds();
+      const LuminaireBounds bounds = all[i]->luminaire_bounds();
+      if (!all[i]->infinite()) light.bounds = bounds.box;
       if (light.bounds.empty()) {
         everywhere.push_back(all[i]);
         everywhere_powers.push_back(powers[i]);
         continue;
       }
       const Sides sides = all[i]->emission->sides;
-      light.normals = all[i]->normals();
+      light.normals = bounds.normals;
       if (sides == Sides::back) light.normals.axis = -light.normals.axis;
       light.both_sides = sides == Sides::both;
       light.power = float(powers[i]);
@@ -77,7 +78,7 @@ class TreeLightSampler final : public LightSampler {
   }
   float probability(const Point3& point, const Normal3& normal, const SceneObject& luminaire) const override {
     if (only_) return &luminaire == only_ ? 1 : 0;
-    const size_t index = size_t(luminaire.luminaire_index);
+    const size_t index = size_t(luminaire.luminaire_index());
     if (index >= places_.size() || by_power_.luminaires()[index] != &luminaire) return 0;
     if (places_[index] != nowhere) return (1 - outside_) * tree_.probability(point, normal, places_[index]);
     for (size_t i = 0; i < everywhere_.size(); ++i)

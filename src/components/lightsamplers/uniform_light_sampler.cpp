@@ -25,7 +25,7 @@ class UniformLightSampler final : public LightSampler {
     return {luminaires_[std::min(size_t(double(u) * double(count)), count - 1)], 1 / float(count)};
   }
   float probability(const SceneObject& luminaire) const override {
-    const size_t index = size_t(luminaire.luminaire_index);
+    const size_t index = size_t(luminaire.luminaire_index());
     return index < luminaires_.size() && luminaires_[index] == &luminaire ? 1 / float(luminaires_.size()) : 0;
   }
 

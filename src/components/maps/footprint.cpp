@@ -79,7 +79,7 @@ const Transform& placement(const SurfacePoint& p, Transform& scratch) {
   static const Transform identity;
   if (!p.object) return identity;
   const AnimatedTransform& transform = p.object->transform;
-  const bool still = !transform.animated() && transform.inner() == DoublePoint3{};
+  const bool still = !transform.animated() && transform.inner_origin() == DoublePoint3{};
   if (!still) scratch = transform.from_origin(p.time);
   const Transform& own = still ? transform.still() : scratch;
   const Point3 there = own(p.object_position);
@@ -125,7 +125,7 @@ SolidPoint solid_point(const SurfacePoint& p, MapSpace space, float size) {
       // The transform M scales an area with object-space normal n by det(M) |M^-T n|.
       Transform scratch;
       const Transform& t = placement(p, scratch);
-      if (!t.identity()) width /= std::sqrt(std::abs(linear_determinant(t)) * length(Vector3(t(p.object_normal))));
+      if (!t.identity()) width /= std::sqrt(t.area_stretch(p.object_normal));
       break;
     }
     case MapSpace::world: s.at = Point3(world_position(p)) - Point3{}; break;

@@ -1,7 +1,7 @@
 #pragma once
 // The footprint of a ray's cone on a surface, for the filtering of maps, and the transform from object space at a point.
 
-#include "etendue/core/ray.h"
+#include "etendue/core/surface_point.h"
 #include "etendue/core/transform.h"
 
 namespace etendue {

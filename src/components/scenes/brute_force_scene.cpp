@@ -1,6 +1,7 @@
 // BruteForceScene: tests every object for every ray. It is the fastest structure for a few dozen triangles, and the reference
 // with which other structures are compared.
 
+#include "etendue/mesh_facts.h"
 #include "etendue/scene.h"
 #include "etendue/shader.h"
 
@@ -36,7 +37,7 @@ class BruteForceScene final : public Scene {
     triangles_.clear();
     others_.clear();
     for (const SceneObject* object : finite) {
-      const std::optional<TriangleView> view = object->triangles();
+      const std::optional<TriangleView> view = still_triangles(*object);
       if (view)
         triangles_.add(*object, *view, 2 * radius());
       else

@@ -1,7 +1,6 @@
 // BvhScene: Étendue's own bounding volume hierarchy, with eight children per node (wide_bvh.h).
 
 #include "etendue/scene.h"
-#include "etendue/shader.h"  // objects own shaders
 #include "primitives.h"
 #include "wide_bvh.h"
 

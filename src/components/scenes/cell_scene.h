@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "etendue/scene.h"
-#include "etendue/shader.h"  // objects own shaders
 #include "geometry/finite_ray.h"
 #include "primitives.h"
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "etendue/core/error.h"
+#include "etendue/mesh_facts.h"
 #include "etendue/transport/boundaries.h"
 #include "etendue/transport/path_sink.h"
 
@@ -22,7 +23,7 @@ struct Coincident {
 /// Whether both points lie on the same part of the same object. Only meshes are divided into parts here: the parts of other
 /// objects touch along edges only.
 bool same_part(const SurfacePoint& a, const SurfacePoint& b) {
-  return a.object == b.object && (a.primitive == b.primitive || !a.object->original().triangles());
+  return a.object == b.object && (a.primitive == b.primitive || !still_triangles(a.object->original()));
 }
 
 bool in_one_place(const Scene& scene, const SurfacePoint& a, const SurfacePoint& b) {

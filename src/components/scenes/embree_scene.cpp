@@ -92,7 +92,7 @@ class EmbreeScene final : public Scene {
     levels_ = 0;
     clock_ = {};
     for (const SceneObject* object : finite) {
-      if (const std::optional<TriangleView> view = object->triangles())
+      if (const std::optional<TriangleView> view = still_triangles(*object))
         note(attach_triangles(scene_.get(), *view, effort), triangles_of(object, *view));
       else if (const std::optional<MovingTriangleView> moving = moving_triangles(*object))
         attach_moving_triangles(scene_.get(), *moving, effort, [&](unsigned id) { note(id, triangles_of(object, *moving)); });

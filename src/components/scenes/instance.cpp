@@ -6,6 +6,7 @@
 #include "etendue/scene.h"
 #include "etendue/shader.h"
 #include "geometry/geometry.h"
+#include "geometry/scene_record.h"
 
 namespace etendue {
 
@@ -22,8 +23,7 @@ class Reshaded final : public SceneObject {
 
   Reshaded(const SceneObject& other, const Ref<Shader>& with) : object(const_cast<SceneObject*>(&other)) {
     transform = object->transform;
-    world_centre = object->world_centre;
-    stand_for(other);
+    copy_surface_of(other, *this);
     shader = with;
     if (object->origin) origin = std::make_unique<Origin>(*object->origin);
   }
@@ -57,18 +57,10 @@ class Reshaded final : public SceneObject {
   float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint& p) const override {
     return object->visible_pdf(from, direction, p);
   }
-  Bounds3 luminaire_bounds() const override { return object->luminaire_bounds(); }
-  NormalCone normals() const override { return object->normals(); }
+  LuminaireBounds luminaire_bounds() const override { return object->luminaire_bounds(); }
   bool closed() const override { return object->closed(); }
-  bool infinite() const override { return object->infinite(); }
-  bool unbounded() const override { return object->unbounded(); }
-  bool delta() const override { return object->delta(); }
-  void enclose(const Point3& centre, float radius) override { object->enclose(centre, radius); }
-  std::optional<TriangleView> triangles() const override { return object->triangles(); }
-  int attribute(int number, const SurfacePoint& p, float* values) const override {
-    return object->attribute(number, p, values);
-  }
-  const SceneObject& original() const override { return object->original(); }
+  Extent extent() const override { return object->extent(); }
+  const MeshFacts* mesh_facts() const override { return object->mesh_facts(); }
 
  private:
   SurfaceSample own(SurfaceSample s) const {
@@ -148,7 +140,7 @@ void Instance::prepare() {
   if (!scene) fail("scene", "an instance needs a scene, such as EmbreeScene { objects: [...] }");
   if (emission) fail("emission", "an instance emits what the objects in its scene do");
   if (interior) fail("interior", "an instance is filled as the objects in its scene are");
-  transform.count_from(transform.outer(), scene->transform.inner());
+  transform.set_inner_origin(scene->transform.inner_origin());
   replacement_ = shader ? ShaderReplacement::shared(*scene, shader) : nullptr;
 }
 
@@ -158,7 +150,6 @@ void Instance::note_way_out(Hit& hit) const {
 }
 
 Bounds3 Instance::bounds() const { return scene->placed_bounds(transform); }
-bool Instance::unbounded() const { return scene->unbounded(); }
 
 bool Instance::intersect(const Ray& ray, Hit& hit) const {
   Transform scratch;

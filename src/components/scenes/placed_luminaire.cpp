@@ -1,6 +1,7 @@
 #include "placed_luminaire.h"
 
 #include "etendue/describe/registry.h"
+#include "geometry/scene_record.h"
 #include "nested_luminaires.h"
 
 namespace etendue {
@@ -98,7 +99,7 @@ float WayOut::similarity() const {
 // (Niederreiter 1992, "Random number generation and quasi-Monte Carlo methods", chapter 5), whose accuracy depends neither on
 // the borders between an object's parts nor on their sizes.
 NormalSpread::NormalSpread(const SceneObject& object, float time) {
-  if (const std::optional<TriangleView> view = object.triangles()) {
+  if (const std::optional<TriangleView> view = still_triangles(object)) {
     for (const auto& t : view->triangles) {
       const Point3& corner = view->positions[t[0]];
       const Vector3 area = cross(view->positions[t[1]] - corner, view->positions[t[2]] - corner);
@@ -143,8 +144,7 @@ PlacedLuminaire::PlacedLuminaire(const SceneObject& inner, const Placement& plac
     : inner_(&inner), place_(place), all_(all) {
   transform = inner.transform;
   for (const Placement* p = &place; p != nullptr; p = p->outer) transform = p->scene->transform * transform;
-  world_centre = inner.world_centre;
-  stand_for(inner);
+  copy_surface_of(inner, *this);
 }
 
 bool PlacedLuminaire::intersect(const Ray& ray, Hit& hit) const {
@@ -263,15 +263,19 @@ Bounds3 PlacedLuminaire::swept_out(Bounds3 box) const {
   return box;
 }
 
+LuminaireBounds PlacedLuminaire::luminaire_bounds() const {
+  const LuminaireBounds inner = inner_->luminaire_bounds();
+  return {swept_out(inner.box), carried_out(inner.normals)};
+}
+
 // With N = M^-T, the axis a, and a normal n = cos(t) a + sin(t) b, b perpendicular to a: the component of N n along N a is at
 // least cos(t) |N a| - sin(t) s, and the perpendicular component at most sin(t) s, with s an upper bound of |N b|. So the angle
 // between N n and N a is at most
 //     atan(sin(t) s / (cos(t) |N a| - sin(t) s)),
 // unless the denominator is not positive. A similarity preserves angles.
-NormalCone PlacedLuminaire::normals() const {
+NormalCone PlacedLuminaire::carried_out(const NormalCone& cone) const {
   for (const Placement* p = &place_; p != nullptr; p = p->outer)
     if (p->scene->transform.animated()) return {};
-  const NormalCone cone = inner_->normals();
   if (cone.cosine <= -1) return {};
   const WayOut way(&place_, 0);
   const Vector3 axis(way.carry(Normal3(cone.axis)));

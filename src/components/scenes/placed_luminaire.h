@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "etendue/mesh_facts.h"
 #include "etendue/scene.h"
 #include "geometry/geometry.h"
 
@@ -80,7 +81,7 @@ class NestedLuminaires;
 /// The pdf of a point light does not change, as transforms do not change its intensity; nor does that of a single direction.
 ///
 /// The area is measured in the outermost scene, so a requested amount of light (ShapedEmission) is the amount emitted there.
-class PlacedLuminaire final : public SceneObject {
+class PlacedLuminaire final : public SceneObject, private MeshFacts {
  public:
   static void describe(Description<PlacedLuminaire>&);
 
@@ -93,7 +94,6 @@ class PlacedLuminaire final : public SceneObject {
   /// object at time 0; null: it is not needed.
   void find_stretch(const NormalSpread* still);
 
-  const SceneObject& original() const override { return inner_->original(); }
   Bounds3 bounds() const override { return swept_out(inner_->bounds()); }
   bool intersect(const Ray&, Hit&) const override;
   bool occludes(const Ray&) const override;
@@ -105,16 +105,19 @@ class PlacedLuminaire final : public SceneObject {
   float area_pdf(const SurfacePoint&) const override;
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override;
   float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
-  Bounds3 luminaire_bounds() const override { return swept_out(inner_->luminaire_bounds()); }
-  NormalCone normals() const override;
+  LuminaireBounds luminaire_bounds() const override;
   bool closed() const override { return inner_->closed(); }
-  bool infinite() const override { return inner_->infinite(); }
-  bool delta() const override { return inner_->delta(); }
-  int attribute(int number, const SurfacePoint& p, float* values) const override {
-    return inner_->attribute(number, p, values);
-  }
+  Extent extent() const override { return inner_->extent(); }
+  const MeshFacts* mesh_facts() const override { return this; }
 
  private:
+  // The attributes alone: the triangles of the object in the nested scene are in other coordinates.
+  int attribute(int number, const SurfacePoint& p, float* values) const override {
+    const MeshFacts* facts = inner_->mesh_facts();
+    return facts ? facts->attribute(number, p, values) : 0;
+  }
+
+  NormalCone carried_out(const NormalCone&) const;
   Bounds3 swept_out(Bounds3) const;
   SurfacePoint inside(const WayOut&, const SurfacePoint&) const;
   void own(const WayOut&, SurfaceSample&) const;

@@ -20,7 +20,7 @@ void Primitives::gather(std::span<const SceneObject* const> objects) {
   endless_.clear();
   size_t count = 0;
   for (const SceneObject* object : objects) {
-    const std::optional<TriangleView> view = object->triangles();
+    const std::optional<TriangleView> view = still_triangles(*object);
     count += view ? view->triangles.size() : 1;
   }
   if (count >= size_t(1) << 31) throw Error("a scene cannot have more than two thousand million triangles");
@@ -31,7 +31,7 @@ void Primitives::gather(std::span<const SceneObject* const> objects) {
       continue;
     }
     const std::uint32_t owner = std::uint32_t(owners_.size());
-    if (const std::optional<TriangleView> view = object->triangles()) {
+    if (const std::optional<TriangleView> view = still_triangles(*object)) {
       owners_.push_back({object, *view, {}});
       for (size_t i = 0; i < view->triangles.size(); ++i) items_.push_back({owner, std::uint32_t(i)});
     } else {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "etendue/core/error.h"
-#include "etendue/scene_object.h"
+#include "etendue/mesh_facts.h"
 #include "geometry/watertight.h"
 
 namespace etendue {

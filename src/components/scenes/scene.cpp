@@ -9,6 +9,7 @@
 #include "coincident_luminaires.h"
 #include "etendue/shader.h"
 #include "etendue/transport/medium_stack.h"
+#include "geometry/scene_record.h"
 #include "nested_luminaires.h"
 
 namespace etendue {
@@ -48,10 +49,9 @@ class Coarse {
                        size_),
            first_->location_of());
     else
-      warn(fmt::format(
-               "{}: {:.3g} m large and {:.3g} m away from where the scene is counted from, where places are told apart by "
-               "{:.3g} m: it is misshapen or not seen. Move the camera nearer, or leave it out",
-               who, size_, away_, rounding_bound(2) * away_),
+      warn(fmt::format("{}: {:.3g} m large and {:.3g} m away from the origin of coordinates, where places are told apart by "
+                       "{:.3g} m: it is misshapen or not seen. Move the camera nearer, or leave it out",
+                       who, size_, away_, rounding_bound(2) * away_),
            first_->location_of());
   }
 
@@ -61,24 +61,24 @@ class Coarse {
   float size_ = 0, away_ = 0;
 };
 
-/// Changes the origin of the coordinates around an object to `centre`, and correspondingly those of the objects within it if it
-/// is not a scene; prepares it again.
-void count_within(SceneObject& object, const DoublePoint3& centre, float time) {
-  DoublePoint3 inner = object.transform.inner();
-  if (object.follows_scene && !scene_within(object)) {
-    inner = object.transform.written(time).back(centre);
-    for (SceneObject* part : object.placed_within()) count_within(*part, inner, time);
+/// Changes the origin of the coordinates around an object, and correspondingly those of the objects within it if it is not a
+/// scene; prepares it again.
+void move_origin(SceneObject& object, const DoublePoint3& outer, float time) {
+  DoublePoint3 inner = object.transform.inner_origin();
+  if (scene_record(object).follows_scene && !scene_within(object)) {
+    inner = object.transform.written(time).back(outer);
+    for (SceneObject* part : objects_within(object)) move_origin(*part, inner, time);
   }
-  object.transform.count_from(centre, inner);
+  object.transform.set_origins(outer, inner);
   object.prepare();
 }
 
 /// If all surfaces are unbounded, a sphere of radius 1 m replaces the scene's bounding sphere, around which light paths begin.
-/// It lies around the world's origin; but if this is so far from `centre`, the origin of rendering space near the camera, that
-/// floats would be too coarse there, it lies around `centre`.
-Bounds3 for_endless_ones(const DoublePoint3& centre) {
+/// It lies around the world's origin; but if this is so far from the origin of rendering space, near the camera, that floats
+/// would be too coarse there, it lies around that origin.
+Bounds3 for_endless_ones(const DoublePoint3& rendering_origin) {
   constexpr double near = 1e5;
-  const DoubleVector3 away = DoublePoint3{} - centre;
+  const DoubleVector3 away = DoublePoint3{} - rendering_origin;
   const Point3 middle = length(away) < near ? Point3{} + Vector3(away) : Point3{};
   const float half = 1 / std::sqrt(3.0f);
   Bounds3 cube;
@@ -122,7 +122,7 @@ std::vector<SceneObject*> Scene::placed_within() const {
 
 // The objects' positions are known only from their bounds, in floats far from the current origin. That is precise enough to
 // choose a better origin; with it the objects are prepared once more.
-void Scene::choose_centre() {
+void Scene::choose_origin() {
   Bounds3 all;
   for (const Ref<SceneObject>& object : objects)
     if (object && !object->infinite() && !object->unbounded()) all.add(object->bounds());
@@ -131,14 +131,14 @@ void Scene::choose_centre() {
   constexpr float far = 64;
   const Vector3 away = all.centre() - Point3{};
   if (!(max_component(abs(away)) > far * max_component(all.diagonal()))) return;
-  const DoublePoint3 centre = transform.inner() + DoubleVector3(away);
-  transform.count_from(transform.outer(), centre);
-  for (const Ref<SceneObject>& object : objects) count_within(*object, centre, *chooses_centre);
+  const DoublePoint3 origin = transform.inner_origin() + DoubleVector3(away);
+  transform.set_inner_origin(origin);
+  for (const Ref<SceneObject>& object : objects) move_origin(*object, origin, *chooses_origin_at_);
 }
 
 void Scene::prepare() {
   require_good_objects();
-  if (chooses_centre) choose_centre();
+  if (chooses_origin()) choose_origin();
   const Finite finite = survey();
   build(finite.seen);
   unseen_ = finite.unseen.empty() ? nullptr : ref_cast<Scene>(Registry::instance().create(structure_of_unseen));
@@ -265,7 +265,7 @@ Scene::Finite Scene::survey() {
       if (object->infinite() && !object->delta())
         object->fail("", (object->surrounds() ? "surroundings" : "an environment") +
                              std::string(" cannot stand in a nested scene: what is all around belongs into the outermost one"));
-      object->luminaire_index = -1;
+      scene_record(*object).luminaire_index = -1;
     }
     inner.luminaires_.clear();
     inner.infinite_.clear();
@@ -280,24 +280,25 @@ Scene::Finite Scene::survey() {
   Coarse coarse;
   for (const Ref<SceneObject>& object : objects) {
     const Scene* inner = scene_within(*object);
-    object->luminaire_index = -1;
+    scene_record(*object).luminaire_index = -1;
     if (object->luminaire() && !object->infinite() && object->emission->only_at_infinity())
       object->fail("emission", "this emission is of light from infinity: it belongs on an Environment");
     if (shines(*object) && !inner) {
-      object->luminaire_index = int(luminaires_.size());
+      scene_record(*object).luminaire_index = int(luminaires_.size());
       luminaires_.push_back(object.get());
       if (object->infinite() && !object->delta()) infinite_.push_back(object.get());
     }
     const bool unseen = note_unseen(*object);
     if (object->surrounds()) {
       if (surroundings_) object->fail("", "there are surroundings already: a scene stands in one thing alone");
-      surroundings_ = object.get();
+      surroundings_ = dynamic_cast<const SurroundingObject*>(object.get());
+      if (!surroundings_) object->fail("", "its class states surroundings but is no SurroundingObject");
       has_interiors_ = true;
       // In the surrounding medium light from infinity is scattered to the objects also from positions beside them, so all
       // positions across the light's direction contribute, as with an unbounded object.
       Ray any;
       any.direction = {0, 0, 1};
-      unbounded_ |= std::isfinite(object->surrounding_reach(any));
+      unbounded_ |= std::isfinite(surroundings_->reach(any));
       continue;
     }
     note_interior(*object);
@@ -323,7 +324,7 @@ Scene::Finite Scene::survey() {
                                           [](const SceneObject* object) { return object->visible_to_camera; });
   infinite_seen_ = size_t(seen - infinite_.begin());
   coarse.say();
-  if (unbounded_ && bounds_.empty()) bounds_ = for_endless_ones(transform.inner());
+  if (unbounded_ && bounds_.empty()) bounds_ = for_endless_ones(transform.inner_origin());
   if (interiors_.size() > few_interiors) {
     std::vector<Bounds3> boxes;
     boxes.swap(interiors_);
@@ -331,12 +332,12 @@ Scene::Finite Scene::survey() {
     interiors_ = {interior_tree_.front().box};
   }
   for (const Ref<SceneObject>& object : objects)
-    if (object->infinite()) object->enclose(centre(), radius());
+    if (auto* infinite = dynamic_cast<InfiniteObject*>(object.get())) infinite->enclose(centre(), radius());
   if (nested) {
     nested->enclose(centre(), radius());
     luminaires_.reserve(luminaires_.size() + nested->all().size());
     for (const Ref<PlacedLuminaire>& luminaire : nested->all()) {
-      luminaire->luminaire_index = int(luminaires_.size());
+      scene_record(*luminaire).luminaire_index = int(luminaires_.size());
       luminaires_.push_back(luminaire.get());
     }
   }
@@ -435,7 +436,7 @@ double Scene::own_area(float time) const {
 }
 
 float Scene::placed_area(const AnimatedTransform& placed, float time) const {
-  return float(own_area(time)) * std::pow(std::abs(linear_determinant(placed.at(time))), 2.0f / 3);
+  return float(own_area(time)) * std::pow(std::abs(placed.at(time).determinant()), 2.0f / 3);
 }
 
 float Scene::area(float time) const { return placed_area(transform, time); }

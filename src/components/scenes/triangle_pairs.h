@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "etendue/scene_object.h"
+#include "etendue/mesh_facts.h"
 #include "geometry/lanes.h"
 
 namespace etendue {

@@ -213,7 +213,7 @@ Json frame(const Call& call) {
   Pose pose = pose_of(*camera);
   const Axes axes = axes_of(pose);
   const Point3 c = box.centre();
-  const DoublePoint3 centre = job.world_centre() + DoubleVector3{double(c.x), double(c.y), double(c.z)};
+  const DoublePoint3 centre = job.rendering_origin() + DoubleVector3{double(c.x), double(c.y), double(c.z)};
   double angle = 0.7;
   if (const Member* fov = camera->class_info().find("fov"))
     if (const Value value = fov->get(*camera, *fov); value.as<Number>()) angle = value.as<Number>()->value;

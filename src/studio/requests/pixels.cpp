@@ -24,7 +24,7 @@ Json pick(const Call& call) {
   for (int i = hit.depth - 1; i >= 0; --i) path.push_back(document.id_of(hit.scenes[i]->original()));
   const int id = document.id_of(object);
   path.push_back(id);
-  const DoublePoint3 place = job.world_centre() + DoubleVector3(seen.point.position - Point3{});
+  const DoublePoint3 place = job.rendering_origin() + DoubleVector3(seen.point.position - Point3{});
   return {{"component", id ? Json(id) : Json()},
           {"shader", object.shader ? Json(document.id_of(*object.shader)) : Json()},
           {"position", triple(place)},

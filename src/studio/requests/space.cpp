@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "etendue/mesh_facts.h"
 #include "etendue/render/shown_in_space.h"
 #include "render/checkpoint.h"
 #include "requests.h"
@@ -57,17 +58,17 @@ class Wires {
 
 /// The wireframe of one object of the main scene; objects in nested scenes have no world space bounds.
 Json wires_of(const Job& job, const Component& wanted, size_t most) {
-  Wires wires(job.world_centre(), most);
+  Wires wires(job.rendering_origin(), most);
   Json reply = {{"lines", Json::array()}, {"whole", true}, {"low", nullptr}, {"high", nullptr}};
   for (const Ref<SceneObject>& object : job.scene->objects) {
     if (object.get() != &wanted || object->unbounded() || object->infinite()) continue;
     const Bounds3 bounds = object->bounds();
     if (bounds.empty()) continue;
-    if (const auto triangles = object->triangles())
+    if (const auto triangles = still_triangles(*object))
       wires.mesh(*triangles, most);
     else
       wires.box(bounds);
-    const auto world = [&](const Point3& p) { return triple(job.world_centre() + DoubleVector3(p - Point3{})); };
+    const auto world = [&](const Point3& p) { return triple(job.rendering_origin() + DoubleVector3(p - Point3{})); };
     reply = {
         {"lines", std::move(wires.lines)}, {"whole", !wires.full()}, {"low", world(bounds.low)}, {"high", world(bounds.high)}};
     break;
@@ -80,11 +81,11 @@ Json wireframe(const Call& call) {
   const Job& job = call.studio.document().job();
   if (call.has("component")) return wires_of(job, *call.component(), size_t(call.integer_or("most", 5000, 100, 1'000'000)));
   const auto most = size_t(call.integer_or("most", 50000, 100, 1'000'000));
-  Wires wires(job.world_centre(), most);
+  Wires wires(job.rendering_origin(), most);
   const auto& objects = job.scene->objects;
   for (const Ref<SceneObject>& object : objects) {
     if (!object || object->unbounded() || wires.full()) continue;
-    const auto triangles = object->triangles();
+    const auto triangles = still_triangles(*object);
     if (triangles)
       wires.mesh(*triangles, most / std::max<size_t>(objects.size(), 1));
     else
@@ -126,7 +127,7 @@ Json photons(const Call& call) {
   const std::unique_ptr<RenderProcess> process = last_process(*render);
   const std::optional<ShownPhotons> shown = shown_of(*process, *render, "photons").photons(wanted);
   if (!shown) has_none(*render, "photons as it is set");
-  const DoublePoint3 centre = render->job().world_centre();
+  const DoublePoint3 centre = render->job().rendering_origin();
   const LinearSrgb linear_srgb;
   const auto finite = [](double v) { return std::isfinite(v) ? v : 0; };
   Json positions = Json::array(), directions = Json::array(), powers = Json::array(), segments = Json::array(),
@@ -156,7 +157,7 @@ Json lobes(const Call& call) {
   const Normal3 normal = dot(point.normal, seen.ray.direction) > 0 ? -point.normal : point.normal;
   const std::optional<ShownLobes> found = shown.lobes(point.position, normal);
   if (!found) has_none(*render, "guide");
-  const DoublePoint3 place = job.world_centre() + DoubleVector3(point.position - Point3{});
+  const DoublePoint3 place = job.rendering_origin() + DoubleVector3(point.position - Point3{});
   return {{"position", triple(place)}, {"normal", triple(normal)},       {"share", found->share},
           {"rows", ShownLobes::rows},  {"columns", ShownLobes::columns}, {"density", found->pdf}};
 }

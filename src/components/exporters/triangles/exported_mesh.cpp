@@ -9,6 +9,7 @@
 #include "components/exporters/asked_members.h"
 #include "components/exporters/members.h"
 #include "components/objects/meshes/mesh_data.h"
+#include "etendue/mesh_facts.h"
 
 namespace etendue {
 namespace {
@@ -105,7 +106,7 @@ std::optional<ExportedMesh> mesh_of(const SceneObject& object, bool& placed) {
   AskedMembers::note_shape(object);
   const Ref<SceneObject> twin = ref_cast<SceneObject>(copy(object));
   prepare_tree(*twin);
-  const std::optional<TriangleView> view = twin->triangles();
+  const std::optional<TriangleView> view = still_triangles(*twin);
   if (!view) return std::nullopt;
   placed = true;
   return from_surface(*twin, *view);

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "components/objects/meshes/mesh_data.h"
-#include "geometry/own_centre.h"
+#include "geometry/inner_origin.h"
 #include "geometry/usable_triangles.h"
 #include "meshes.h"
 
@@ -48,12 +48,12 @@ void face_normals(const std::vector<double>& positions, const std::vector<double
 bool has_area(Reader& reader, const std::vector<double>& p, const std::vector<double>& indices, size_t corners, Location at) {
   std::vector<DoublePoint3> positions;
   for (size_t i = 0; i + 2 < p.size(); i += 3) positions.push_back({p[i], p[i + 1], p[i + 2]});
-  const std::vector<Point3> counted = counted_from(own_centre(positions), positions);
+  const std::vector<Point3> shifted = relative_to(inner_origin_for(positions), positions);
   for (size_t f = 0; f + corners <= indices.size(); f += corners)
     for (size_t last = 2; last < corners; ++last) {
       const std::array<std::uint32_t, 3> triangle{std::uint32_t(indices[f + last - 2]), std::uint32_t(indices[f + last - 1]),
                                                   std::uint32_t(indices[f + last])};
-      if (any_usable(counted, {&triangle, 1})) return true;
+      if (any_usable(shifted, {&triangle, 1})) return true;
     }
   reader.importing.inexact("a mesh whose triangles have no area is left out", at);
   return false;

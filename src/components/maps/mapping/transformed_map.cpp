@@ -35,11 +35,11 @@ class TransformedMap final : public ObjectMap, public BoundedMap {
   bool world = false;
 
  private:
-  /// A transform of world space, expressed in rendering space with the origin `centre`.
-  Transform counted_in(const DoublePoint3& centre, float time) const {
-    AnimatedTransform counted = transform.written(time);
-    counted.count_from(centre, centre);
-    return counted.still();
+  /// A transform of world space, expressed in rendering space with the given origin.
+  Transform in_rendering_space(const DoublePoint3& origin, float time) const {
+    AnimatedTransform shifted = transform.written(time);
+    shifted.set_origins(origin, origin);
+    return shifted.still();
   }
 
   SurfacePoint moved(const SurfacePoint& point) const {
@@ -47,8 +47,8 @@ class TransformedMap final : public ObjectMap, public BoundedMap {
     with_tangents(p);
     const Footprint seen = footprint_of(p);
     Transform scratch, place_scratch;
-    const bool far = world && p.object && p.object->world_centre != DoublePoint3{};
-    if (far) scratch = counted_in(p.object->world_centre, p.time);
+    const bool far = world && p.object && p.object->rendering_origin() != DoublePoint3{};
+    if (far) scratch = in_rendering_space(p.object->rendering_origin(), p.time);
     const Transform& t = far ? scratch : placed(transform, p.time, scratch);
     const Transform& place = placement(point, place_scratch);
     // Transform a vector, a normal or a position: `outside` one in rendering space, `inside` one in object space.

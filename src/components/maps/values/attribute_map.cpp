@@ -2,9 +2,8 @@
 
 #include "components/maps/rgb_source.h"
 #include "etendue/describe/color.h"
+#include "etendue/mesh_facts.h"
 #include "etendue/object_map.h"
-#include "etendue/scene_object.h"
-#include "etendue/shader.h"  // complete type for the Ref<Shader> of SceneObject
 
 namespace etendue {
 namespace {
@@ -59,7 +58,8 @@ class AttributeMap final : public ObjectMap, public RgbSource {
 
  private:
   int look_up(const SurfacePoint& p, float values[4]) const {
-    const int count = p.object ? p.object->attribute(number_, p, values) : 0;
+    const MeshFacts* facts = p.object ? p.object->mesh_facts() : nullptr;
+    const int count = facts ? facts->attribute(number_, p, values) : 0;
     for (int i = 0; i < count; ++i)
       if (!std::isfinite(values[i])) values[i] = 0;
     return count;

@@ -139,12 +139,7 @@ void Csg::combine_bounds() {
   }
   if (own_bounds_.empty()) own_bounds_ = {};
   bounds_ = own_bounds_;
-  if (bounds_.empty()) return;
-  bounds_ = transform.animated() ? swept(transform, own_bounds_) : transform.still()(own_bounds_);
-  // Rounding may move points out of the exact box.
-  const Vector3 margin = rounding_bound(8) * (bounds_.diagonal() + abs(bounds_.centre() - Point3{}));
-  bounds_.low = bounds_.low - margin;
-  bounds_.high = bounds_.high + margin;
+  if (!bounds_.empty()) bounds_ = bounds_of(transform, own_bounds_);
 }
 
 // ---- hits -----------------------------------------------------------------------------------------------------------------
@@ -209,7 +204,7 @@ void Csg::own_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const {
   }
   p.object = this;
   p.primitive = hit.primitive;
-  p.object_position = own_place(transform, p.position);
+  p.object_position = object_position_of(transform, p.position);
   p.object_normal = p.normal;
 }
 
@@ -265,7 +260,8 @@ void Csg::tangents(SurfacePoint& p) const {
 
 int Csg::attribute(int number, const SurfacePoint& p, float* values) const {
   SurfacePoint there = p;
-  return operand_at(p, there).attribute(number, there, values);
+  const MeshFacts* facts = operand_at(p, there).mesh_facts();
+  return facts ? facts->attribute(number, there, values) : 0;
 }
 
 }  // namespace etendue

@@ -5,14 +5,15 @@
 #include <mutex>
 
 #include "csg_walk.h"
-#include "etendue/shader.h"  // objects own shaders
+#include "etendue/mesh_facts.h"
+#include "etendue/object_container.h"
 
 namespace etendue {
 
 /// Base class of union, intersection and difference. Operands are placed in the solid's object space; each may move, and may be
 /// a CSG solid itself. The surface of a solid consists of parts of its operands' surfaces, each with the operand's surface
 /// coordinates; on the surface of a subtracted operand the sides are exchanged, and u is reversed.
-class Csg : public SceneObject {
+class Csg : public SceneObject, public ObjectContainer, private MeshFacts {
  public:
   std::vector<Ref<SceneObject>> operands;
 
@@ -30,7 +31,7 @@ class Csg : public SceneObject {
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override;
   float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
   bool closed() const override { return true; }
-  int attribute(int number, const SurfacePoint&, float* values) const override;
+  const MeshFacts* mesh_facts() const override { return this; }
   std::vector<SceneObject*> placed_within() const override;
 
   /// The operand whose surface a point lies on. `there` receives the primitive, the object and the object coordinates of the
@@ -52,6 +53,9 @@ class Csg : public SceneObject {
   /// bits, the number of its part in the lower ones.
   std::uint32_t encode(size_t operand, std::uint32_t primitive) const;
   size_t decode(std::uint32_t primitive, std::uint32_t& of_operand) const;
+
+  /// The attribute of the operand whose surface the point lies on.
+  int attribute(int number, const SurfacePoint&, float* values) const override;
 
   void check_operand(SceneObject&);
   void number_parts();

@@ -38,9 +38,7 @@ double unit_of(std::uint32_t n) { return (double(n) + 0.5) * 0x1p-32; }
 
 std::uint32_t integer_of(double x) { return std::uint32_t(std::clamp(x, 0.0, 1 - 0x1p-32) * 0x1p32); }
 
-float stretch_of_area(const Transform& t, const Normal3& n) {
-  return t.identity() ? 1 : std::abs(linear_determinant(t)) * length(Vector3(t(n)));
-}
+float stretch_of_area(const Transform& t, const Normal3& n) { return t.identity() ? 1 : t.area_stretch(n); }
 
 }  // namespace
 

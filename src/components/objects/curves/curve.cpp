@@ -3,8 +3,8 @@
 #include "curve_pieces.h"
 #include "curve_ribbon.h"
 #include "curve_tube.h"
+#include "geometry/inner_origin.h"
 #include "geometry/numbered_parts.h"
-#include "geometry/own_centre.h"
 
 namespace etendue {
 namespace {
@@ -51,8 +51,8 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
     check();
     vertices_.clear();
     pieces_.clear();
-    transform.count_from(transform.outer(), own_centre(points));
-    const std::vector<Point3> counted = counted_from(transform.inner(), points);
+    transform.set_inner_origin(inner_origin_for(points));
+    const std::vector<Point3> shifted = relative_to(transform.inner_origin(), points);
     std::vector<StrandPoint> flat;
     size_t first = 0, dropped = 0, cuts = 0;
     const size_t strands = counts.empty() ? 1 : counts.size();
@@ -66,7 +66,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
       flat.clear();
       // A tube may have any number of normals; they are ignored.
       const std::span<const Normal3> fronts = form == Form::ribbon ? part(normals) : std::span<const Normal3>();
-      flatten({std::span<const Point3>(counted).subspan(first, n), part(radius), fronts}, basis, double(radians(turn)), flat);
+      flatten({std::span<const Point3>(shifted).subspan(first, n), part(radius), fronts}, basis, double(radians(turn)), flat);
       const size_t kept = clean(flat, i);
       dropped += kept < 2;
       if (kept >= 2) {
@@ -97,16 +97,16 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
   float turn = 6;
 
  protected:
-  Bounds3 own_bounds() const override { return own_bounds_; }
-  bool own_intersect(const Ray& ray, Hit& hit) const override { return hierarchy_->nearest(ray, hit); }
-  bool own_occludes(const Ray& ray) const override { return hierarchy_->any(ray); }
+  Bounds3 local_bounds() const override { return own_bounds_; }
+  bool local_intersect(const Ray& ray, Hit& hit) const override { return hierarchy_->nearest(ray, hit); }
+  bool local_occludes(const Ray& ray) const override { return hierarchy_->any(ray); }
 
-  void own_point(const Ray&, const Hit& hit, OwnPoint& p) const override { point_at(hit.primitive, hit.u, hit.v, p); }
+  void local_point(const Ray&, const Hit& hit, LocalPoint& p) const override { point_at(hit.primitive, hit.u, hit.v, p); }
 
-  double own_area() const override { return area_until_.back(); }
-  float own_area_error() const override { return area_error_; }
+  double local_area() const override { return area_until_.back(); }
+  float local_area_error() const override { return area_error_; }
 
-  float own_sample(Point2 u, OwnPoint& p) const override {
+  float local_sample(Point2 u, LocalPoint& p) const override {
     // Adds pseudo-random bits below the float's precision: there may be more pieces than a float in [0, 1) has values.
     const std::uint64_t bits = (std::uint64_t(std::bit_cast<std::uint32_t>(u.x)) << 32) | std::bit_cast<std::uint32_t>(u.y);
     const double fine = double(u.x) + double(mix_bits(bits + 0x9e3779b97f4a7c15ull) >> 11) * 0x1p-77;
@@ -135,7 +135,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
     return pdf(p.primitive, p.u, p.v);
   }
 
-  float own_pdf(const SurfacePoint& p) const override { return pdf(p.primitive, p.u, p.v); }
+  float local_pdf(const SurfacePoint& p) const override { return pdf(p.primitive, p.u, p.v); }
 
  private:
   void check() {
@@ -253,7 +253,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
     return true;
   }
 
-  void point_at(std::uint32_t primitive, float u, float v, OwnPoint& p) const {
+  void point_at(std::uint32_t primitive, float u, float v, LocalPoint& p) const {
     p.primitive = primitive;
     if (form == Form::ribbon)
       ribbon(primitive / 4).point(u, v, p);
@@ -261,7 +261,7 @@ class Curve final : public PlacedObject, public Pieces, public NumberedParts {
       tube(primitive / 4).point(TubePiece::Face(primitive % 4), u, v, basis != CurveBasis::linear, p);
   }
 
-  /// The pdf [1/m^2] of own_sample: a piece or its face is chosen in proportion to its area.
+  /// The pdf [1/m^2] of local_sample: a piece or its face is chosen in proportion to its area.
   float pdf(std::uint32_t primitive, float u, float v) const {
     const size_t i = primitive / 4;
     double area = area_until_[i] - (i > 0 ? area_until_[i - 1] : 0), there = 0;

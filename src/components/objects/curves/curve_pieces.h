@@ -1,8 +1,9 @@
 #pragma once
 // PieceHierarchy: a bounding volume hierarchy over the many small pieces of one shape.
 
+#include "etendue/placed_object.h"
+#include "geometry/double_ray.h"
 #include "geometry/embree_device.h"
-#include "geometry/placed_object.h"
 
 namespace etendue {
 

@@ -35,7 +35,7 @@ bool RibbonPiece::intersect(const DoubleRay& ray, float maximum, float& t, float
   return found;
 }
 
-void RibbonPiece::point(float u, float v, OwnPoint& p) const {
+void RibbonPiece::point(float u, float v, LocalPoint& p) const {
   const double x = double(u), y = double(v);
   const Double3 du = along(y), dv = across(x);
   Double3 side = (1 - x) * side0_ + x * side1_;

@@ -18,7 +18,7 @@ class RibbonPiece {
 
   /// The nearest intersection with a t that is positive as a float and below a maximum.
   bool intersect(const DoubleRay&, float maximum, float& t, float& u, float& v) const;
-  void point(float u, float v, OwnPoint&) const;
+  void point(float u, float v, LocalPoint&) const;
   Bounds3 bounds() const;
 
   /// The area by Gauss-Legendre quadrature with `points` (2 or 3) points along and across.

@@ -127,7 +127,7 @@ bool TubePiece::intersect(const DoubleRay& ray, float maximum, float& t, Face& f
   return found;
 }
 
-void TubePiece::point(Face face, float u, float v, bool smooth, OwnPoint& p) const {
+void TubePiece::point(Face face, float u, float v, bool smooth, LocalPoint& p) const {
   Double3 y, du, dv, n, shading;
   if (face == round) {
     const Line l = line(2 * M_PI * double(v));

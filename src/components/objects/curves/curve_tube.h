@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "curve_strand.h"
-#include "geometry/placed_object.h"
+#include "etendue/placed_object.h"
+#include "geometry/double_ray.h"
+#include "geometry/geometry.h"
 
 namespace etendue {
 
@@ -58,7 +60,7 @@ class TubePiece {
   bool intersect(const DoubleRay&, float maximum, float& t, Face&, float& u, float& v) const;
   /// u and v in [0, 1]: on the round face along the piece and around it, on flat ends across the disc. With `smooth`, shading
   /// normals are interpolated along the spline, so that the pieces are not visible.
-  void point(Face, float u, float v, bool smooth, OwnPoint&) const;
+  void point(Face, float u, float v, bool smooth, LocalPoint&) const;
   Bounds3 bounds() const;
 
   double area(Face) const;

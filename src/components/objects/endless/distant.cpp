@@ -1,16 +1,17 @@
 // Distant: a delta luminaire at infinity whose light travels in a single direction (directional light).
 
+#include "etendue/infinite_object.h"
 #include "geometry/geometry.h"
 #include "geometry/without_extent.h"
 
 namespace etendue {
 namespace {
 
-// The single direction is the limit of a disc of 1 sr at infinity, shrunk at constant irradiance (SceneObject::delta): its
+// The single direction is the limit of a disc of 1 sr at infinity, shrunk at constant irradiance (Extent::direction): its
 // emission's radiance L [W m^-2 sr^-1 nm^-1], times 1 sr, is the irradiance E [W m^-2 nm^-1] on a plane perpendicular to the
 // light, and the direction is sampled with pdf 1 / sr. The power through the disc of radius R that shades the whole scene is pi
 // R^2 E: with area R^2 it is pi * area * L, as for any diffuse luminaire.
-class Distant final : public SceneObject {
+class Distant final : public InfiniteObject {
  public:
   static void describe(Description<Distant>& d) {
     d.summary(
@@ -30,26 +31,13 @@ class Distant final : public SceneObject {
     refuse_surface(*this, "a luminaire at infinity");
   }
 
-  bool infinite() const override { return true; }
-  bool delta() const override { return true; }
-  void enclose(const Point3& centre, float radius) override {
-    centre_ = centre;
-    radius_ = radius;
-  }
-
-  Bounds3 bounds() const override { return {}; }
-  bool intersect(const Ray&, Hit&) const override { return false; }
-  bool occludes(const Ray&) const override { return false; }
+  Extent extent() const override { return Extent::direction; }
   void surface_point(const Ray& ray, const Hit&, SurfacePoint& p) const override {
     fill(ray.origin, normalize(ray.direction), ray.time, p);
   }
-  void tangents(SurfacePoint&) const override {}  // no surface: they stay zero
 
   /// R^2, see above [m^2].
   float area(float) const override { return radius_ * radius_; }
-  /// There are no points with an area at infinity.
-  SurfaceSample sample_area(Point2, float) const override { return {}; }
-  float area_pdf(const SurfacePoint&) const override { return 0; }
 
   SurfaceSample sample_visible(const Point3& from, Point2, float time) const override {
     SurfaceSample s;
@@ -85,8 +73,6 @@ class Distant final : public SceneObject {
   }
 
   Vector3 travel_{0, -1, 0};  // unit, in object space
-  Point3 centre_{0, 0, 0};
-  float radius_ = 1;
 };
 
 const Register<Distant> registered;

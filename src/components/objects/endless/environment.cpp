@@ -1,11 +1,12 @@
 // Environment: a luminaire at infinity in all directions (environment map).
 
 #include "etendue/core/warp.h"
+#include "etendue/infinite_object.h"
 #include "geometry/geometry.h"
 
 namespace etendue {
 
-class Environment final : public SceneObject {
+class Environment final : public InfiniteObject {
  public:
   static void describe(Description<Environment>& d) {
     d.summary(
@@ -18,17 +19,6 @@ class Environment final : public SceneObject {
       if (key.transform.valid() && similarity_scale(key.transform) == 0)
         fail("transform", "an environment can only be turned, not stretched");
   }
-
-  bool infinite() const override { return true; }
-  bool closed() const override { return false; }
-  void enclose(const Point3& centre, float radius) override {
-    centre_ = centre;
-    radius_ = radius;
-  }
-
-  Bounds3 bounds() const override { return {}; }
-  bool intersect(const Ray&, Hit&) const override { return false; }
-  bool occludes(const Ray&) const override { return false; }
 
   /// The point where a ray that left the scene hits the environment: far outside the scene, with its normal towards the ray.
   void surface_point(const Ray& ray, const Hit&, SurfacePoint& p) const override {
@@ -45,9 +35,6 @@ class Environment final : public SceneObject {
   /// The area [m^2] of the scene's bounding sphere, through which the light enters: its power is pi * area * radiance, as for
   /// any diffuse luminaire.
   float area(float) const override { return 4 * pi * radius_ * radius_; }
-  /// There are no points with an area at infinity.
-  SurfaceSample sample_area(Point2, float) const override { return {}; }
-  float area_pdf(const SurfacePoint&) const override { return 0; }
 
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
     SurfaceSample s;
@@ -99,9 +86,6 @@ class Environment final : public SceneObject {
     p.u = 0;
     p.v = 0;
   }
-
-  Point3 centre_{0, 0, 0};
-  float radius_ = 1;
 };
 
 static const Register<Environment> registered;

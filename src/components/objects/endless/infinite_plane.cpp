@@ -1,6 +1,8 @@
 // InfinitePlane: an unbounded plane, such as a floor.
 
-#include "geometry/placed_object.h"
+#include "etendue/placed_object.h"
+#include "geometry/double_ray.h"
+#include "geometry/geometry.h"
 
 namespace etendue {
 namespace {
@@ -18,8 +20,8 @@ class InfinitePlane final : public PlacedObject {
     double reach = 1, shift = 0;
     // Object-space coordinates are relative to the projection of the scene's origin onto the plane, so that floats are most
     // precise near the camera.
-    count_with_scene(transform);
-    transform.count_from(transform.outer(), {transform.inner().x, transform.inner().y, 0});
+    use_scene_origin(transform);
+    transform.set_inner_origin({transform.inner_origin().x, transform.inner_origin().y, 0});
     for (const AnimatedTransform::Key& key : transform.keys()) {
       const Transform t = transform.at(key.time);
       const Transform::Matrix& m = t.matrix();
@@ -33,17 +35,12 @@ class InfinitePlane final : public PlacedObject {
     place();
   }
 
-  bool unbounded() const override { return true; }
-
-  NormalCone normals() const override {
-    if (transform.animated()) return {};
-    return {Vector3(normalize(transform.still()(Normal3(0, 0, 1)))), 1};
-  }
+  Extent extent() const override { return Extent::unbounded; }
 
  protected:
-  Bounds3 own_bounds() const override { return {}; }  // not called: the plane is unbounded
+  Bounds3 local_bounds() const override { return {}; }  // not called: the plane is unbounded
 
-  bool own_intersect(const Ray& ray, Hit& hit) const override {
+  bool local_intersect(const Ray& ray, Hit& hit) const override {
     const DoubleRay r(ray);
     const double t = -r.origin[2] / r.direction[2];
     const float distance = float(t);
@@ -57,19 +54,19 @@ class InfinitePlane final : public PlacedObject {
     return true;
   }
 
-  void own_point(const Ray&, const Hit& hit, OwnPoint& p) const override {
+  void local_point(const Ray&, const Hit& hit, LocalPoint& p) const override {
     p.position = {hit.u, hit.v, 0};
     p.normal = {0, 0, 1};
-    p.uv = {float(double(hit.u) + transform.inner().x), float(double(hit.v) + transform.inner().y)};
+    p.uv = {float(double(hit.u) + transform.inner_origin().x), float(double(hit.v) + transform.inner_origin().y)};
     p.dpdu = {1, 0, 0};
     p.dpdv = {0, 1, 0};
     // z = 0 is exact, but a ray that starts on the plane must not hit it again because of the rounding of its own coordinates.
     p.error = 1e-12f;
   }
 
-  double own_area() const override { return double(infinity); }
-  float own_sample(Point2, OwnPoint&) const override { return 0; }
-  float own_pdf(const SurfacePoint&) const override { return 0; }
+  double local_area() const override { return double(infinity); }
+  float local_sample(Point2, LocalPoint&) const override { return 0; }
+  float local_pdf(const SurfacePoint&) const override { return 0; }
 
  private:
   double limit_ = 0;  // [m]

@@ -6,7 +6,7 @@
 namespace etendue {
 namespace {
 
-// A point is the limit of a sphere with a cross section of 1 m^2, shrunk at constant power (SceneObject::delta). Its area is
+// A point is the limit of a sphere with a cross section of 1 m^2, shrunk at constant power (Extent::point). Its area is
 // that of the sphere, 4 m^2, since a sphere of cross section pi r^2 has the area 4 pi r^2. Its emission's radiance L [W m^-2
 // sr^-1 nm^-1], times 1 m^2, is its intensity I [W sr^-1 nm^-1]. A DiffuseEmission of power P = pi * area * L then has I = P /
 // (4 pi).
@@ -26,17 +26,17 @@ class Point final : public SceneObject {
 
   void prepare() override {
     if (!is_finite(position)) fail("position", "a point lies at a finite place");
-    transform.count_from(transform.outer(), position);
+    transform.set_inner_origin(position);
     refuse_surface(*this, "a point");
   }
 
-  bool delta() const override { return true; }
+  Extent extent() const override { return Extent::point; }
 
   Bounds3 bounds() const override { return {}; }
-  Bounds3 luminaire_bounds() const override {
+  LuminaireBounds luminaire_bounds() const override {
     Bounds3 b;
     b.add(Point3{});
-    return swept(transform, b);
+    return {swept(transform, b), {}};
   }
   bool intersect(const Ray&, Hit&) const override { return false; }
   bool occludes(const Ray&) const override { return false; }

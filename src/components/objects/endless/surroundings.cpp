@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "geometry/geometry.h"
+#include "etendue/infinite_object.h"
 
 namespace etendue {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 // Its inside is all of space. Paths begin in it and never cross its surface, since it has none: MediumStack keeps it below all
 // objects that paths enter. An unbounded medium blocks all light from infinity. A bounded one lets light through; it fills only
 // a sphere around the scene, wherever a ray begins (transport/medium_interval.h).
-class Surroundings final : public SceneObject {
+class Surroundings final : public SurroundingObject {
  public:
   static void describe(Description<Surroundings>& d) {
     d.summary(
@@ -18,7 +18,7 @@ class Surroundings final : public SceneObject {
          "other object fills, whatever their priorities. Its interior is the medium there, and of its shader the index of "
          "refraction counts alone.")
         .group("Shape")
-        .member<&Surroundings::reach>(
+        .member<&Surroundings::relative_reach>(
             "reach", "1",
             "how far from the scene's centre it goes, in radii of the sphere around all objects that have an end; 0: it has no "
             "end, and light from infinity does not get through what it is filled with",
@@ -26,24 +26,20 @@ class Surroundings final : public SceneObject {
   }
 
   void prepare() override {
-    if (!(reach >= 0 && reach < infinity)) fail("reach", "must be finite and not negative");
-    if (reach > 0 && reach < 1) fail("reach", "below 1 the medium would end before the scene does");
+    if (!(relative_reach >= 0 && relative_reach < infinity)) fail("reach", "must be finite and not negative");
+    if (relative_reach > 0 && relative_reach < 1) fail("reach", "below 1 the medium would end before the scene does");
     if (emission) fail("emission", "surroundings have no surface that could emit; their medium may");
-    if (!interior || reach > 0) return;
+    if (!interior || relative_reach > 0) return;
     if (!interior->homogeneous())
       fail("interior", "a medium that differs from place to place needs an end: give a reach, or let a Box be filled with it");
     if (interior->emits()) refuse_endless_light();
   }
 
-  bool infinite() const override { return true; }
-  bool surrounds() const override { return true; }
-  void enclose(const Point3& centre, float radius) override {
-    centre_ = centre;
-    radius_ = reach * radius;
-  }
+  /// Stores the radius of the sphere that the medium fills.
+  void enclose(const Point3& centre, float radius) override { InfiniteObject::enclose(centre, relative_reach * radius); }
 
-  float surrounding_reach(const Ray& ray) const override {
-    if (reach == 0) return infinity;
+  float reach(const Ray& ray) const override {
+    if (relative_reach == 0) return infinity;
     // The ray's exit from the sphere, computed in double as in Sphere; 0 for a ray that misses the sphere.
     double a = 0, b = 0, c = -double(radius_) * double(radius_);
     for (int k = 0; k < 3; ++k) {
@@ -58,16 +54,7 @@ class Surroundings final : public SceneObject {
     return float(std::max(0.0, b > 0 ? -c / (b + root) : (root - b) / a));
   }
 
-  Bounds3 bounds() const override { return {}; }
-  bool intersect(const Ray&, Hit&) const override { return false; }
-  bool occludes(const Ray&) const override { return false; }
-  void surface_point(const Ray&, const Hit&, SurfacePoint&) const override {}
-  void tangents(SurfacePoint&) const override {}
-  float area(float) const override { return 0; }
-  SurfaceSample sample_area(Point2, float) const override { return {}; }
-  float area_pdf(const SurfacePoint&) const override { return 0; }
-
-  float reach = 0;
+  float relative_reach = 0;
 
  private:
   /// Throws Error if the medium emits at a wavelength at which its extinction is zero: an unbounded medium would have infinite
@@ -86,9 +73,6 @@ class Surroundings final : public SceneObject {
                            std::min(first + i, 830)));
     }
   }
-
-  Point3 centre_{0, 0, 0};
-  float radius_ = 1;  // [m]
 };
 
 const Register<Surroundings> registered;

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "etendue/core/error.h"
+#include "geometry/double_ray.h"
 #include "geometry/visible_directions.h"
 #include "heightfield_grid.h"
 #include "images/linear_image.h"
@@ -73,8 +74,8 @@ class Heightfield final : public PlacedObject {
   // Near the surface half of the samples are by direction: samples by area would rarely hit the nearest cells.
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
     const auto sample = [&](Point2 v, SurfaceSample& s) {
-      OwnPoint own;
-      if (!(own_sample(v, own) > 0)) return false;
+      LocalPoint own;
+      if (!(local_sample(v, own) > 0)) return false;
       carry(own, time, s.point);
       return true;
     };
@@ -95,7 +96,7 @@ class Heightfield final : public PlacedObject {
   bool smooth = false;
 
  protected:
-  Bounds3 own_bounds() const override {
+  Bounds3 local_bounds() const override {
     const auto [low, high] = grid_.range();
     Bounds3 box;
     box.add(Point3{-size.x / 2, -size.y / 2, low});
@@ -103,7 +104,7 @@ class Heightfield final : public PlacedObject {
     return box;
   }
 
-  bool own_intersect(const Ray& ray, Hit& hit) const override {
+  bool local_intersect(const Ray& ray, Hit& hit) const override {
     const DoubleRay r(ray);
     const double from[3] = {(r.origin[0] + 0.5 * double(size.x)) / step_x_, (r.origin[1] + 0.5 * double(size.y)) / step_y_,
                             r.origin[2]};
@@ -117,16 +118,16 @@ class Heightfield final : public PlacedObject {
     return true;
   }
 
-  void own_point(const Ray&, const Hit& hit, OwnPoint& p) const override {
+  void local_point(const Ray&, const Hit& hit, LocalPoint& p) const override {
     point_at(int(hit.primitive % std::uint32_t(grid_.cells_x())), int(hit.primitive / std::uint32_t(grid_.cells_x())), hit.u,
              hit.v, p);
   }
 
-  double own_area() const override { return area_; }
-  float own_area_error() const override { return area_error_; }
+  double local_area() const override { return area_; }
+  float local_area_error() const override { return area_error_; }
 
   // Chooses a row in proportion to its area, then a cell of the row likewise, then a position uniform in the cell's x and y.
-  float own_sample(Point2 u, OwnPoint& p) const override {
+  float local_sample(Point2 u, LocalPoint& p) const override {
     const Table& table = this->table();
     const size_t wide = size_t(grid_.cells_x());
     const auto choose = [](const float* begin, size_t count, float& x) {
@@ -141,7 +142,7 @@ class Heightfield final : public PlacedObject {
     return pdf(i, j, u.x, u.y);
   }
 
-  float own_pdf(const SurfacePoint& p) const override {
+  float local_pdf(const SurfacePoint& p) const override {
     return pdf(p.primitive % std::uint32_t(grid_.cells_x()), p.primitive / std::uint32_t(grid_.cells_x()), p.u, p.v);
   }
 
@@ -171,7 +172,7 @@ class Heightfield final : public PlacedObject {
     return list;
   }
 
-  void point_at(int i, int j, float u, float v, OwnPoint& p) const {
+  void point_at(int i, int j, float u, float v, LocalPoint& p) const {
     const HeightfieldGrid::Cell c = grid_.cell(i, j);
     const double x = (i + double(u)) * step_x_ - 0.5 * double(size.x), y = (j + double(v)) * step_y_ - 0.5 * double(size.y);
     const double slope_x = c.slope_u(double(v)) / step_x_, slope_y = c.slope_v(double(u)) / step_y_;
@@ -269,7 +270,7 @@ class Heightfield final : public PlacedObject {
     for (size_t j = 0; j < high; ++j) table_->rows[j] = float((part += sums[j]) / sum);
   }
 
-  /// The pdf [1/m^2] of own_sample, computed from the rounded distributions.
+  /// The pdf [1/m^2] of local_sample, computed from the rounded distributions.
   float pdf(size_t i, size_t j, float u, float v) const {
     const Table& t = table();
     const float* row = t.cells.data() + j * size_t(grid_.cells_x());

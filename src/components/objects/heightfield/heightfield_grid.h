@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/placed_object.h"
+#include "etendue/placed_object.h"
 
 namespace etendue {
 

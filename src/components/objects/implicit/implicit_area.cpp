@@ -147,17 +147,17 @@ double ImplicitObject::face_area(const Cell& cell, int face, double& off) const 
   return (areas[0] + areas[1]) / 2;
 }
 
-double ImplicitObject::own_area() const { return lazy_ ? table().area : 0; }
+double ImplicitObject::local_area() const { return lazy_ ? table().area : 0; }
 
-float ImplicitObject::own_pdf(const SurfacePoint&) const { return float(1 / table().area); }
+float ImplicitObject::local_pdf(const SurfacePoint&) const { return float(1 / table().area); }
 
-// Overridden because the base class integrates over own_sample, which is discontinuous here.
+// Overridden because the base class integrates over local_sample, which is discontinuous here.
 float ImplicitObject::area(float time) const {
   const Transform t = transform.at(time);
   const Table& own = table();
   if (const float s = similarity_scale(t); s > 0) return float(own.area * double(s) * double(s));
   double sum = 0;
-  for (const auto& [normal, area] : own.facing) sum += double(area) * double(area_stretch(t, normal));
+  for (const auto& [normal, area] : own.facing) sum += double(area) * double(t.area_stretch(normal));
   return float(sum);
 }
 
@@ -166,7 +166,7 @@ float ImplicitObject::area_error(float time) const {
   return float(table().error + (similarity_scale(transform.at(time)) > 0 ? 0 : of_bins));
 }
 
-bool ImplicitObject::try_patch(const Patch& patch, double a, double b, double v, OwnPoint& p) const {
+bool ImplicitObject::try_patch(const Patch& patch, double a, double b, double v, LocalPoint& p) const {
   if (patch.axis >= 3) {
     const int face = patch.axis - 3, k = face / 2;
     Place low, high, x;
@@ -190,7 +190,7 @@ bool ImplicitObject::try_patch(const Patch& patch, double a, double b, double v,
   return true;
 }
 
-float ImplicitObject::own_sample(Point2 u, OwnPoint& p) const {
+float ImplicitObject::local_sample(Point2 u, LocalPoint& p) const {
   if (!lazy_) return 0;
   const Table& own = table();
   if (own.patches.empty()) return 0;

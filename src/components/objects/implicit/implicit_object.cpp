@@ -153,7 +153,7 @@ void ImplicitObject::visit_crossings(const DoubleRay& r, double from, const F& v
   if (capped_ && inside && out >= 0) visit(leave, first_face + out);
 }
 
-bool ImplicitObject::own_intersect(const Ray& ray, Hit& hit) const {
+bool ImplicitObject::local_intersect(const Ray& ray, Hit& hit) const {
   bool found = false;
   visit_crossings(DoubleRay(ray), 0, [&](double t, int part) {
     const float near = float(t);
@@ -170,7 +170,7 @@ bool ImplicitObject::own_intersect(const Ray& ray, Hit& hit) const {
   return found;
 }
 
-void ImplicitObject::own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const {
+void ImplicitObject::local_point(const Ray& ray, const Hit& hit, LocalPoint& p) const {
   const DoubleRay r(ray);
   const double t = double(hit.distance) + double(hit.u);
   Place x = at(r, t);
@@ -186,7 +186,7 @@ void ImplicitObject::own_point(const Ray& ray, const Hit& hit, OwnPoint& p) cons
 /// Fills a surface point from a position near the surface (within the rounding error `off`) or near a face. Surface coordinates
 /// are those of the box's face towards which the normal points: u and v run along the next two axes, u reversed on a low face,
 /// so that dpdu x dpdv is along the normal.
-void ImplicitObject::point_at(Place x, int part, OwnPoint& p, double off) const {
+void ImplicitObject::point_at(Place x, int part, LocalPoint& p, double off) const {
   double n[3]{}, beyond = 0;
   const bool on_face = part >= first_face;
   if (on_face) {

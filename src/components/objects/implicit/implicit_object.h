@@ -8,7 +8,9 @@
 #include <mutex>
 #include <vector>
 
-#include "geometry/placed_object.h"
+#include "etendue/placed_object.h"
+#include "geometry/double_ray.h"
+#include "geometry/geometry.h"
 
 namespace etendue {
 
@@ -44,12 +46,12 @@ class ImplicitObject : public PlacedObject {
   /// `member`, if the box is invalid or contains no surface.
   void settle(const Point3& low, const Point3& high, bool capped, const char* member);
 
-  Bounds3 own_bounds() const override { return own_bounds_; }
-  bool own_intersect(const Ray&, Hit&) const override;
-  void own_point(const Ray&, const Hit&, OwnPoint&) const override;
-  double own_area() const override;
-  float own_sample(Point2 u, OwnPoint&) const override;
-  float own_pdf(const SurfacePoint&) const override;
+  Bounds3 local_bounds() const override { return own_bounds_; }
+  bool local_intersect(const Ray&, Hit&) const override;
+  void local_point(const Ray&, const Hit&, LocalPoint&) const override;
+  double local_area() const override;
+  float local_sample(Point2 u, LocalPoint&) const override;
+  float local_pdf(const SurfacePoint&) const override;
 
  private:
   static constexpr int cells = 32;  // along the longest edge of the box
@@ -63,7 +65,7 @@ class ImplicitObject : public PlacedObject {
   /// Points on face 2 k + s of the box, which is perpendicular to axis k at its low (s = 0) or high (s = 1) end, are on part
   /// first_face + 2 k + s; the parts below it are the surface.
   static constexpr int first_face = 6;
-  void point_at(Place, int part, OwnPoint&, double off = 0) const;
+  void point_at(Place, int part, LocalPoint&, double off = 0) const;
 
   double edge(int k, int i) const;
   void cell_box(const Cell&, Place& low, Place& high) const;
@@ -76,7 +78,7 @@ class ImplicitObject : public PlacedObject {
   const Table& table() const;
   void tabulate(Table&) const;
   double face_area(const Cell&, int face, double& off) const;
-  bool try_patch(const Patch&, double a, double b, double v, OwnPoint&) const;
+  bool try_patch(const Patch&, double a, double b, double v, LocalPoint&) const;
 
   Place low_{}, high_{};
   bool capped_ = false, closed_ = false;

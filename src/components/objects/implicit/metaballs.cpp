@@ -1,7 +1,7 @@
 // Metaballs: the isosurface of a sum of soft balls, which blend into each other.
 
 #include "geometry/bernstein.h"
-#include "geometry/own_centre.h"
+#include "geometry/inner_origin.h"
 #include "implicit_grid.h"
 
 namespace etendue {
@@ -42,8 +42,8 @@ class Metaballs final : public ImplicitObject {
     if (!std::isfinite(threshold)) fail("threshold", "must be finite");
     balls_.clear();
     Bounds3 box;
-    transform.count_from(transform.outer(), own_centre(centres));
-    const std::vector<Point3> middles = counted_from(transform.inner(), centres);
+    transform.set_inner_origin(inner_origin_for(centres));
+    const std::vector<Point3> middles = relative_to(transform.inner_origin(), centres);
     for (size_t i = 0; i < centres.size(); ++i) {
       const float radius = radii[radii.size() == 1 ? 0 : i], strength = strengths[strengths.size() == 1 ? 0 : i];
       if (!is_finite(centres[i])) fail("centres", "must be finite");

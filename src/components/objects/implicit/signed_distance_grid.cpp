@@ -4,7 +4,7 @@
 #include "components/volumes/volume_grid.h"
 #include "files/regular_file.h"
 #include "geometry/bernstein.h"
-#include "geometry/own_centre.h"
+#include "geometry/inner_origin.h"
 #include "images/numpy_array.h"
 #include "implicit_grid.h"
 
@@ -53,15 +53,15 @@ class SignedDistanceGrid final : public ImplicitObject {
     for (const float x : values_)
       if (!std::isfinite(x)) fail(file.empty() ? "distances" : "file", "all distances must be finite");
     const DoublePoint3 ends[2] = {low, high};
-    transform.count_from(transform.outer(), own_centre(ends));
-    const std::vector<Point3> counted = counted_from(transform.inner(), ends);
+    transform.set_inner_origin(inner_origin_for(ends));
+    const std::vector<Point3> shifted = relative_to(transform.inner_origin(), ends);
     for (int k = 0; k < 3; ++k) {
       count_[k] = points_[k] - 1;
-      low_[size_t(k)] = double(counted[0][k]);
-      scale_[size_t(k)] = count_[k] / (double(counted[1][k]) - double(counted[0][k]));
+      low_[size_t(k)] = double(shifted[0][k]);
+      scale_[size_t(k)] = count_[k] / (double(shifted[1][k]) - double(shifted[0][k]));
     }
     find_empty();
-    settle(counted[0], counted[1], capped, file.empty() ? "distances" : "file");
+    settle(shifted[0], shifted[1], capped, file.empty() ? "distances" : "file");
   }
 
   FilePath file;

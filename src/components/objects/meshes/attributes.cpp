@@ -3,7 +3,7 @@
 #include <map>
 #include <mutex>
 
-#include "etendue/scene_object.h"
+#include "etendue/mesh_facts.h"
 
 namespace etendue {
 

@@ -2,12 +2,14 @@
 
 #include "displacement.h"
 #include "etendue/describe/registry.h"
+#include "etendue/object_container.h"
+#include "geometry/scene_record.h"
 #include "triangle_object.h"
 
 namespace etendue {
 namespace {
 
-class DisplacedMesh final : public TriangleObject {
+class DisplacedMesh final : public TriangleObject, public ObjectContainer {
  public:
   static void describe(Description<DisplacedMesh>& d) {
     d.summary(
@@ -54,14 +56,15 @@ class DisplacedMesh final : public TriangleObject {
 
   void prepare() override {
     check();
-    const std::optional<TriangleView> view = surface->triangles();
+    const std::optional<TriangleView> view = still_triangles(*surface);
     if (!view || view->triangles.empty())
       fail("surface", surface->transform.animated() ? "its transform must not move: move the DisplacedMesh"
                                                     : surface->class_info().name + " has no triangles");
     if (surface->shader || surface->emission || surface->interior)
       warn("DisplacedMesh.surface: its shader, emission and interior are not used; they belong to the DisplacedMesh",
            location_of("surface"));
-    surface->world_centre = surface->transform.outer();  // for maps, world space is the space that contains the surface
+    // For maps, world space is the space that contains the surface.
+    scene_record(*surface).rendering_origin = surface->transform.outer_origin();
     Displacement by;
     by.surface = surface.get();
     by.height = displacement.get();
@@ -75,7 +78,7 @@ class DisplacedMesh final : public TriangleObject {
       if (!triangles_->divide(levels, edge_length))
         warn("DisplacedMesh: edges remain that are longer than edge_length", location_of("edge_length"));
       MeshData mesh = displace(*triangles_, by);
-      mesh.centre = surface->transform.outer();
+      mesh.centre = surface->transform.outer_origin();
       if (!(smooth_angle > 0)) mesh.normals = {};
       triangles_->keep_places();
       keep_usable(mesh);
@@ -87,9 +90,9 @@ class DisplacedMesh final : public TriangleObject {
     }
   }
 
-  /// The attribute of the original surface at the undisplaced point.
   std::vector<SceneObject*> placed_within() const override { return {surface.get()}; }
 
+  /// The attribute of the original surface at the undisplaced point.
   int attribute(int number, const SurfacePoint& p, float* values) const override {
     const std::uint32_t triangle = kept_.empty() ? p.primitive : kept_[p.primitive];
     // If a static transform mirrors, the orientation of triangles was reversed: their second and third corners are exchanged.
@@ -100,7 +103,8 @@ class DisplacedMesh final : public TriangleObject {
     before.primitive = place.triangle;
     before.u = place.u;
     before.v = place.v;
-    return surface->attribute(number, before, values);
+    const MeshFacts* facts = surface->mesh_facts();
+    return facts ? facts->attribute(number, before, values) : 0;
   }
 
   enum class Space : std::uint8_t { object, tangent };

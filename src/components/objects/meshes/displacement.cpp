@@ -7,7 +7,6 @@
 #include <mutex>
 
 #include "etendue/core/error.h"
-#include "etendue/shader.h"  // objects own shaders
 #include "geometry/point_groups.h"
 
 namespace etendue {
@@ -73,7 +72,7 @@ class Displacer {
   /// Sets the footprint over which maps may average: the distance of neighbouring vertices.
   void widen(SurfacePoint& p, std::uint64_t c) const {
     p.position = in_.positions[vertex(c)];  // the same for all vertices at this position
-    p.object_position = Point3(DoublePoint3(p.position) + (by_.surface->transform.outer() - DoublePoint3{}));
+    p.object_position = Point3(DoublePoint3(p.position) + (by_.surface->transform.outer_origin() - DoublePoint3{}));
     p.object_normal = p.normal;
     p.footprint = std::min(length(edge(c, 1, in_.positions)), length(edge(c, 2, in_.positions)));
     p.footprint_cosine = 1;

@@ -4,8 +4,8 @@
 #include <memory>
 #include <span>
 
+#include "etendue/mesh_facts.h"
 #include "etendue/object_map.h"
-#include "etendue/scene_object.h"
 #include "mesh_data.h"
 
 namespace etendue {

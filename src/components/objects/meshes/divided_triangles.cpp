@@ -5,7 +5,6 @@
 
 #include "displacement.h"
 #include "etendue/core/error.h"
-#include "etendue/shader.h"  // objects own shaders
 
 namespace etendue {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <unordered_map>
 
-#include "geometry/own_centre.h"
+#include "geometry/inner_origin.h"
 #include "geometry/triangle_test.h"
 #include "geometry/usable_triangles.h"
 #include "mesh_data.h"
@@ -87,7 +87,7 @@ DoublePoint3 centre_of(std::string_view file) {
       ends[1][k] = std::max(ends[1][k], p[k]);
     }
   }
-  return own_centre(ends);
+  return inner_origin_for(ends);
 }
 
 /// The angle of a triangle at its first corner [rad].

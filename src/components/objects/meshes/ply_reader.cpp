@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "etendue/core/error.h"
-#include "geometry/own_centre.h"
+#include "geometry/inner_origin.h"
 #include "geometry/usable_triangles.h"
 #include "mesh_data.h"
 #include "ply_attributes.h"
@@ -85,8 +85,8 @@ void read_vertices(const Element& e, Body& body, MeshData& mesh) {
       for (const Column& c : columns) std::memcpy(c.to + i * c.step, &row[size_t(c.property)], 4);
     }
   }
-  mesh.centre = own_centre(exact);
-  if (mesh.centre != DoublePoint3{}) mesh.positions = counted_from(mesh.centre, exact);
+  mesh.centre = inner_origin_for(exact);
+  if (mesh.centre != DoublePoint3{}) mesh.positions = relative_to(mesh.centre, exact);
   decode_fractions(e, columns);
 }
 

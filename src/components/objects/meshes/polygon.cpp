@@ -1,6 +1,6 @@
 // Polygon: a planar polygon, with or without holes.
 
-#include "geometry/own_centre.h"
+#include "geometry/inner_origin.h"
 #include "polygon_triangulation.h"
 #include "triangle_object.h"
 
@@ -30,9 +30,9 @@ class Polygon final : public TriangleObject {
   void prepare() override {
     if (points.size() < 3) fail("points", "a polygon needs at least three points, but has " + std::to_string(points.size()));
     // The corners of all outlines in sequence, and the end index of each.
-    const DoublePoint3 from = own_centre(points);
-    std::vector<Point3> corners = counted_from(from, points);
-    const std::vector<Point3> outline = corners, in_holes = counted_from(from, holes);
+    const DoublePoint3 from = inner_origin_for(points);
+    std::vector<Point3> corners = relative_to(from, points);
+    const std::vector<Point3> outline = corners, in_holes = relative_to(from, holes);
     corners.insert(corners.end(), in_holes.begin(), in_holes.end());
     std::vector<size_t> ends{points.size()};
     add_holes(ends);

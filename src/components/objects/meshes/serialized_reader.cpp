@@ -14,7 +14,7 @@
 
 #include "etendue/core/error.h"
 #include "files/regular_file.h"
-#include "geometry/own_centre.h"
+#include "geometry/inner_origin.h"
 #include "mesh_data.h"
 
 namespace etendue {
@@ -133,8 +133,8 @@ MeshData read_serialized(std::string_view file, std::uint32_t number) {
     positions.reserve(vertices);
     for (size_t i = 0; i < p.size(); i += 3) positions.push_back({p[i], p[i + 1], p[i + 2]});
   }
-  mesh.centre = own_centre(positions);
-  mesh.positions = counted_from(mesh.centre, positions);
+  mesh.centre = inner_origin_for(positions);
+  mesh.positions = relative_to(mesh.centre, positions);
   if (flags & has_normals) {
     const std::vector<double> n = in.numbers(3 * vertices, doubles);
     for (size_t i = 0; i < n.size(); i += 3) {

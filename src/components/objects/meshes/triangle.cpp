@@ -1,6 +1,6 @@
 // Triangle: a single triangle.
 
-#include "geometry/own_centre.h"
+#include "geometry/inner_origin.h"
 #include "triangle_object.h"
 
 namespace etendue {
@@ -30,8 +30,8 @@ class Triangle final : public TriangleObject {
       fail("c", "the triangle is too small or too large: its area is no float");
     MeshData mesh;
     const DoublePoint3 corners[3] = {a, b, c};
-    mesh.centre = own_centre(corners);
-    mesh.positions = counted_from(mesh.centre, corners);
+    mesh.centre = inner_origin_for(corners);
+    mesh.positions = relative_to(mesh.centre, corners);
     mesh.triangles = {{0, 1, 2}};
     mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
     adopt(std::move(mesh));

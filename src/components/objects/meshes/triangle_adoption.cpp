@@ -53,7 +53,7 @@ void TriangleObject::adopt(std::shared_ptr<const MeshData> mesh, MeshMotion moti
     mesh_.positions = motion_.positions;
     mesh_.normals = motion_.normals;
   }
-  transform.count_from(transform.outer(), data_->centre);
+  transform.set_inner_origin(data_->centre);
   if (!transform.animated() && !transform.still().identity()) bake(transform.still());
   static constexpr Point2 plain_uvs[3] = {{0, 0}, {1, 0}, {0, 1}};
   static constexpr std::array<std::uint32_t, 3> plain_corners = {0, 1, 2};
@@ -135,8 +135,8 @@ bool TriangleObject::closed() const {
   return lazy_->closed;
 }
 
-ObjectNotes TriangleObject::notes() const {
-  ObjectNotes notes;
+MeshNotes TriangleObject::notes() const {
+  MeshNotes notes;
   notes.without_uv = mesh_.uvs.empty();
   if (data_) {
     for (const auto* list : {&data_->attributes, &data_->face_attributes})

@@ -1,7 +1,7 @@
 // TriangleMesh: triangles from a file or a list; may be deformed over time.
 
 #include "etendue/describe/read_ahead.h"
-#include "geometry/own_centre.h"
+#include "geometry/inner_origin.h"
 #include "geometry/triangle_test.h"
 #include "geometry/usable_triangles.h"
 #include "mesh_files.h"
@@ -225,7 +225,7 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
     motion.normals = mesh->normals;
     bool normals_known = from_lists ? !motion_normals.empty() : true;
     if (from_lists) {
-      const std::vector<Point3> later_positions = counted_from(mesh->centre, motion_positions);
+      const std::vector<Point3> later_positions = relative_to(mesh->centre, motion_positions);
       motion.positions.insert(motion.positions.end(), later_positions.begin(), later_positions.end());
       for (const Normal3& normal : motion_normals) {
         const float l = length(Vector3(normal));
@@ -299,8 +299,8 @@ class TriangleMesh final : public TriangleObject, public ReadsAhead {
     if (!colors.empty() && colors.size() != n)
       fail("colors", std::to_string(colors.size()) + " colours for " + std::to_string(n) + " positions");
     MeshData mesh;
-    mesh.centre = own_centre(positions);
-    mesh.positions = counted_from(mesh.centre, positions);
+    mesh.centre = inner_origin_for(positions);
+    mesh.positions = relative_to(mesh.centre, positions);
     mesh.normals = normals;
     mesh.uvs = uvs;
     if (!colors.empty()) {

@@ -190,7 +190,7 @@ inline void TriangleObject::fill_at(std::uint32_t primitive, float u, float v, f
   if (!transform.animated()) [[likely]] {
     fill_object_coordinates(transform, transform.still(), p);
   } else {
-    p.object_position = own_place(transform, p.position);
+    p.object_position = object_position_of(transform, p.position);
     p.object_normal = p.normal;
     carry_out(transform.at(time), p);
   }

@@ -4,8 +4,7 @@
 #include <memory>
 #include <mutex>
 
-#include "etendue/scene_object.h"
-#include "etendue/shader.h"  // objects own shaders
+#include "etendue/mesh_facts.h"
 #include "geometry/light_tree.h"
 #include "geometry/moving_triangles.h"
 #include "geometry/numbered_parts.h"
@@ -31,7 +30,7 @@ struct MeshMotion {
 /// transformed during rendering; an object with an animated transform stores them in object space. Vertices of deforming meshes
 /// are interpolated at the time of the ray. The barycentric coordinates u and v of a hit belong to a triangle's second and
 /// third corner.
-class TriangleObject : public SceneObject, public NumberedParts {
+class TriangleObject : public SceneObject, public MeshFacts, public NumberedParts {
  public:
   TriangleObject();
   ~TriangleObject() override;
@@ -46,9 +45,10 @@ class TriangleObject : public SceneObject, public NumberedParts {
   float area_pdf(const SurfacePoint&) const override;
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override;
   float visible_pdf(const Point3& from, const Vector3& direction, const SurfacePoint&) const override;
-  NormalCone normals() const override;
+  LuminaireBounds luminaire_bounds() const override { return {bounds_, normals()}; }
   bool closed() const override;
-  ObjectNotes notes() const override;
+  const MeshFacts* mesh_facts() const override { return this; }
+  MeshNotes notes() const override;
   std::uint64_t open_edges() const override;
   std::optional<TriangleView> triangles() const override;
   /// The number of triangles, moving or not.
@@ -73,6 +73,7 @@ class TriangleObject : public SceneObject, public NumberedParts {
   /// Applies a static transform to the stored triangles.
   void bake(const Transform&);
 
+  NormalCone normals() const;
   struct Corners {
     Point3 p[3];
   };

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "etendue/scene_object.h"
+#include "etendue/mesh_facts.h"
 #include "mesh_data.h"
 
 namespace etendue {

@@ -5,6 +5,7 @@
 #include "bezier_borders.h"
 #include "bezier_roots.h"
 #include "geometry/embree_device.h"
+#include "geometry/geometry.h"
 
 namespace etendue {
 
@@ -118,7 +119,7 @@ bool BezierObject::adopt(std::vector<bezier::Patch> patches, bezier::Region regi
   return true;
 }
 
-bool BezierObject::own_intersect(const Ray& ray, Hit& hit) const {
+bool BezierObject::local_intersect(const Ray& ray, Hit& hit) const {
   Query q = Accelerator::query(ray);
   RTCRayHit query;
   set_embree_ray(query.ray, ray);
@@ -133,7 +134,7 @@ bool BezierObject::own_intersect(const Ray& ray, Hit& hit) const {
   return true;
 }
 
-bool BezierObject::own_occludes(const Ray& ray) const {
+bool BezierObject::local_occludes(const Ray& ray) const {
   Query q = Accelerator::query(ray);
   RTCRay query;
   set_embree_ray(query, ray);
@@ -141,9 +142,9 @@ bool BezierObject::own_occludes(const Ray& ray) const {
   return query.tfar < 0;
 }
 
-void BezierObject::own_point(const Ray&, const Hit& hit, OwnPoint& p) const { point_at(hit.primitive, hit.u, hit.v, p); }
+void BezierObject::local_point(const Ray&, const Hit& hit, LocalPoint& p) const { point_at(hit.primitive, hit.u, hit.v, p); }
 
-double BezierObject::point_at(std::uint32_t number, float s, float t, OwnPoint& p) const {
+double BezierObject::point_at(std::uint32_t number, float s, float t, LocalPoint& p) const {
   const bezier::Patch& patch = patches_[number];
   const bezier::Derivatives d = evaluate(patch, double(s), double(t));
   const Vector n = (patch.flipped ? -1.0 : 1.0) * normal(patch, double(s), double(t), d);
@@ -163,12 +164,12 @@ double BezierObject::point_at(std::uint32_t number, float s, float t, OwnPoint& 
   return length(cross(d.ds, d.dt));
 }
 
-float BezierObject::own_sample(Point2 u, OwnPoint& p) const {
+float BezierObject::local_sample(Point2 u, LocalPoint& p) const {
   const bezier::AreaTable::Choice c = table_.choose(u, region_);
   return float(table_.pdf(c.patch, c.s, c.t) / point_at(c.patch, c.s, c.t, p));
 }
 
-float BezierObject::own_pdf(const SurfacePoint& p) const {
+float BezierObject::local_pdf(const SurfacePoint& p) const {
   const bezier::Derivatives d = evaluate(patches_[p.primitive], double(p.u), double(p.v));
   return float(table_.pdf(p.primitive, p.u, p.v) / length(cross(d.ds, d.dt)));
 }

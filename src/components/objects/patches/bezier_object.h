@@ -7,8 +7,8 @@
 #include "bezier_cells.h"
 #include "bezier_region.h"
 #include "bezier_table.h"
+#include "etendue/placed_object.h"
 #include "geometry/numbered_parts.h"
-#include "geometry/placed_object.h"
 
 namespace etendue {
 
@@ -29,19 +29,19 @@ class BezierObject : public PlacedObject, public NumberedParts {
   /// the end of prepare. Returns false if they have no area.
   bool adopt(std::vector<bezier::Patch>, bezier::Region);
 
-  Bounds3 own_bounds() const override { return own_bounds_; }
-  bool own_intersect(const Ray&, Hit&) const override;
-  bool own_occludes(const Ray&) const override;
-  void own_point(const Ray&, const Hit&, OwnPoint&) const override;
-  double own_area() const override { return table_.area(); }
-  float own_area_error() const override { return float(table_.area_error()); }
-  float own_sample(Point2 u, OwnPoint&) const override;
-  float own_pdf(const SurfacePoint&) const override;
+  Bounds3 local_bounds() const override { return own_bounds_; }
+  bool local_intersect(const Ray&, Hit&) const override;
+  bool local_occludes(const Ray&) const override;
+  void local_point(const Ray&, const Hit&, LocalPoint&) const override;
+  double local_area() const override { return table_.area(); }
+  float local_area_error() const override { return float(table_.area_error()); }
+  float local_sample(Point2 u, LocalPoint&) const override;
+  float local_pdf(const SurfacePoint&) const override;
 
  private:
   struct Accelerator;
   /// Fills a point; returns |S_s x S_t|, the area per unit of s and t.
-  double point_at(std::uint32_t patch, float s, float t, OwnPoint&) const;
+  double point_at(std::uint32_t patch, float s, float t, LocalPoint&) const;
 
   std::vector<bezier::Patch> patches_;
   std::vector<bezier::Cell> cells_;

@@ -1,7 +1,7 @@
 // BezierPatches: tensor-product Bézier patches, such as the Utah teapot's.
 
 #include "bezier_object.h"
-#include "geometry/own_centre.h"
+#include "geometry/inner_origin.h"
 
 namespace etendue {
 namespace {
@@ -42,7 +42,7 @@ class BezierPatches final : public BezierObject {
       fail(patches.empty() ? "points" : "patches", number(each) + " points make a patch of degrees " +
                                                        std::to_string(degree_u) + " and " + std::to_string(degree_v) +
                                                        ", but " + number(count) + " are given");
-    transform.count_from(transform.outer(), own_centre(points));
+    transform.set_inner_origin(inner_origin_for(points));
     std::vector<bezier::Patch> made;
     size_t dropped = 0;
     for (size_t first = 0; first < count; first += each) {
@@ -55,7 +55,7 @@ class BezierPatches final : public BezierObject {
         if (i >= points.size())
           fail("patches", "patch " + number(first / each) + " refers to point " + number(i) + " of " + number(points.size()) +
                               " (counting from 0)");
-        const DoubleVector3 p = points[i] - transform.inner();
+        const DoubleVector3 p = points[i] - transform.inner_origin();
         patch.points.push_back(bezier::control({p.x, p.y, p.z}, weights.empty() ? 1 : double(weights[i])));
       }
       if (bezier::measure(patch))

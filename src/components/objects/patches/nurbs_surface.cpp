@@ -1,7 +1,7 @@
 // NurbsSurface: a tensor-product surface of rational B-splines, optionally trimmed.
 
 #include "bezier_object.h"
-#include "geometry/own_centre.h"
+#include "geometry/inner_origin.h"
 #include "nurbs_basis.h"
 #include "trimming_curve.h"
 
@@ -55,7 +55,7 @@ class NurbsSurface final : public BezierObject {
       if (!(w > 0 && w < infinity)) fail("weights", "weights must be positive and finite");
     for (const DoublePoint3& p : points)
       if (!is_finite(p)) fail("points", "a control point is not finite");
-    transform.count_from(transform.outer(), own_centre(points));
+    transform.set_inner_origin(inner_origin_for(points));
     std::vector<bezier::Patch> patches = take_apart(columns, rows);
     if (patches.empty()) fail("points", "the surface has no area");
     bezier::Region region(patches.size(), trimming.empty() ? grid_for(patches.size()) : std::max(8, grid_for(patches.size())));
@@ -82,7 +82,7 @@ class NurbsSurface final : public BezierObject {
   std::vector<bezier::Patch> take_apart(size_t columns, size_t rows) {
     std::vector<bezier::Control> net;
     for (size_t i = 0; i < points.size(); ++i) {
-      const DoubleVector3 p = points[i] - transform.inner();
+      const DoubleVector3 p = points[i] - transform.inner_origin();
       net.push_back(bezier::control({p.x, p.y, p.z}, weights.empty() ? 1 : double(weights[i])));
     }
     const std::vector<nurbs::Span> along_u = nurbs::spans(knots_u, degree_u), along_v = nurbs::spans(knots_v, degree_v);

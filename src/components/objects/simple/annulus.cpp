@@ -1,5 +1,6 @@
 // Annulus: a flat ring.
 
+#include "geometry/double_ray.h"
 #include "geometry/quadric_roots.h"
 
 namespace etendue {
@@ -31,48 +32,48 @@ class Annulus final : public PlacedObject {
     sector_ = Sector(double(sweep) * (M_PI / 180));
     low_ = double(inner_radius) * double(inner_radius);
     high_ = double(radius) * double(radius);
-    if (!(float(own_area()) > 0 && float(own_area()) < infinity)) fail("radius", "the ring's area is no float");
+    if (!(float(local_area()) > 0 && float(local_area()) < infinity)) fail("radius", "the ring's area is no float");
     place();
   }
 
-  NormalCone normals() const override {
-    if (transform.animated()) return {};
-    return {Vector3(normalize(transform.still()(Normal3(0, 0, 1)))), 1};
+  LuminaireBounds luminaire_bounds() const override {
+    if (transform.animated()) return {bounds(), {}};
+    return {bounds(), {Vector3(normalize(transform.still()(Normal3(0, 0, 1)))), 1}};
   }
 
   float inner_radius = 0.5f, radius = 1, sweep = 360;
   enum class Coordinates : std::uint8_t { square, around } coordinates = Coordinates::square;
 
  protected:
-  Bounds3 own_bounds() const override {
+  Bounds3 local_bounds() const override {
     Bounds3 box;
     box.add(Point3{-radius, -radius, 0});
     box.add(Point3{radius, radius, 0});
     return box;
   }
 
-  bool own_intersect(const Ray& ray, Hit& hit) const override {
+  bool local_intersect(const Ray& ray, Hit& hit) const override {
     const DoubleRay r(ray);
     const double t = -r.origin[2] / r.direction[2], x = r.at(t, 0), y = r.at(t, 1), d2 = x * x + y * y;
     return d2 >= low_ && d2 <= high_ && sector_.holds(x, y) && take_hit(ray, t, 0, hit);
   }
 
-  void own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const override {
+  void local_point(const Ray& ray, const Hit& hit, LocalPoint& p) const override {
     const DoubleRay r(ray);
     const double t = exact_distance(hit);
     point_at(r.at(t, 0), r.at(t, 1), p);
   }
 
-  double own_area() const override { return sector_.share() * M_PI * (high_ - low_); }
+  double local_area() const override { return sector_.share() * M_PI * (high_ - low_); }
 
-  float own_sample(Point2 u, OwnPoint& p) const override {
+  float local_sample(Point2 u, LocalPoint& p) const override {
     const double r = std::sqrt(low_ + double(u.y) * (high_ - low_)), phi = sector_.angle() * double(u.x);
     point_at(r * std::cos(phi), r * std::sin(phi), p);
-    return float(1 / own_area());
+    return float(1 / local_area());
   }
 
  private:
-  void point_at(double x, double y, OwnPoint& p) const {
+  void point_at(double x, double y, LocalPoint& p) const {
     flat_point(x, y, 0, double(radius), true, double(radius), p);
     if (coordinates == Coordinates::square) return;
     // (x, y) = (R - v (R - r)) (cos(u sweep), sin(u sweep)).

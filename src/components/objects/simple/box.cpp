@@ -1,6 +1,8 @@
 // Box: a box with its edges along the axes in object space.
 
-#include "geometry/placed_object.h"
+#include "etendue/placed_object.h"
+#include "geometry/double_ray.h"
+#include "geometry/geometry.h"
 
 namespace etendue {
 namespace {
@@ -24,8 +26,8 @@ class Box final : public PlacedObject {
     if (!is_finite(centre)) fail("centre", "must be finite");
     for (int k = 0; k < 3; ++k)
       if (!(size[k] > 0 && size[k] < infinity)) fail("size", "all edges must be positive and finite");
-    count_with_scene(transform);
-    const DoubleVector3 middle = centre - transform.inner(), half = 0.5 * DoubleVector3(size);
+    use_scene_origin(transform);
+    const DoubleVector3 middle = centre - transform.inner_origin(), half = 0.5 * DoubleVector3(size);
     low_ = Point3(DoublePoint3{} + (middle - half));
     high_ = Point3(DoublePoint3{} + (middle + half));
     double sum = 0;
@@ -48,7 +50,7 @@ class Box final : public PlacedObject {
     for (int face = 0; face < 6; ++face) {
       if (!(seen.areas[face] > 0)) continue;
       if (x < seen.areas[face] || face == seen.last) {
-        OwnPoint own;
+        LocalPoint own;
         point_on(face, {std::min(x / seen.areas[face], one_minus_epsilon), u.y}, own);
         carry(own, time, s.point);
         complete_by_area(s, from, 1 / seen.area);
@@ -71,14 +73,14 @@ class Box final : public PlacedObject {
   Vector3 size{1, 1, 1};
 
  protected:
-  Bounds3 own_bounds() const override {
+  Bounds3 local_bounds() const override {
     Bounds3 box;
     box.add(low_);
     box.add(high_);
     return box;
   }
 
-  bool own_intersect(const Ray& ray, Hit& hit) const override {
+  bool local_intersect(const Ray& ray, Hit& hit) const override {
     const DoubleRay r(ray);
     double enter = -infinity, leave = infinity;
     int in = 0, out = 0;
@@ -101,7 +103,7 @@ class Box final : public PlacedObject {
     return true;
   }
 
-  void own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const override {
+  void local_point(const Ray& ray, const Hit& hit, LocalPoint& p) const override {
     const DoubleRay r(ray);
     const int face = int(hit.primitive), k = face / 2;
     float x[3];
@@ -113,15 +115,15 @@ class Box final : public PlacedObject {
     p.position = {x[0], x[1], x[2]};
   }
 
-  double own_area() const override { return until_[5]; }
+  double local_area() const override { return until_[5]; }
 
-  Seams own_seams() const override {
+  Seams local_seams() const override {
     Seams seams;
     for (int face = 0; face < 5; ++face) seams.x.push_back(until_[face] / until_[5]);
     return seams;
   }
 
-  float own_sample(Point2 u, OwnPoint& p) const override {
+  float local_sample(Point2 u, LocalPoint& p) const override {
     double x = double(u.x) * until_[5];
     int face = 0;
     while (face < 5 && x >= until_[face]) ++face;
@@ -135,7 +137,7 @@ class Box final : public PlacedObject {
   static int next(int k) { return (k + 1) % 3; }
   float within_face(int axis, float x) const { return float(within(double(x), double(low_[axis]), double(high_[axis]))); }
 
-  void point_on(int face, Point2 at, OwnPoint& p) const {
+  void point_on(int face, Point2 at, LocalPoint& p) const {
     const int k = face / 2, a = next(k), b = next(a);
     const float side = face % 2 ? 1.0f : -1.0f;
     float x[3], n[3]{}, du[3]{}, dv[3]{};
@@ -163,13 +165,13 @@ class Box final : public PlacedObject {
   };
   Seen faces_seen(const Point3& own, const Transform& t) const {
     Seen seen;
-    const bool inside = own_bounds().contains(own);
+    const bool inside = local_bounds().contains(own);
     for (int face = 0; face < 6; ++face) {
       const int k = face / 2;
       if (!inside && !(face % 2 ? own[k] > high_[k] : own[k] < low_[k])) continue;
       float n[3]{};
       n[k] = 1;
-      seen.areas[face] = size[next(k)] * size[next(next(k))] * area_stretch(t, {n[0], n[1], n[2]});
+      seen.areas[face] = size[next(k)] * size[next(next(k))] * t.area_stretch({n[0], n[1], n[2]});
       seen.area += seen.areas[face];
       seen.last = face;
     }

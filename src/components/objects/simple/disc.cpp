@@ -84,9 +84,9 @@ class Disc final : public SceneObject {
     p.dpdv = coordinates == Coordinates::polar ? about : -outwards;
   }
 
-  NormalCone normals() const override {
+  LuminaireBounds luminaire_bounds() const override {
     World scratch;
-    return transform.animated() ? NormalCone{} : NormalCone{Vector3(world(0, scratch).normal), 1};
+    return {bounds(), transform.animated() ? NormalCone{} : NormalCone{Vector3(world(0, scratch).normal), 1}};
   }
 
   float area(float time) const override {

@@ -1,8 +1,10 @@
 // Ellipsoid: a sphere scaled along the axes.
 
 #include "etendue/core/warp.h"
+#include "etendue/placed_object.h"
+#include "geometry/double_ray.h"
 #include "geometry/ellipsoid_area.h"
-#include "geometry/placed_object.h"
+#include "geometry/geometry.h"
 #include "geometry/visible_directions.h"
 
 namespace etendue {
@@ -29,7 +31,7 @@ class Ellipsoid final : public PlacedObject {
     if (!is_finite(centre)) fail("centre", "must be finite");
     for (int k = 0; k < 3; ++k)
       if (!(radii[k] > 0 && radii[k] < infinity)) fail("radii", "all must be positive and finite");
-    transform.count_from(transform.outer(), centre);
+    transform.set_inner_origin(centre);
     area_ = area_under(Transform());
     if (!(float(area_) > 0 && float(area_) < infinity)) fail("radii", "the ellipsoid is too small or too large");
     const double a = double(radii.x), b = double(radii.y), c = double(radii.z), sum = a * b + b * c + c * a;
@@ -62,7 +64,7 @@ class Ellipsoid final : public PlacedObject {
     const Frame axis(Normal3(float(cone.x / cone.distance), float(cone.y / cone.distance), float(cone.z / cone.distance)));
     const auto x = float(sin_alpha * std::cos(phi)), y = float(sin_alpha * std::sin(phi));
     const Vector3 unit = x * axis.s + y * axis.t + float(cos_alpha) * Vector3(axis.n);
-    OwnPoint own;
+    LocalPoint own;
     point_at(double(unit.x), double(unit.y), double(unit.z), own);
     SurfaceSample s;
     carry(own, time, s.point);
@@ -83,14 +85,14 @@ class Ellipsoid final : public PlacedObject {
   Vector3 radii{1, 1, 1};
 
  protected:
-  Bounds3 own_bounds() const override {
+  Bounds3 local_bounds() const override {
     Bounds3 box;
     box.add(Point3{} - radii);
     box.add(Point3{} + radii);
     return box;
   }
 
-  bool own_intersect(const Ray& ray, Hit& hit) const override {
+  bool local_intersect(const Ray& ray, Hit& hit) const override {
     // Parametrized from the ray's point nearest to the centre, where the discriminant is no difference of large numbers.
     double o[3], d[3], along = 0, dd = 0;
     for (int k = 0; k < 3; ++k) {
@@ -114,7 +116,7 @@ class Ellipsoid final : public PlacedObject {
     return true;
   }
 
-  void own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const override {
+  void local_point(const Ray& ray, const Hit& hit, LocalPoint& p) const override {
     const DoubleRay r(ray);
     const double t = double(hit.distance) + double(hit.u);
     double s[3];
@@ -122,12 +124,12 @@ class Ellipsoid final : public PlacedObject {
     point_at(s[0], s[1], s[2], p);
   }
 
-  double own_area() const override { return area_; }
+  double local_area() const override { return area_; }
 
   // On a nearly round ellipsoid points are sampled uniformly on the unit sphere. On a flat or long one these would concentrate
   // at the rim or the tips: area is stretched by the factor sqrt(sum (w_k s_k)^2) with weights w = (bc, ca, ab), and a mixture
   // of three cosine distributions, sum w_k |s_k|, is between one and sqrt(3) times this factor.
-  float own_sample(Point2 u, OwnPoint& p) const override {
+  float local_sample(Point2 u, LocalPoint& p) const override {
     Vector3 s = warp::sphere(u);
     if (flat_) {
       int k = 0;
@@ -143,7 +145,7 @@ class Ellipsoid final : public PlacedObject {
     point_at(double(s.x), double(s.y), double(s.z), p);
     return pdf_at(p.normal);
   }
-  float own_pdf(const SurfacePoint& p) const override { return pdf_at(p.object_normal); }
+  float local_pdf(const SurfacePoint& p) const override { return pdf_at(p.object_normal); }
 
  private:
   /// The cone that the unit sphere subtends at a point, which is (x, y, z) in the space of the unit sphere.
@@ -175,11 +177,12 @@ class Ellipsoid final : public PlacedObject {
     const double x = double(s.x) / double(radii.x) - cone.x, y = double(s.y) / double(radii.y) - cone.y,
                  z = double(s.z) / double(radii.z) - cone.z;
     const double stretch = double(distance) / std::sqrt(x * x + y * y + z * z);
-    const double volume = double(std::abs(linear_determinant(t))) * double(radii.x) * double(radii.y) * double(radii.z);
+    const double volume = double(std::abs(t.determinant())) * double(radii.x) * double(radii.y) * double(radii.z);
     return float(stretch * stretch * stretch / (volume * 2 * M_PI * cone.one_minus_cosine));
   }
 
-  /// The pdf of own_sample at a point with the object-space unit normal n. The corresponding area on the unit sphere is |radii
+  /// The pdf of local_sample at a point with the object-space unit normal n. The corresponding area on the unit sphere is
+  /// |radii
   /// * n| / (abc) times as large, and its normal is along radii * n.
   float pdf_at(const Normal3& n) const {
     const double x = double(n.x) * double(radii.x), y = double(n.y) * double(radii.y), z = double(n.z) * double(radii.z);
@@ -190,7 +193,7 @@ class Ellipsoid final : public PlacedObject {
 
   double area_under(const Transform& t) const { return ellipsoid_area(t, radii); }
 
-  void point_at(double x, double y, double z, OwnPoint& p) const {
+  void point_at(double x, double y, double z, LocalPoint& p) const {
     const double l = 1 / std::sqrt(x * x + y * y + z * z), a = double(radii.x), b = double(radii.y), c = double(radii.z);
     x *= l;
     y *= l;

@@ -1,12 +1,13 @@
 // Rectangle: a flat parallelogram, typically a luminaire or a wall.
 
 #include "etendue/core/warp.h"
+#include "etendue/mesh_facts.h"
 #include "geometry/geometry.h"
 #include "geometry/solid_angle.h"
 
 namespace etendue {
 
-class Rectangle final : public SceneObject {
+class Rectangle final : public SceneObject, private MeshFacts {
   DoublePoint3 corner{-0.5, -0.5, 0};
   Vector3 edge_u{1, 0, 0}, edge_v{0, 1, 0};
 
@@ -27,7 +28,7 @@ class Rectangle final : public SceneObject {
     if (!is_finite(corner) || !is_finite(edge_u) || !is_finite(edge_v)) fail("corner", "the rectangle is not finite");
     const float u2 = length_squared(edge_u), v2 = length_squared(edge_v);
     if (!(length_squared(cross(edge_u, edge_v)) > 1e-12f * u2 * v2)) fail("edge_u", "the edges are parallel or have no length");
-    transform.count_from(transform.outer(), corner);
+    transform.set_inner_origin(corner);
     still_ = at(transform.still());
     triangles_ = {{{0, 1, 2}, {0, 2, 3}}};
     Bounds3 box;
@@ -57,10 +58,10 @@ class Rectangle final : public SceneObject {
     return true;
   }
 
-  NormalCone normals() const override {
-    if (transform.animated()) return {};
+  LuminaireBounds luminaire_bounds() const override {
+    if (transform.animated()) return {bounds_, {}};
     std::optional<World> scratch;
-    return {Vector3(world(0, scratch).normal), 1};
+    return {bounds_, {Vector3(world(0, scratch).normal), 1}};
   }
 
   void surface_point(const Ray& ray, const Hit& hit, SurfacePoint& p) const override {
@@ -139,12 +140,14 @@ class Rectangle final : public SceneObject {
     return cosine > 0 ? distance_squared(p.position, from) / (cosine * w.area) : 0;
   }
 
+  const MeshFacts* mesh_facts() const override { return this; }
+
+ private:
   std::optional<TriangleView> triangles() const override {
     if (transform.animated()) return std::nullopt;
     return TriangleView{{corners_, 4}, triangles_};
   }
 
- private:
   /// The rectangle in the coordinates of the containing scene.
   struct World {
     Point3 corner;

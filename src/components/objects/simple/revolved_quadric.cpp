@@ -1,5 +1,7 @@
 #include "revolved_quadric.h"
 
+#include "geometry/double_ray.h"
+
 namespace etendue {
 
 void RevolvedQuadric::revolve(const Profile& profile) {
@@ -10,7 +12,7 @@ void RevolvedQuadric::revolve(const Profile& profile) {
   low_area_ = profile.low_cap ? part * M_PI * profile.low_radius * profile.low_radius : 0;
   high_area_ = profile.high_cap ? part * M_PI * profile.high_radius * profile.high_radius : 0;
   side_area_ = part * profile.side_area;
-  if (!(float(own_area()) > 0 && float(own_area()) < infinity))
+  if (!(float(local_area()) > 0 && float(local_area()) < infinity))
     fail("height", "the surface is too small or too large: its area is no float");
   extent_ = std::min(std::max(profile.low_radius, profile.high_radius), profile.high - profile.low);
   place();
@@ -21,7 +23,7 @@ RevolvedQuadric::Along RevolvedQuadric::along_profile(double z, double r) const 
   return {(z - profile_.low) / height, height, r > 0 ? profile_.half_slope(z) / r * height : 0};
 }
 
-Bounds3 RevolvedQuadric::own_bounds() const {
+Bounds3 RevolvedQuadric::local_bounds() const {
   const float r = float(std::max(profile_.low_radius, profile_.high_radius));
   Bounds3 box;
   box.add(Point3{-r, -r, float(profile_.low)});
@@ -29,7 +31,7 @@ Bounds3 RevolvedQuadric::own_bounds() const {
   return box;
 }
 
-bool RevolvedQuadric::own_intersect(const Ray& ray, Hit& hit) const {
+bool RevolvedQuadric::local_intersect(const Ray& ray, Hit& hit) const {
   const NearRay near(ray, 0.5 * (profile_.low + profile_.high));
   const SlabInside slab(near, profile_.low, profile_.high);
   if (!(slab.enter < slab.leave)) return false;
@@ -53,7 +55,7 @@ bool RevolvedQuadric::own_intersect(const Ray& ray, Hit& hit) const {
   return solid(-unlimited, round.low) || solid(round.high, unlimited);
 }
 
-void RevolvedQuadric::own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const {
+void RevolvedQuadric::local_point(const Ray& ray, const Hit& hit, LocalPoint& p) const {
   const DoubleRay r(ray);
   const double t = exact_distance(hit);
   double x = r.at(t, 0), y = r.at(t, 1), z = within(r.at(t, 2), profile_.low, profile_.high);
@@ -73,7 +75,7 @@ void RevolvedQuadric::own_point(const Ray& ray, const Hit& hit, OwnPoint& p) con
     cap_point(Part(hit.primitive), x, y, p);
 }
 
-void RevolvedQuadric::side_point(double x, double y, double z, OwnPoint& p) const {
+void RevolvedQuadric::side_point(double x, double y, double z, LocalPoint& p) const {
   // Half the gradient of x^2 + y^2 - f(z); at the tip of a cone it vanishes.
   const double r = std::sqrt(x * x + y * y), slope = profile_.half_slope(z), l = std::sqrt(r * r + slope * slope);
   const double up = 2 * z > profile_.low + profile_.high ? 1 : -1;
@@ -98,7 +100,7 @@ void RevolvedQuadric::side_point(double x, double y, double z, OwnPoint& p) cons
   p.error = rounding_bound(3) * (etendue::along(p.normal, here) + float(extent_));
 }
 
-void RevolvedQuadric::cap_point(Part part, double x, double y, OwnPoint& p) const {
+void RevolvedQuadric::cap_point(Part part, double x, double y, LocalPoint& p) const {
   const bool up = part == high_cap;
   const double rim = up ? profile_.high_radius : profile_.low_radius, r = std::sqrt(x * x + y * y);
   const double inward = r > 0 ? within(r, -rim, rim) / r : 1;
@@ -106,10 +108,10 @@ void RevolvedQuadric::cap_point(Part part, double x, double y, OwnPoint& p) cons
   p.primitive = part;
 }
 
-float RevolvedQuadric::own_sample(Point2 u, OwnPoint& p) const {
+float RevolvedQuadric::local_sample(Point2 u, LocalPoint& p) const {
   // u runs around the axis, and v from the centre of the low cap outwards, along the side and inwards on the high cap: a
   // continuous map.
-  const double area = own_area(), y = double(u.y) * area, phi = sector_.angle() * double(u.x);
+  const double area = local_area(), y = double(u.y) * area, phi = sector_.angle() * double(u.x);
   const double cosine = std::cos(phi), sine = std::sin(phi);
   if (y < low_area_) {
     const double r = profile_.low_radius * std::sqrt(y / low_area_);

@@ -46,12 +46,12 @@ class RevolvedQuadric : public PlacedObject {
   /// By default v is proportional to the height.
   virtual Along along_profile(double z, double r) const;
 
-  Bounds3 own_bounds() const override;
-  bool own_intersect(const Ray&, Hit&) const override;
-  void own_point(const Ray&, const Hit&, OwnPoint&) const override;
-  double own_area() const override { return low_area_ + side_area_ + high_area_; }
-  float own_sample(Point2 u, OwnPoint&) const override;
-  Seams own_seams() const override { return {{}, {low_area_ / own_area(), (low_area_ + side_area_) / own_area()}}; }
+  Bounds3 local_bounds() const override;
+  bool local_intersect(const Ray&, Hit&) const override;
+  void local_point(const Ray&, const Hit&, LocalPoint&) const override;
+  double local_area() const override { return low_area_ + side_area_ + high_area_; }
+  float local_sample(Point2 u, LocalPoint&) const override;
+  Seams local_seams() const override { return {{}, {low_area_ / local_area(), (low_area_ + side_area_) / local_area()}}; }
 
  private:
   enum Part : std::uint32_t { side, low_cap, high_cap };
@@ -60,8 +60,8 @@ class RevolvedQuadric : public PlacedObject {
   /// The share of samples by direction where AxialDirections is not used: all from inside, half of them from nearby.
   DirectionShare direction_share(const Point3& own) const;
 
-  void side_point(double x, double y, double z, OwnPoint&) const;
-  void cap_point(Part, double x, double y, OwnPoint&) const;
+  void side_point(double x, double y, double z, LocalPoint&) const;
+  void cap_point(Part, double x, double y, LocalPoint&) const;
 
   Profile profile_;
   Sector sector_;

@@ -125,8 +125,8 @@ SurfaceSample RevolvedQuadric::sample_visible(const Point3& from, Point2 u, floa
   const Seen seen(*this, own_from);
   if (seen.usable) return AxialDirections(seen).sample(*this, t, from, u, time);
   const auto sample = [&](Point2 v, SurfaceSample& s) {
-    OwnPoint own;
-    if (!(own_sample(v, own) > 0)) return false;
+    LocalPoint own;
+    if (!(local_sample(v, own) > 0)) return false;
     carry(own, time, s.point);
     return true;
   };

@@ -40,15 +40,9 @@ void SceneObject::describe(Description<SceneObject>& d) {
           Effect::rebuild);
 }
 
-void SceneObject::stand_for(const SceneObject& other) {
-  shader = other.shader;
-  emission = other.emission;
-  interior = other.interior;
-  sides = other.sides;
-  priority = other.priority;
-  shading_normals = other.shading_normals;
-  visible_to_camera = other.visible_to_camera;
-}
+// Here, as the destructors of the members need the complete class Shader.
+SceneObject::SceneObject() = default;
+SceneObject::~SceneObject() = default;
 
 SurfaceSample SceneObject::sample_visible(const Point3& from, Point2 u, float time) const {
   SurfaceSample s = sample_area(u, time);

@@ -25,7 +25,7 @@ class Sphere final : public SceneObject {
   void prepare() override {
     if (!is_finite(centre) || !(radius > 0 && radius < infinity))
       fail("radius", "centre and radius must be finite, the radius positive");
-    transform.count_from(transform.outer(), centre);
+    transform.set_inner_origin(centre);
     const float scale = transform.animated() ? 0 : similarity_scale(transform.still());
     round_ = scale > 0;
     ball_ = round_ ? Ball{transform.still()(Point3{}), scale * radius} : Ball{{}, radius};
@@ -110,7 +110,7 @@ class Sphere final : public SceneObject {
     if (round_) return 1 / still_area_;
     Transform scratch;
     const Transform& t = placed(transform, p.time, scratch);
-    return 1 / (4 * pi * radius * radius * area_stretch(t, p.object_normal));
+    return 1 / (4 * pi * radius * radius * t.area_stretch(p.object_normal));
   }
 
   SurfaceSample sample_visible(const Point3& from, Point2 u, float time) const override {
@@ -215,7 +215,7 @@ class Sphere final : public SceneObject {
       fill_object_coordinates(transform, t, p);
     } else {
       Transform scratch;
-      p.object_position = own_place(transform, p.position);
+      p.object_position = object_position_of(transform, p.position);
       p.object_normal = p.normal;
       carry_out(placed(transform, time, scratch), p);
     }
@@ -242,11 +242,6 @@ class Sphere final : public SceneObject {
     SurfaceSample s = sample_area(u, time);
     complete_by_area(s, from, s.pdf);
     return s;
-  }
-
-  /// The factor by which the transform enlarges area at an object-space unit normal n: |det M| |M^-T n|.
-  static float area_stretch(const Transform& t, const Normal3& n) {
-    return std::abs(linear_determinant(t)) * length(Vector3(t(n)));
   }
 
   float area_of(const Transform& t) const {

@@ -1,6 +1,8 @@
 // Torus: a ring with a round cross-section, about the z axis.
 
-#include "geometry/placed_object.h"
+#include "etendue/placed_object.h"
+#include "geometry/double_ray.h"
+#include "geometry/geometry.h"
 
 namespace etendue {
 namespace {
@@ -102,7 +104,7 @@ class Torus final : public PlacedObject {
   float radius = 1, tube_radius = 0.25f;
 
  protected:
-  Bounds3 own_bounds() const override {
+  Bounds3 local_bounds() const override {
     const float reach = radius + tube_radius;
     Bounds3 box;
     box.add(Point3{-reach, -reach, -tube_radius});
@@ -110,7 +112,7 @@ class Torus final : public PlacedObject {
     return box;
   }
 
-  bool own_intersect(const Ray& ray, Hit& hit) const override {
+  bool local_intersect(const Ray& ray, Hit& hit) const override {
     const DoubleRay r(ray);
     const double scale = double(radius), k = double(tube_radius) / scale, reach = 1 + k;
     // The ray is parametrized from its point nearest to the centre.
@@ -161,7 +163,7 @@ class Torus final : public PlacedObject {
     return false;
   }
 
-  void own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const override {
+  void local_point(const Ray& ray, const Hit& hit, LocalPoint& p) const override {
     const DoubleRay r(ray);
     const double t = double(hit.distance), x = r.at(t, 0), y = r.at(t, 1), z = r.at(t, 2);
     const double out = std::sqrt(x * x + y * y), away = out - double(radius), tube = std::sqrt(away * away + z * z);
@@ -169,23 +171,23 @@ class Torus final : public PlacedObject {
     point_at(x / out, y / out, away / tube, z / tube, p);
   }
 
-  double own_area() const override { return 4 * M_PI * M_PI * double(radius) * double(tube_radius); }
+  double local_area() const override { return 4 * M_PI * M_PI * double(radius) * double(tube_radius); }
 
   // The area element is r (R + r cos psi) dphi dpsi. The fraction of the area up to psi is (psi + k sin psi) / (2 pi) with k =
   // r / R: Kepler's equation.
-  float own_sample(Point2 u, OwnPoint& p) const override {
+  float local_sample(Point2 u, LocalPoint& p) const override {
     const double k = double(tube_radius) / double(radius), phi = 2 * M_PI * double(u.x), mean = 2 * M_PI * double(u.y);
     const double psi = bracketed_root(mean - k, mean + k, true, [=](double x, double& slope) {
       slope = 1 + k * std::cos(x);
       return x + k * std::sin(x) - mean;
     });
     point_at(std::cos(phi), std::sin(phi), std::cos(psi), std::sin(psi), p);
-    return float(1 / own_area());
+    return float(1 / local_area());
   }
 
  private:
   /// Fills the point at an angle around the axis and an angle around the tube, given by their cosines and sines.
-  void point_at(double cos_around, double sin_around, double cos_tube, double sin_tube, OwnPoint& p) const {
+  void point_at(double cos_around, double sin_around, double cos_tube, double sin_tube, LocalPoint& p) const {
     const double out = double(radius) + double(tube_radius) * cos_tube, turn = 2 * M_PI, tube = turn * double(tube_radius);
     p.position = {float(out * cos_around), float(out * sin_around), float(double(tube_radius) * sin_tube)};
     p.normal = {float(cos_tube * cos_around), float(cos_tube * sin_around), float(sin_tube)};

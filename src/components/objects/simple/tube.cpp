@@ -1,6 +1,7 @@
 // Tube: a thick-walled pipe, open at both ends.
 
 #include "geometry/axial_view.h"
+#include "geometry/double_ray.h"
 #include "geometry/quadric_roots.h"
 #include "geometry/visible_directions.h"
 
@@ -37,7 +38,7 @@ class Tube final : public PlacedObject {
     areas_[outer] = 4 * M_PI * r_[0] * half_;
     areas_[inner] = 4 * M_PI * r_[1] * half_;
     areas_[low_end] = areas_[high_end] = M_PI * (r_[0] - r_[1]) * (r_[0] + r_[1]);
-    if (!(float(own_area()) > 0 && float(own_area()) < infinity)) fail("radius", "the tube is too small or too large");
+    if (!(float(local_area()) > 0 && float(local_area()) < infinity)) fail("radius", "the tube is too small or too large");
     place();
   }
 
@@ -62,14 +63,14 @@ class Tube final : public PlacedObject {
   float inner_radius = 0.75f, radius = 1, height = 2;
 
  protected:
-  Bounds3 own_bounds() const override {
+  Bounds3 local_bounds() const override {
     Bounds3 box;
     box.add(Point3{-radius, -radius, -0.5f * height});
     box.add(Point3{radius, radius, 0.5f * height});
     return box;
   }
 
-  bool own_intersect(const Ray& ray, Hit& hit) const override {
+  bool local_intersect(const Ray& ray, Hit& hit) const override {
     const NearRay near(ray, 0);
     const SlabInside slab(near, -half_, half_);
     const QuadricInside round = near.inside(0, 0, r_[0] * r_[0]);
@@ -86,7 +87,7 @@ class Tube final : public PlacedObject {
     return solid(enter, first, bore.low, inner) || solid(bore.high, inner, leave, last);
   }
 
-  void own_point(const Ray& ray, const Hit& hit, OwnPoint& p) const override {
+  void local_point(const Ray& ray, const Hit& hit, LocalPoint& p) const override {
     const DoubleRay r(ray);
     const double t = exact_distance(hit), x = r.at(t, 0), y = r.at(t, 1);
     if (hit.primitive == outer || hit.primitive == inner) {
@@ -97,16 +98,16 @@ class Tube final : public PlacedObject {
       end_point(int(hit.primitive), x, y, p);
   }
 
-  double own_area() const override { return areas_[outer] + areas_[inner] + areas_[low_end] + areas_[high_end]; }
+  double local_area() const override { return areas_[outer] + areas_[inner] + areas_[low_end] + areas_[high_end]; }
 
-  Seams own_seams() const override {
-    const double area = own_area(), until_side = areas_[low_end] + areas_[outer], until_bore = until_side + areas_[high_end];
+  Seams local_seams() const override {
+    const double area = local_area(), until_side = areas_[low_end] + areas_[outer], until_bore = until_side + areas_[high_end];
     return {{}, {areas_[low_end] / area, until_side / area, until_bore / area}};
   }
 
-  float own_sample(Point2 u, OwnPoint& p) const override {
+  float local_sample(Point2 u, LocalPoint& p) const override {
     // Runs once around the profile: outwards on the low end, up the outer side, inwards on the high end and down the bore.
-    const double area = own_area();
+    const double area = local_area();
     double y = double(u.y) * area;
     constexpr Part order[] = {low_end, outer, high_end, inner};
     int k = 0;
@@ -169,7 +170,7 @@ class Tube final : public PlacedObject {
   static bool none(Point2, SurfaceSample&) { return false; }
   static float no_pdf(const SurfacePoint&) { return 0; }
 
-  void point_on(int part, double phi, double share, OwnPoint& p) const {
+  void point_on(int part, double phi, double share, LocalPoint& p) const {
     const double cosine = std::cos(phi), sine = std::sin(phi);
     if (part == outer || part == inner) {
       side_point(part, r_[part] * cosine, r_[part] * sine, within((2 * share - 1) * half_, -half_, half_), p);
@@ -179,7 +180,7 @@ class Tube final : public PlacedObject {
     }
   }
 
-  void side_point(int part, double x, double y, double z, OwnPoint& p) const {
+  void side_point(int part, double x, double y, double z, LocalPoint& p) const {
     const double out = part == outer ? 1 : -1, r = out / std::sqrt(x * x + y * y);
     p.position = {float(x), float(y), float(z)};
     p.normal = {float(x * r), float(y * r), 0};
@@ -189,17 +190,17 @@ class Tube final : public PlacedObject {
     p.dpdv = {0, 0, float(out * 2 * half_)};
     p.primitive = std::uint32_t(part);
     const Vector3 here{std::abs(p.position.x), std::abs(p.position.y), 0};
-    p.error = rounding_bound(3) * (along(p.normal, here) + float(extent()));
+    p.error = rounding_bound(3) * (along(p.normal, here) + float(least_extent()));
   }
 
-  void end_point(int part, double x, double y, OwnPoint& p) const {
+  void end_point(int part, double x, double y, LocalPoint& p) const {
     const double around = std::sqrt(x * x + y * y), inward = around > 0 ? within(around, r_[1], r_[0]) / around : 1;
-    flat_point(inward * x, inward * y, part == high_end ? half_ : -half_, r_[0], part == high_end, extent(), p);
+    flat_point(inward * x, inward * y, part == high_end ? half_ : -half_, r_[0], part == high_end, least_extent(), p);
     p.primitive = std::uint32_t(part);
   }
 
   /// The smaller of radius and height: see RevolvedQuadric.
-  double extent() const { return std::min(r_[0], 2 * half_); }
+  double least_extent() const { return std::min(r_[0], 2 * half_); }
 
   double r_[2]{1, 0.75}, half_ = 1;  // outer and inner radius, half of the height
   double areas_[parts]{};

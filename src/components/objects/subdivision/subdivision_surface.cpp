@@ -4,7 +4,7 @@
 
 #include "components/objects/meshes/triangle_object.h"
 #include "components/objects/meshes/vertex_attributes.h"
-#include "geometry/own_centre.h"
+#include "geometry/inner_origin.h"
 #include "subdivision.h"
 
 namespace etendue {
@@ -157,8 +157,8 @@ class SubdivisionSurface final : public TriangleObject {
     if (positions.empty()) fail("", "a cage needs either a file or positions and indices");
     if (indices.empty()) fail("indices", "there are positions but no faces");
     PolygonMesh cage;
-    cage.centre = own_centre(positions);
-    cage.positions = counted_from(cage.centre, positions);
+    cage.centre = inner_origin_for(positions);
+    cage.positions = relative_to(cage.centre, positions);
     cage.corners = indices;
     cage.face_sizes = face_sizes;
     const size_t usual = scheme == SubdivisionRules::Scheme::loop ? 3 : 4;

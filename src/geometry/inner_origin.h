@@ -1,5 +1,5 @@
 #pragma once
-// Chooses the point relative to which a shape stores its points, so that floats are precise near the shape.
+// Chooses the inner origin of a shape's transform, so that floats are precise near the shape.
 
 #include <algorithm>
 #include <span>
@@ -11,7 +11,7 @@ namespace etendue {
 
 /// The centre of the points' bounding box if they lie far from the origin, else the origin: floats are most precise near zero,
 /// and a shape modelled around its own origin keeps it.
-inline DoublePoint3 own_centre(std::span<const DoublePoint3> places) {
+inline DoublePoint3 inner_origin_for(std::span<const DoublePoint3> places) {
   DoublePoint3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   for (const DoublePoint3& p : places)
     if (is_finite(p))
@@ -29,12 +29,12 @@ inline DoublePoint3 own_centre(std::span<const DoublePoint3> places) {
   return {(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
 }
 
-/// The points relative to `centre`, in floats.
-inline std::vector<Point3> counted_from(const DoublePoint3& centre, std::span<const DoublePoint3> places) {
-  std::vector<Point3> counted;
-  counted.reserve(places.size() + 1);  // one more, for the padding that meshes add
-  for (const DoublePoint3& p : places) counted.push_back(Point3(DoublePoint3{} + (p - centre)));
-  return counted;
+/// The points relative to an origin, in floats.
+inline std::vector<Point3> relative_to(const DoublePoint3& origin, std::span<const DoublePoint3> places) {
+  std::vector<Point3> shifted;
+  shifted.reserve(places.size() + 1);  // one more, for the padding that meshes add
+  for (const DoublePoint3& p : places) shifted.push_back(Point3(DoublePoint3{} + (p - origin)));
+  return shifted;
 }
 
 }  // namespace etendue
