@@ -34,18 +34,18 @@ class RecordingScene final : public Scene {
     nearest_so_far = shadows_so_far = 0;
   }
 
-  bool nearest(const Ray& ray, Hit& hit) const override {
+  bool find_nearest(const Ray& ray, Hit& hit) const override {
     const bool found = asked->nearest(ray, hit);
     rays.push_back({ray, found ? hit : Hit{}, path, nearest_so_far++, false, found});
     return found;
   }
-  bool any(const Ray& ray) const override {
+  bool find_any(const Ray& ray) const override {
     const bool found = asked->any(ray);
     rays.push_back({ray, {}, path, shadows_so_far++, true, found});
     return found;
   }
   // Queries for all hits along a ray, to locate a point within media, are no rays of the path.
-  void all(const Ray& ray, HitList& list) const override { asked->all(ray, list); }
+  void find_all(const Ray& ray, HitList& list) const override { asked->all(ray, list); }
 
  protected:
   void build(std::span<const SceneObject* const>) override {}

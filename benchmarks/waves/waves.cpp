@@ -76,13 +76,13 @@ class Shading {
     if (r.shadow || !r.found) return;
     std::uint32_t state = r.path * 747796405u + r.depth * 2891336453u + 1;
     const auto number = [&] { return float((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-24f; };
-    Vertex v;
+    PathVertex v;
     v.out = -r.ray.direction;
     scene_.locate(r.ray, r.hit, v.point);
     v.scatter = scattering_at(v.point, v.out, wavelengths_, arena_);
     if (v.scatter) {
       DirectLight direct;
-      if (v.scatters_smoothly() && sample_next_event(lights_, v, 0, wavelengths_, number(), {number(), number()},
+      if (v.scatters_smoothly() && sample_next_event(scene_, lights_, v, 0, wavelengths_, number(), {number(), number()},
                                                      Heuristic::power, direct, ScatteringOf{v}))
         sum_ += direct.light[0];
       if (const auto next = v.scatter->sample(v.out, number(), {number(), number()}, {.lobes = v.lobes}))

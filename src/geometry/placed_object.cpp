@@ -74,7 +74,7 @@ void PlacedObject::carry(const LocalPoint& local, float time, SurfacePoint& p) c
 void PlacedObject::tangents(SurfacePoint& p) const {
   if (p.dpdu != Vector3{} || p.dpdv != Vector3{}) return;
   Ray ray;  // all its points are its origin
-  ray.origin = Point3(DoublePoint3(p.object_position) - (transform.inner() - DoublePoint3{}));
+  ray.origin = Point3(DoublePoint3(p.object_position) - (transform.inner_origin() - DoublePoint3{}));
   ray.direction = {};
   Hit hit;
   hit.distance = 0;

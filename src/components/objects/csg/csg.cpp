@@ -249,7 +249,7 @@ void Csg::tangents(SurfacePoint& p) const {
   SurfacePoint there = p;
   const SceneObject& operand = operand_at(p, there);
   const bool subtracted = combined_[decode(p.primitive, there.primitive)].weight < 0;
-  there.position = Point3(DoublePoint3(p.object_position) - (transform.inner() - DoublePoint3{}));
+  there.position = Point3(DoublePoint3(p.object_position) - (transform.inner_origin() - DoublePoint3{}));
   there.normal = there.shading_normal = subtracted ? -p.object_normal : p.object_normal;
   operand.tangents(there);
   Transform scratch;

@@ -53,9 +53,6 @@ class MatteGlossyScatter : public JointScatter<Model> {
     }
     return r;
   }
-
- private:
-  const Model& model() const { return static_cast<const Model&>(*this); }
 };
 
 /// A MatteGlossyScatter whose lobe is sampled by the half-vector: the model also defines sample_half(u), a half-vector with z >

@@ -63,7 +63,7 @@ class CoatedBodyScatter : public JointScatter<Model> {
   using JointScatter<Model>::JointScatter;
 
  private:
-  const Model& model() const { return static_cast<const Model&>(*this); }
+  using JointScatter<Model>::model;
 
   float probability_of_coat(const Vector3& out, float through, Lobes lobes) const {
     if (!(lobes & diffuse_reflection)) return 1;
