@@ -32,9 +32,9 @@ MeshData taken_out(const MeshData& mesh, std::span<const std::uint32_t> triangle
         part.positions.push_back(mesh.positions[vertex]);
         if (!mesh.normals.empty()) part.normals.push_back(mesh.normals[vertex]);
         if (!mesh.uvs.empty()) part.uvs.push_back(mesh.uvs[vertex]);
-        for (size_t k = 0; k < mesh.attributes.size(); ++k) {
-          const auto from = mesh.attributes[k].values.begin() + std::ptrdiff_t(vertex) * mesh.attributes[k].width;
-          part.attributes[k].values.insert(part.attributes[k].values.end(), from, from + mesh.attributes[k].width);
+        for (size_t a = 0; a < mesh.attributes.size(); ++a) {
+          const auto from = mesh.attributes[a].values.begin() + std::ptrdiff_t(vertex) * mesh.attributes[a].width;
+          part.attributes[a].values.insert(part.attributes[a].values.end(), from, from + mesh.attributes[a].width);
         }
       }
       t[k] = now[vertex];
