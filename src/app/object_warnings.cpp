@@ -9,6 +9,7 @@
 #include "etendue/mesh_facts.h"
 #include "etendue/object_map.h"
 #include "etendue/transport/medium_stack.h"
+#include "geometry/closed_surface.h"
 #include "scene_warnings.h"
 #include "text.h"
 
@@ -172,9 +173,11 @@ class Objects {
   }
 
   void interior(const SceneObject& object, const Shader* shader, bool enters) {
-    if (enters) return;
     std::string why;
-    if (!object.closed())
+    if (enters && !faces_inwards(object)) return;
+    if (enters)
+      why = "its faces point inwards, so that light leaves it before it enters; reverse the order of each triangle's vertices";
+    else if (!object.closed())
       why = fmt::format("the surface is not closed{}, so it has no inside; close it", ends_text(object));
     else if (!shader)
       why = "it has no shader, so no light enters; PassThrough {} is an invisible boundary of a medium";
@@ -187,6 +190,12 @@ class Objects {
           shader->class_info().name);
     add("interior", fmt::format("{}: the medium in 'interior' is never entered: {}", label(object), why),
         object.location_of("interior"));
+  }
+
+  /// Whether the triangles of a closed mesh are clockwise as seen from outside.
+  static bool faces_inwards(const SceneObject& object) {
+    const std::optional<TriangleView> mesh = object.triangles();
+    return mesh && enclosed_volume(*mesh) < 0;
   }
 
   /// For example " (12 of its edges belong to one triangle alone)".

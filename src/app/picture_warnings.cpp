@@ -1,4 +1,4 @@
-// Whether a picture for display came out nearly all black or nearly all white.
+// Whether a picture for display came out all black, nearly all black or nearly all white.
 
 #include <fmt/format.h>
 
@@ -13,13 +13,15 @@ namespace {
 constexpr double middle_grey = 0.18;  // relative to white
 
 struct Shown {
-  double lit = 0;  ///< fraction of pixels with any light at all
+  double brightest = 0;  ///< the largest of R, G and B of the lit pixels
+  double lit = 0;        ///< fraction of pixels with any light at all
   double black = 0,
          white = 0;   ///< fractions of the lit pixels that are shown as black, or with R, G and B all at their maximum
   double median = 0;  ///< luminance Y of the lit pixels
 };
 
 Shown shown(const Image& radiance, const Image& display) {
+  Shown s;
   std::vector<double> y;
   size_t black = 0, white = 0;
   const size_t stride = radiance.channels.size(), channels = display.channels.size();
@@ -28,10 +30,10 @@ Shown shown(const Image& radiance, const Image& display) {
     if (!(light > 0) || !std::isfinite(light)) continue;
     y.push_back(light);
     const double* rgb = &display.values[i * channels];
+    s.brightest = std::max({s.brightest, rgb[0], rgb[1], rgb[2]});
     black += std::max({rgb[0], rgb[1], rgb[2]}) < 1.5 / 255;
     white += std::min({rgb[0], rgb[1], rgb[2]}) >= 1 - 0.5 / 255;
   }
-  Shown s;
   if (y.empty()) return s;
   const double n = double(y.size());
   s.lit = n / (double(radiance.width) * radiance.height);
@@ -61,6 +63,15 @@ std::vector<SceneWarning> picture_warnings(const Job& job, const std::vector<Ref
     const ToneMap* tone = output->tone_map ? output->tone_map.get() : job.tone_map.get();
     if (!output->for_display() || !tone) continue;
     const Shown s = shown(radiance, tone->apply(radiance));
+    const Location at = output->tone_map ? output->location_of("tone_map") : job.location_of("tone_map");
+    if (constexpr double least_shown = 1.0 / 255; s.median > 0 && s.brightest < least_shown) {
+      list.push_back({"black picture",
+                      fmt::format("the picture is black: no pixel of {} reaches 1/255; the median luminance of the lit pixels, "
+                                  "{:.3g}, becomes middle grey with 'tone_map: ExposureToneMap {{ stops: {:.1f} }}'",
+                                  output->class_info().name, s.median, std::log2(middle_grey / s.median)),
+                      at});
+      break;
+    }
     constexpr double most = 0.9;
     const bool dark = s.black >= most, bright = s.white >= most;
     // An image of a few lit pixels on a black background, such as a starry sky, is not reported.
@@ -73,7 +84,7 @@ std::vector<SceneWarning> picture_warnings(const Job& job, const std::vector<Ref
                      "grey; 'tone_map: ExposureToneMap {{ stops: {:.1f} }}' maps it to middle grey",
                      100 * (dark ? s.black : s.white), dark ? "black" : "white", output->class_info().name, s.median, factor,
                      dark ? "darker than" : "as bright as", stops),
-         output->tone_map ? output->location_of("tone_map") : job.location_of("tone_map")});
+         at});
     break;
   }
   return list;

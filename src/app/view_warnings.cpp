@@ -1,9 +1,10 @@
-// Warns of cameras that see no object or stand inside an opaque one.
+// Warns of cameras that see no object, or little of an imported model, or stand inside an opaque one.
 
 #include <fmt/format.h>
 
 #include <cmath>
 
+#include "etendue/importer.h"
 #include "etendue/transport/medium_stack.h"
 #include "scene_warnings.h"
 
@@ -36,20 +37,19 @@ bool comes_near(const Ray& ray, const Bounds3& box, float slack) {
   return along > 0 && along - radius <= ray.maximum && across <= radius + slack * along;
 }
 
-/// Warns if all objects are outside the camera's view.
-void sees_nothing(const Job& job, std::vector<SceneWarning>& list) {
-  const Scene& scene = *job.scene;
-  if (scene.unbounded()) return;
-  bool any = false;
+/// The bounds of the finite objects that the camera does not ignore.
+Bounds3 visible_bounds(const Scene& scene) {
   Bounds3 all;
   for (const Ref<SceneObject>& object : scene.objects) {
     if (object->infinite() || !object->visible_to_camera) continue;
     const Bounds3 box = object->bounds();
-    if (box.empty()) continue;
-    any = true;
-    all.add(box);
+    if (!box.empty()) all.add(box);
   }
-  if (!any) return;
+  return all;
+}
+
+/// Warns if all objects, within `all`, are outside the camera's view, and returns whether they are.
+bool sees_nothing(const Job& job, const Bounds3& all, std::vector<SceneWarning>& list) {
   const Camera& camera = *job.camera;
   const Vector3 first = camera_ray(job, 0, side / 2).direction, last = camera_ray(job, side - 1, side / 2).direction;
   const Vector3 low = camera_ray(job, side / 2, 0).direction, high = camera_ray(job, side / 2, side - 1).direction;
@@ -58,7 +58,7 @@ void sees_nothing(const Job& job, std::vector<SceneWarning>& list) {
       side;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x)
-      if (comes_near(camera_ray(job, x, y), all, spacing + 1e-4f)) return;
+      if (comes_near(camera_ray(job, x, y), all, spacing + 1e-4f)) return false;
   const Ray middle =
       camera.ray({0.5f * float(job.image->width), 0.5f * float(job.image->height)}, {0.5f, 0.5f}, camera.shutter_open);
   const Point3 c = all.centre();
@@ -72,6 +72,25 @@ void sees_nothing(const Job& job, std::vector<SceneWarning>& list) {
                    middle.direction.z, length(all.diagonal()) / 2, c.x, c.y, c.z,
                    clips ? ", or check 'near_clip' and 'far_clip'" : ""),
        camera.location_of("to")});
+  return true;
+}
+
+/// Warns if the objects of an imported model fill little of the picture: its camera may be meant for another unit of length.
+void sees_little(const Job& job, std::vector<SceneWarning>& list) {
+  const Location at = job.location_of("camera");
+  if (!at.known() || !importer_of(at.file)) return;
+  constexpr double least = 0.01;
+  int met = 0;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      Hit hit;
+      met += job.scene->nearest(camera_ray(job, x, y), hit);
+    }
+  if (met >= least * side * side) return;
+  list.push_back({"sees little",
+                  fmt::format("the objects fill less than {:.0f} % of the picture; move the camera nearer, or narrow its view",
+                              100 * least),
+                  at});
 }
 
 /// Warns if the camera is inside an opaque closed object that contains no luminaire.
@@ -113,7 +132,8 @@ void stands_in_the_dark(const Job& job, std::vector<SceneWarning>& list) {
 }  // namespace
 
 void warn_of_view(const Job& job, std::vector<SceneWarning>& list) {
-  sees_nothing(job, list);
+  const Bounds3 all = job.scene->unbounded() ? Bounds3() : visible_bounds(*job.scene);
+  if (!all.empty() && !sees_nothing(job, all, list)) sees_little(job, list);
   if (shows_light(*job.renderer)) stands_in_the_dark(job, list);
 }
 

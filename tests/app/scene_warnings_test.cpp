@@ -118,6 +118,14 @@ TEST(SceneWarnings, GlassThatIsNotClosed) {
   expect("Disc { shader: Dielectric {} }\n" + sky, "open body", {"not closed"}, "Dielectric");
 }
 
+TEST(SceneWarnings, MediaInMeshesThatAreInsideOut) {
+  const std::string medium = "shader: Dielectric {}, interior: HomogeneousVolume { absorption: 1 } }\n" + sky;
+  expect("TriangleMesh { positions: [[0,0,0], [1,0,0], [0,1,0], [0,0,1]], triangles: [[0,1,2], [0,3,1], [0,2,3], [1,3,2]], " +
+             medium,
+         "interior", {"never entered", "point inwards"}, "HomogeneousVolume");
+  EXPECT_TRUE(said("TriangleMesh { " + tetrahedron + "[1,2,3]], " + medium).empty());
+}
+
 TEST(SceneWarnings, ImagesWithoutCoordinates) {
   const ImageFile image("card.exr", 2, 2, std::vector<float>(12, 0.5f));
   const std::string map = "ImageMap { file: \"" + image.path + "\" }", mesh = "TriangleMesh { " + tetrahedron + "[1,2,3]], ";
@@ -164,6 +172,24 @@ TEST(SceneWarnings, WhatTheCameraSees) {
   EXPECT_TRUE(said("Sphere { centre: [0, 0, 1000], radius: 0.01, " + diffuse + " }\n" + sky,
                    "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 9], fov: 40 deg }")
                   .empty());
+}
+
+// Of a model from another program, whose camera may be meant for another unit of length.
+TEST(SceneWarnings, CamerasThatSeeLittleOfAModel) {
+  const auto told = [](const std::string& radius) {
+    const TextFile file("little.pbrt",
+                        "LookAt 0 0 -5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\nFilm \"rgb\"\nWorldBegin\n"
+                        "LightSource \"infinite\"\nShape \"sphere\" \"float radius\" " +
+                            radius + "\n");
+    const Ref<Job> job = load_job(file.path);
+    prepare_tree(*job);
+    return scene_warnings(*job);
+  };
+  EXPECT_TRUE(told("1").empty());
+  const std::vector<SceneWarning> list = told("0.1");
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].kind, "sees little");
+  EXPECT_TRUE(said("Sphere { radius: 0.1, " + diffuse + " }\n" + sky).empty());
 }
 
 TEST(SceneWarnings, ACameraInTheDark) {
@@ -274,6 +300,11 @@ TEST(PictureWarnings, TooDarkOrTooBrightByHowMuch) {
   const auto dark = after(0.18 / 4096);
   ASSERT_EQ(dark.size(), 1u);
   for (const char* word : {"black", "stops: 12.0"}) EXPECT_NE(dark[0].text.find(word), std::string::npos) << dark[0].text;
+  EXPECT_EQ(dark[0].kind, "black picture");  // no pixel reaches 1/255
+  EXPECT_TRUE(after(0.18 / 4096, "ExposureToneMap { stops: 12 }").empty());
+  const auto nearly = after(0.18 / 512);
+  ASSERT_EQ(nearly.size(), 1u);
+  EXPECT_EQ(nearly[0].kind, "tone");
   EXPECT_TRUE(after(180, "ExposureToneMap { stops: -10 }").empty());
   const auto none = after(0);
   ASSERT_EQ(none.size(), 1u);

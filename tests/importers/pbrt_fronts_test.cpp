@@ -71,6 +71,27 @@ TEST(PbrtFront, ReversedQuadricsExchangeTheirMedia) {
   EXPECT_NEAR(through("\"\" \"a\" ReverseOrientation"), std::exp(-1.0), 0.01);
 }
 
+TEST(PbrtFront, MeshesWithAMediumAreTurnedRound) {
+  const std::string medium =
+      "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0]\n"
+      "Material \"interface\" MediumInterface \"a\" \"\" Translate 0 0 5 ";
+  const std::string points = "[-1 -1 -1 -1 -1 1 -1 1 -1 -1 1 1 1 -1 -1 1 -1 1 1 1 -1 1 1 1]",
+                    inwards = "[2 3 1 2 1 0 5 7 6 5 6 4 1 5 4 1 4 0 6 7 3 6 3 2 4 6 2 4 2 0 3 7 5 3 5 1]";
+  const auto cube = [&](const std::string& more) {
+    return import_text(
+        v4(sky + medium + more + "Shape \"trianglemesh\" \"point3 P\" " + points + " \"integer indices\" " + inwards));
+  };
+  const Imported i = cube("");
+  EXPECT_NE(i.told().find("point inwards"), std::string::npos) << i.told();
+  EXPECT_NEAR(seen(i, 65536).y, std::exp(-1.0), 0.01);
+  const Imported reversed = cube("ReverseOrientation ");
+  EXPECT_EQ(reversed.told(), "");
+  EXPECT_NEAR(seen(reversed, 65536).y, std::exp(-1.0), 0.01);
+  const Imported subdivided =
+      import_text(v4(sky + medium + "Shape \"loopsubdiv\" \"point3 P\" " + points + " \"integer indices\" " + inwards));
+  EXPECT_NE(subdivided.told().find("point inwards"), std::string::npos) << subdivided.told();
+}
+
 // A file whose triangles are oriented against its normals: the front of glass is where the normals point.
 TEST(PbrtFront, NormalsOfFilesSayWhereGlassIs) {
   const TemporaryFolder folder;

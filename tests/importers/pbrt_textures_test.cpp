@@ -1,5 +1,7 @@
 // pbrt's textures as numbers and as colours.
 
+#include "components/maps/noise.h"
+#include "etendue/object_map.h"
 #include "pbrt_support.h"
 #include "support/image_file.h"
 
@@ -79,7 +81,7 @@ TEST(PbrtTexture, MixturesByDirection) {
   EXPECT_NEAR(shown("\"vector3 dir\" [0.8 0 0.6]"), 0.6 * 0.8 + 0.4 * 0.2, 0.01);
 }
 
-// Half of the squares hold a dot of radius 0.35.
+// Half of the squares hold a dot of radius 0.35. In pbrt the dots show "outside".
 TEST(PbrtTexture, Dots) {
   const Imported i = import_text(v4(sky +
                                     "Texture \"t\" \"spectrum\" \"dots\" \"rgb inside\" [.9 .9 .9] \"rgb outside\" [.1 .1 .1] "
@@ -87,7 +89,59 @@ TEST(PbrtTexture, Dots) {
                                     "\"t\"\n" +
                                     wall));
   EXPECT_NE(i.told().find("same character"), std::string::npos) << i.told();
-  EXPECT_NEAR(seen(i, 16384).y, 0.1 + 0.8 * M_PI * 0.35 * 0.35 / 2, 0.03);
+  EXPECT_NEAR(seen(i, 16384).y, 0.9 - 0.8 * M_PI * 0.35 * 0.35 / 2, 0.03);
+}
+
+/// A texture's number at a point, where `member` of a wall's shader is the texture.
+double noise_at(const Point3& at, const std::string& texture, const std::string& material, const std::string& member) {
+  const Imported i = import_text(v4("Texture \"t\" " + texture + "\nMaterial \"diffuse\" " + material + "\n" + wall));
+  if (!i.job) {
+    ADD_FAILURE() << i.told();
+    return 0;
+  }
+  const Value value = get(part(object(i, 0), "shader"), member);
+  const Ref<ObjectMap> map = ref_cast<ObjectMap>(*value.as<Ref<Component>>());
+  prepare_tree(*map);
+  SurfacePoint p;
+  p.position = p.object_position = at;
+  return double(map->scalar(p));
+}
+double bump_at(const Point3& at, const std::string& type) {
+  return noise_at(at, "\"float\" " + type, "\"texture displacement\" \"t\"", "height");
+}
+
+// As bright as in pbrt: sums of octaves that are not divided by the sum of their weights.
+TEST(PbrtNoise, IsAsStrongAsInPbrt) {
+  const Point3 at{0.3f, 1.7f, -2.4f};
+  const auto octave = [&](double frequency, std::uint32_t i) {
+    return double(perlin_noise(float(frequency) * Vector3(at - Point3{}), i));
+  };
+  const auto fbm = [&](int count, double first) {
+    double sum = 0;
+    for (int i = 0; i < count; ++i) sum += std::pow(0.5, i) * octave(first * std::pow(1.99, i), std::uint32_t(i));
+    return sum;
+  };
+  EXPECT_NEAR(bump_at(at, "\"fbm\" \"integer octaves\" 1"), fbm(1, 1), 1e-5);
+  EXPECT_NEAR(bump_at(at, "\"fbm\""), fbm(8, 1), 1e-4);
+  EXPECT_NEAR(bump_at(at, "\"windy\""), std::abs(fbm(3, 0.1)) * fbm(6, 1), 1e-4);
+  // pbrt adds a further octave's mean.
+  EXPECT_NEAR(bump_at(at, "\"wrinkled\" \"integer octaves\" 2"),
+              std::abs(octave(1, 0)) + 0.5 * std::abs(octave(1.99, 1)) + 0.25 * 0.2, 1e-5);
+}
+
+// The colour of marble is 1.5 times a point of a curve of colours. Where (1 + sin(y + variation noise)) / 2 is 5.5 / 6, the
+// point is 3/8 of the way to the vein.
+TEST(PbrtNoise, MarbleHasTheColoursOfPbrt) {
+  const double in_vein = std::asin(5 / 6.0), expected = 1.5 * (0.58 - 3 / 8.0 * (0.58 - 0.2));
+  const auto marble = [](const Point3& at, double variation) {
+    return noise_at(at, "\"spectrum\" \"marble\" \"integer octaves\" 1 \"float variation\" " + std::to_string(variation),
+                    "\"texture reflectance\" \"t\"", "color");
+  };
+  EXPECT_NEAR(marble({0, float(in_vein), 0}, 0), expected, 0.01);
+  EXPECT_NEAR(marble({0, float(-M_PI / 2), 0}, 0), 1.5 * 0.58, 0.01);
+  const Point3 at{0.3f, 0.4f, -2.4f};
+  const double noise = double(perlin_noise(at - Point3{}));
+  EXPECT_NEAR(marble(at, (in_vein - double(at.y)) / noise), expected, 0.02);
 }
 
 TEST(PbrtTexture, CoordinatesOfVersion3) {

@@ -86,6 +86,10 @@ class Converter {
   Ref<Component> group(const Element&);
   /// `shader`: used if the shape has no bsdf.
   void set_surface(Component& object, const Element& shape, Uv, const Element* bsdf, const Ref<Component>& shader = nullptr);
+  /// Gives a mesh from a file Mitsuba's fronts: its triangles are written out where they differ from those of the file.
+  /// `flipped`: Mitsuba's front is the back of the object; returns the same of the result. `holds_medium`: a mesh that is
+  /// inside out is turned round.
+  bool settle_fronts(Component& object, const Element& shape, bool flipped, bool holds_medium);
   /// An OBJ file of version 0.x whose faces have several materials, as a group; null: it is one mesh.
   Ref<Component> parts_of_obj(const Element&);
   Ref<Component> turned_round(const Ref<Component>& shader, Location at);

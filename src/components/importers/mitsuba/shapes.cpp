@@ -20,6 +20,8 @@ const std::vector<std::string> known_shapes = {
 
 Numbers three(double x, double y, double z) { return {{x, y, z}, 1, Dimension::none}; }
 
+bool is_mesh_file(const Element& e) { return e.type == "obj" || e.type == "ply" || e.type == "serialized"; }
+
 bool mirrors(const TransformValue& t) { return t.transform.still().flips(); }
 
 /// Mitsuba's refracting bsdfs test the side of a direction against the shading normal only, so that no light is lost, whatever
@@ -61,7 +63,7 @@ Ref<SceneObject> Converter::shape(const Element& e) {
 }
 
 Ref<Component> Converter::geometry(const Element& e, Uv& uv) {
-  if (e.type == "obj" || e.type == "ply" || e.type == "serialized") return mesh(e, uv);
+  if (is_mesh_file(e)) return mesh(e, uv);
   if (e.type == "sphere") {
     uv = Uv::from_top;
     return sphere(e);
@@ -186,7 +188,7 @@ bool Converter::tilts(const Element& e) {
 /// spheres, and for meshes whose normals are those of their triangles. Other shapes transform their normals.
 bool Converter::front_by_world(const Element& e) {
   if (e.type == "sphere") return true;
-  if (e.type != "obj" && e.type != "ply" && e.type != "serialized") return false;
+  if (!is_mesh_file(e)) return false;
   if (e.boolean("face_normals", false)) return true;
   const std::string part = e.type == "serialized" ? std::to_string(e.integer("shape_index", 0)) : std::string();
   try {
@@ -238,21 +240,26 @@ void Converter::set_surface(Component& object, const Element& e, Uv uv, const El
   if (!e.all("subsurface").empty()) inexact(e, "subsurface scattering of Mitsuba 0.5 is left out: the bsdf alone counts");
   if (!e.all("sensor").empty()) inexact(e, "a sensor on a shape is left out");
 
-  const Element* const interior = e.nested("interior");
+  const Element *const interior = e.nested("interior"), *const exterior = e.nested("exterior");
   Surface looks;
   if (bsdf) {
     looks = surface(*bsdf, textured(*bsdf) ? uv : Uv::as_is);
   } else if (shader) {
     looks = {shader, true};
-  } else if (e.old && emitters.empty() && (interior || e.nested("exterior"))) {
+  } else if (e.old && emitters.empty() && (interior || exterior)) {
     looks = {make("PassThrough", e, ""), true};  // an index-matched boundary of a medium
   } else if (emitters.empty()) {
     looks = {make("Lambertian", e, ""), false};  // Mitsuba's default: a diffuse surface of reflectance 0.5
   }
+  // A surface that only its front shows, or that emits, stays as it is: the room that it faces can be what is meant.
+  const bool holds_medium = interior && interior != exterior && emitters.empty() && looks.both_sides;
+  const bool has_front = !emitters.empty() || interior || exterior || !looks.both_sides ||
+                         (looks.shader && turned_round(looks.shader, e.at) != looks.shader);
+  if (is_mesh_file(e) && has_front) flipped = settle_fronts(object, e, flipped, holds_medium);
   if (flipped && looks.shader) looks.shader = turned_round(looks.shader, e.at);
   if (looks.shader) set_member(object, "shader", looks.shader, e.at);
   // Mitsuba discards light that an interpolated normal would send through the surface.
-  const bool smooth = ((e.type == "obj" || e.type == "ply" || e.type == "serialized") && !e.boolean("face_normals", false)) ||
+  const bool smooth = (is_mesh_file(e) && !e.boolean("face_normals", false)) ||
                       (e.type == "sdfgrid" && e.string("normals", "smooth") == "smooth");
   if (looks.shader && (tilts(e) || (smooth && !refracts_without_loss(*looks.shader))))
     set_member(object, "shading_normals", "clipped", e.at);
@@ -266,12 +273,12 @@ void Converter::set_surface(Component& object, const Element& e, Uv uv, const El
   if (interior)
     if (const Ref<Component> inside = medium(*interior, object, glow))
       set_member(object, "interior", inside, e.location_of("interior"));
-  if (flipped && (interior || e.nested("exterior")))
+  if (flipped && (interior || exterior))
     inexact(e,
             "the normals of this shape point inwards, where Mitsuba has its exterior: here the medium is inside all the same");
   if (glow && !interior) inexact(*glow, "a 'volumelight' shines inside a medium, and its shape has none: it is left out");
-  sides_.push_back({Ref<SceneObject>(dynamic_cast<SceneObject*>(&object)), interior, e.nested("exterior"), groups_read_ > 0,
-                    e.location_of("exterior")});
+  sides_.push_back(
+      {Ref<SceneObject>(dynamic_cast<SceneObject*>(&object)), interior, exterior, groups_read_ > 0, e.location_of("exterior")});
   e.ignore({"silhouette_sampling_weight"});
 }
 

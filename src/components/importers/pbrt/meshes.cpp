@@ -6,22 +6,13 @@
 #include <array>
 #include <cmath>
 
-#include "components/objects/meshes/mesh_data.h"
-#include "geometry/inner_origin.h"
+#include "components/objects/meshes/mesh_fronts.h"
 #include "geometry/usable_triangles.h"
 #include "meshes.h"
 
 namespace etendue::pbrt {
 
 namespace {
-
-using Vertex = std::array<double, 3>;
-Vertex difference(const std::vector<double>& p, size_t a, size_t b) {
-  return {p[3 * a] - p[3 * b], p[3 * a + 1] - p[3 * b + 1], p[3 * a + 2] - p[3 * b + 2]};
-}
-Vertex across(const Vertex& a, const Vertex& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// Checks the indices of a list: integers below the number of vertices.
 void check_indices(const Parameters& p, const std::vector<double>& indices, size_t vertices) {
@@ -31,24 +22,10 @@ void check_indices(const Parameters& p, const std::vector<double>& indices, size
                     p.place("indices"));
 }
 
-/// pbrt's front is the side of the vertex normals; here it is the side from which a triangle is counter-clockwise.
-void face_normals(const std::vector<double>& positions, const std::vector<double>& normals, std::vector<double>& indices) {
-  for (size_t t = 0; t + 2 < indices.size(); t += 3) {
-    const size_t a = size_t(indices[t]), b = size_t(indices[t + 1]), c = size_t(indices[t + 2]);
-    const Vertex face = across(difference(positions, b, a), difference(positions, c, a));
-    double along = 0;
-    for (const size_t v : {a, b, c})
-      for (size_t i = 0; i < 3; ++i) along += face[i] * normals[3 * v + i];
-    if (along < 0) std::swap(indices[t + 1], indices[t + 2]);
-  }
-}
-
 /// Whether any face, of this many corners in row order, has a nonzero area at the precision in which it is stored. Adds a
 /// warning if none has.
 bool has_area(Reader& reader, const std::vector<double>& p, const std::vector<double>& indices, size_t corners, Location at) {
-  std::vector<DoublePoint3> positions;
-  for (size_t i = 0; i + 2 < p.size(); i += 3) positions.push_back({p[i], p[i + 1], p[i + 2]});
-  const std::vector<Point3> shifted = relative_to(inner_origin_for(positions), positions);
+  const std::vector<Point3> shifted = points_of(p);
   for (size_t f = 0; f + corners <= indices.size(); f += corners)
     for (size_t last = 2; last < corners; ++last) {
       const std::array<std::uint32_t, 3> triangle{std::uint32_t(indices[f + last - 2]), std::uint32_t(indices[f + last - 1]),
@@ -63,10 +40,11 @@ bool has_area(Reader& reader, const std::vector<double>& p, const std::vector<do
 
 Shape object_of(Reader& reader, Mesh&& mesh, Location at) {
   if (!has_area(reader, mesh.positions, mesh.indices, 3, at)) return {};
-  if (!mesh.normals.empty()) face_normals(mesh.positions, mesh.normals, mesh.indices);
-  if (reader.state.reversed) {
-    for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) std::swap(mesh.indices[t + 1], mesh.indices[t + 2]);
-    for (double& n : mesh.normals) n = -n;
+  if (!mesh.normals.empty()) face_normals(mesh);
+  if (reader.state.reversed) turn_round(mesh);
+  if (holds_medium(reader.state) && inside_out(mesh.positions, mesh.indices)) {
+    turn_round(mesh);
+    reader.importing.inexact(medium_outside, at);
   }
   const Ref<Component> object = reader.make("TriangleMesh", at);
   const size_t triangles = mesh.indices.size() / 3;
@@ -123,17 +101,6 @@ Mesh written_out(const MeshData& data) {
   return mesh;
 }
 
-/// Whether any triangle is clockwise as seen from its vertex normals.
-bool against_normals(const MeshData& data) {
-  if (data.normals.empty()) return false;
-  return std::ranges::any_of(data.triangles, [&](const auto& t) {
-    const Vector3 face = cross(data.positions[t[1]] - data.positions[t[0]], data.positions[t[2]] - data.positions[t[0]]);
-    float along = 0;
-    for (const auto v : t) along += face.x * data.normals[v].x + face.y * data.normals[v].y + face.z * data.normals[v].z;
-    return along < 0;
-  });
-}
-
 /// The file of a mesh. If it is missing, version 3 continues without the mesh.
 std::string mesh_file(const Reader& reader, const Parameters& p) {
   const std::string named = p.text("filename");
@@ -161,8 +128,10 @@ Shape ply_mesh(Reader& reader, const Parameters& p) {
   size_t triangles = 1;
   if (front_matters(reader)) {
     try {
-      const MeshData data = read_mesh(path);
-      if (reader.state.reversed || against_normals(data)) return object_of(reader, written_out(data), p.at);
+      MeshData data = read_mesh(path);
+      const bool turned = turn_to_normals(data);
+      if (turned || reader.state.reversed || (holds_medium(reader.state) && inside_out(data)))
+        return object_of(reader, written_out(data), p.at);
       triangles = data.triangles.size();
     } catch (const NoTriangles& e) {
       reader.importing.inexact(fmt::format("{}: it is left out", e.what()), p.place("filename"));
@@ -234,6 +203,12 @@ Shape loop_subdivision(Reader& reader, Parameters& p) {
     p.forget();
     return {};
   }
+  bool turned = reader.state.reversed;
+  if (holds_medium(reader.state) && inside_out(points, indices)) {
+    turn_faces(indices);
+    if (!turned) reader.importing.inexact(medium_outside, p.at);
+    turned = false;
+  }
   const int levels = p.integer(p.has("nlevels") ? "nlevels" : "levels", 3);
   const Ref<Component> object = reader.make("SubdivisionSurface", p.at);
   set_member(*object, "positions", Numbers{std::move(points), 3, Dimension::none}, p.at);
@@ -242,7 +217,7 @@ Shape loop_subdivision(Reader& reader, Parameters& p) {
   set_member(*object, "levels", std::clamp(levels, 0, 10), p.at);
   if (const std::string scheme = p.text("scheme", "loop"); scheme != "loop")
     reader.importing.inexact(fmt::format("the scheme '{}' is taken for loop", scheme), p.place("scheme"));
-  return {object, {}, reader.state.reversed};
+  return {object, {}, turned};
 }
 
 /// A height field over the unit square, with two triangles for each cell.

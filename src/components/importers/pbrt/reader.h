@@ -195,6 +195,10 @@ void set_map(Component&, std::string_view member, Value, Location at);
 /// The image file of a parameter, as a member expects it; nothing, with a warning, if it is missing.
 std::optional<FilePath> image_file(Reader&, const Parameters&, std::string_view name);
 
+// noise_textures.cpp
+/// The textures "fbm", "windy", "wrinkled" and "marble".
+Ref<Component> noise_texture(Reader&, const std::string& type, const Parameters&);
+
 // image_textures.cpp
 /// The texture "imagemap", on the unit square of (u, v).
 Ref<Component> image_texture(Reader&, const Parameters&, bool spectrum);

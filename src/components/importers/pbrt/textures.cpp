@@ -112,31 +112,6 @@ Ref<Component> bilerp(Reader& reader, const Parameters& p, const auto& value) {
   return mapped(reader, p, *ramp("u", left, right).template as<Ref<Component>>());
 }
 
-Ref<Component> noise(Reader& reader, const Parameters& p, const std::string& type, bool spectrum) {
-  const bool marble = type == "marble";
-  reader.importing.inexact(fmt::format("the texture '{}' has the same character as pbrt's, not the same pattern", type), p.at);
-  const Ref<Component> map = reader.make(marble ? "MarbleMap" : type == "wrinkled" ? "TurbulenceMap" : "FbmMap", p.at);
-  set_member(*map, "space", "world", p.at);
-  if (const double scale = p.number("scale", 1); marble && scale > 0) set_member(*map, "size", 1 / scale, p.at);
-  if (marble) {
-    p.ignore({"variation"});
-  } else if (spectrum) {
-    set_map(*map, "first", Value(Number{0}), p.at);
-  }
-  if (type != "windy") {
-    const int octaves = p.integer("octaves", 8);
-    if (!marble) set_member(*map, "octaves", std::clamp(octaves, 1, 24), p.at);
-    const double gain = p.number("roughness", 0.5);
-    if (!marble) set_member(*map, "gain", std::clamp(gain, 0.0, 1.0), p.at);
-  }
-  if (reader.state.ctm[0].identity()) return map;
-  const Ref<Component> outer = reader.make("TransformedMap", p.at);
-  set_member(*outer, "map", map, p.at);
-  set_member(*outer, "transform", AnimatedTransform(reader.state.ctm[0].inverse()), p.at);
-  set_member(*outer, "world", true, p.at);
-  return outer;
-}
-
 /// The absolute cosine between the surface normal and "dir", which is in the directive's coordinates.
 Ref<Component> along_direction(Reader& reader, const Parameters& p) {
   const DoublePoint3 given = p.point("dir", {0, 1, 0});
@@ -199,9 +174,9 @@ Ref<Component> make_map(Reader& reader, const std::string& type, bool spectrum, 
     set_map(*map, "amount", Value(along_direction(reader, p)), at);
     return map;
   }
-  if (type == "fbm" || type == "wrinkled" || type == "windy" || type == "marble") return noise(reader, p, type, spectrum);
-  if (type == "dots") {
-    const Ref<Component> map = combine("MixMap", value({"outside"}, 0), value({"inside"}, 1));
+  if (type == "fbm" || type == "wrinkled" || type == "windy" || type == "marble") return noise_texture(reader, type, p);
+  if (type == "dots") {  // both versions of pbrt exchange the two: the dots show "outside"
+    const Ref<Component> map = combine("MixMap", value({"inside"}, 1), value({"outside"}, 0));
     set_map(*map, "amount", Value(dots(reader, p)), at);
     return mapped(reader, p, map);
   }
