@@ -53,7 +53,10 @@ class SceneWriter {
       for (size_t i = 0; i < n; ++i) values.insert(values.end(), {m.mTextureCoords[set][i].x, 1 - m.mTextureCoords[set][i].y});
       attributes["TEXCOORD_" + std::to_string(set)] = glb_.add_floats(values, "VEC2", 2);
     }
-    if (m.HasVertexColors(0)) {
+    if (m.HasVertexColors(0) && ending_ == "blend") {
+      // Assimp takes their bytes for signed ones. Blender's own renderer uses them only in materials that say so.
+      glb_.note("colours of vertices of Blender are left out");
+    } else if (m.HasVertexColors(0)) {
       std::vector<float> values;
       for (size_t i = 0; i < n; ++i) values.insert(values.end(), {m.mColors[0][i].r, m.mColors[0][i].g, m.mColors[0][i].b});
       attributes["COLOR_0"] = glb_.add_floats(values, "VEC3", 3);
@@ -121,7 +124,8 @@ class SceneWriter {
   /// Adds a root node that converts the file's units and axes to metres and y upwards.
   size_t outer(size_t root) {
     int up = 1, sign = 1;
-    if (ending_ == "3mf") up = 2;  // 3MF core specification, 3.1: the build platform is the xy plane, z points upwards
+    // In 3MF (core specification, 3.1: the build platform is the xy plane) and in Blender z points upwards.
+    if (ending_ == "3mf" || ending_ == "blend") up = 2;
     if (scene_.mMetaData) {
       scene_.mMetaData->Get("UpAxis", up);
       scene_.mMetaData->Get("UpAxisSign", sign);

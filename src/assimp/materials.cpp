@@ -5,28 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <string_view>
 
 #include "convert.h"
+#include "images.h"
 
 namespace etendue::assimp_helper {
 namespace {
-
-/// Percent-encodes all but letters, digits and a few marks, so that the path arrives unchanged.
-std::string encoded(const std::string& path) {
-  std::string uri;
-  for (const char c : path) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (std::isalnum(byte) || c == '.' || c == '-' || c == '_' || c == '/') {
-      uri += c;
-    } else {
-      char text[8];
-      std::snprintf(text, sizeof text, "%%%02X", byte);
-      uri += text;
-    }
-  }
-  return uri;
-}
 
 double clamped(double x, double otherwise = 0) { return std::isfinite(x) ? std::clamp(x, 0.0, 1.0) : otherwise; }
 
@@ -34,15 +19,21 @@ constexpr int repeat_code = 10497, clamp_code = 33071, mirror_code = 33648;  // 
 
 class MaterialWriter {
  public:
-  MaterialWriter(const aiScene& scene, Glb& glb, const std::string& ending) : scene_(scene), glb_(glb), ending_(ending) {}
+  MaterialWriter(const aiScene& scene, Glb& glb, const std::string& ending)
+      : scene_(scene), glb_(glb), ending_(ending), images_(scene, glb) {}
 
-  void write(const aiMaterial& m) {
+  /// Adds the scene's material with this index.
+  void write(unsigned index) {
+    const aiMaterial& m = *scene_.mMaterials[index];
+    uv_sets_ = uv_sets_of(index);
     Json material = {{"name", clean(m.GetName().C_Str())}};
     Json pbr = Json::object();
     std::array<double, 3> base = color(m, AI_MATKEY_BASE_COLOR, color(m, AI_MATKEY_COLOR_DIFFUSE, {0.8, 0.8, 0.8}));
     Json base_texture = texture(m, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE});
+    const std::array<double, 3> stated = base;
     // Exporters often leave the colour black when a texture replaces it.
-    if (!base_texture.is_null() && *std::ranges::max_element(base) <= 0) base = {1, 1, 1};
+    const bool black = *std::ranges::max_element(base) <= 0;
+    if (!base_texture.is_null() && (black || texture_replaces_color(m))) base = {1, 1, 1};
     double metalness = number(m, AI_MATKEY_METALLIC_FACTOR, -1), roughness = number(m, AI_MATKEY_ROUGHNESS_FACTOR, -1);
     Json metal_texture = texture(m, {aiTextureType_METALNESS}), rough_texture = texture(m, {aiTextureType_DIFFUSE_ROUGHNESS});
     Json extensions = Json::object();
@@ -60,6 +51,9 @@ class MaterialWriter {
         if (!own.empty()) extensions["ETENDUE_surface"] = own;
       }
     }
+    if (!base_texture.is_null() && base != stated && !black)
+      extensions["ETENDUE_surface"]["base_color"] = {
+          {"value", base}, {"without", stated}, {"texture", described(base_texture, "")}};
     const double opacity = opacity_of(m);
     pbr["baseColorFactor"] = {base[0], base[1], base[2], opacity};
     pbr["metallicFactor"] = clamped(metalness);
@@ -70,7 +64,7 @@ class MaterialWriter {
     if (opacity < 1 || (!holes.is_null() && holes == base_texture)) material["alphaMode"] = "BLEND";
     if (!holes.is_null() && holes != base_texture)
       glb_.note("textures of opacity are left out where they are not the colour's own");
-    emission(m, material, extensions);
+    emission(m, base_texture, material, extensions);
     shape(m, material);
     coat(m, extensions);
     if (const double ior = number(m, AI_MATKEY_REFRACTI, 1.5); ior > 1 && ior <= 4 && ior != 1.5)
@@ -92,20 +86,42 @@ class MaterialWriter {
     return {usable(c.r), usable(c.g), usable(c.b)};
   }
 
-  /// An image whose values are `factor` times its grey; `without` replaces it if the image cannot be read.
-  Json image_of_numbers(const Json& texture, double factor, double without) const {
+  /// The number of sets of surface coordinates: the most of any mesh with this material.
+  unsigned uv_sets_of(unsigned material) const {
+    unsigned most = 0;
+    for (unsigned i = 0; i < scene_.mNumMeshes; ++i)
+      if (scene_.mMeshes[i]->mMaterialIndex == material) most = std::max(most, scene_.mMeshes[i]->GetNumUVChannels());
+    return most;
+  }
+
+  bool is_of(std::initializer_list<std::string_view> endings) const {
+    return std::ranges::find(endings, ending_) != endings.end();
+  }
+
+  /// Whether a texture of the diffuse colour replaces it, as in Blender, 3ds Max and where a property of FBX has a connection.
+  /// In the other formats it is multiplied by the colour, as in OpenGL.
+  bool texture_replaces_color(const aiMaterial& m) {
+    if (!is_of({"3ds", "ase", "blend", "fbx"})) return false;
+    if (number(m, AI_MATKEY_TEXBLEND_DIFFUSE(0), 1) < 1)
+      glb_.note("textures that 3ds Max mixes with the diffuse colour by an amount below 100 % replace it");
+    return true;
+  }
+
+  /// A texture in the form of importers/gltf/described.h.
+  Json described(const Json& texture, const char* transfer) const {
     const Json& t = glb_.json["textures"][texture["index"].get<size_t>()];
     const Json& sampler = glb_.json["samplers"][t["sampler"].get<size_t>()];
     const auto wrap = [&](const char* key) {
       return sampler[key] == clamp_code ? "clamp" : (sampler[key] == mirror_code ? "mirror" : "repeat");
     };
-    return {{"value", clamped(factor, 1)},
-            {"without", without},
-            {"texture",
-             {{"image", t["source"]},
-              {"uv_set", texture.value("texCoord", 0)},
-              {"transfer", "linear"},
-              {"wrap", {wrap("wrapS"), wrap("wrapT")}}}}};
+    return {{"image", t["source"]},
+            {"uv_set", texture.value("texCoord", 0)},
+            {"transfer", transfer},
+            {"wrap", {wrap("wrapS"), wrap("wrapT")}}};
+  }
+  /// An image whose values are `factor` times its grey; `without` replaces it if the image cannot be read.
+  Json image_of_numbers(const Json& texture, double factor, double without) const {
+    return {{"value", clamped(factor, 1)}, {"without", without}, {"texture", described(texture, "linear")}};
   }
 
   // The roughness for a Phong exponent n: alpha^2 = 2 / (n + 2) (Walter et al. 2007), and alpha is the square of the roughness.
@@ -149,12 +165,18 @@ class MaterialWriter {
     return 1;
   }
 
-  void emission(const aiMaterial& m, Json& material, Json& extensions) {
+  void emission(const aiMaterial& m, const Json& base_texture, Json& material, Json& extensions) {
     std::array<double, 3> light = color(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0});
     const Json map = texture(m, {aiTextureType_EMISSION_COLOR, aiTextureType_EMISSIVE});
     if (!map.is_null()) {
       material["emissiveTexture"] = map;
       if (*std::ranges::max_element(light) <= 0) light = {1, 1, 1};
+    } else if (!base_texture.is_null() && *std::ranges::max_element(light) > 0 &&
+               is_of({"3ds", "ac", "ase", "b3d", "blend", "ms3d", "x"})) {
+      // OpenGL and Direct3D without shaders multiply the sum of emitted and reflected light by the texture; Blender and 3ds Max
+      // multiply the diffuse colour, here the texture, by the strength of emission.
+      material["emissiveTexture"] = base_texture;
+      if (ending_ == "blend") light = strength_of_blender(m, light);
     }
     const double intensity = std::max(number(m, AI_MATKEY_EMISSIVE_INTENSITY, 1), 0.0);
     for (double& x : light) x *= intensity;
@@ -164,6 +186,15 @@ class MaterialWriter {
       extensions["KHR_materials_emissive_strength"] = {{"emissiveStrength", most}};
     }
     material["emissiveFactor"] = light;
+  }
+
+  /// Blender's strength of emission: Assimp returns its product with the diffuse colour.
+  static std::array<double, 3> strength_of_blender(const aiMaterial& m, const std::array<double, 3>& light) {
+    const std::array<double, 3> diffuse = color(m, AI_MATKEY_COLOR_DIFFUSE, {0, 0, 0});
+    const double most = *std::ranges::max_element(diffuse);
+    if (most <= 0) return light;
+    const double strength = *std::ranges::max_element(light) / most;
+    return {strength, strength, strength};
   }
 
   void shape(const aiMaterial& m, Json& material) {
@@ -197,11 +228,13 @@ class MaterialWriter {
       unsigned uv = 0;
       if (m.GetTexture(type, 0, &path, nullptr, &uv, nullptr, nullptr, modes) != aiReturn_SUCCESS || path.length == 0) continue;
       m.Get(AI_MATKEY_UVWSRC(type, 0), uv);
+      // Exporters of Collada write the number of a channel that counts from 1 where the meshes have only set 0.
+      if (uv >= uv_sets_) uv = 0;
       const auto wrap = [](aiTextureMapMode mode) {
         return mode == aiTextureMapMode_Mirror ? mirror_code : (mode == aiTextureMapMode_Wrap ? repeat_code : clamp_code);
       };
       const Json sampler = {{"wrapS", wrap(modes[0])}, {"wrapT", wrap(modes[1])}};
-      const Json made = {{"source", image(path.C_Str())}, {"sampler", same("samplers", sampler)}};
+      const Json made = {{"source", images_.index(path.C_Str())}, {"sampler", same("samplers", sampler)}};
       Json info = {{"index", same("textures", made)}};
       if (uv > 0) info["texCoord"] = uv;
       return info;
@@ -217,48 +250,18 @@ class MaterialWriter {
     return glb_.add(list, element);
   }
 
-  size_t image(const std::string& path) {
-    if (const auto known = images_.find(path); known != images_.end()) return known->second;
-    const aiTexture* inside = scene_.GetEmbeddedTexture(path.c_str());
-    Json made;
-    if (inside && inside->mHeight == 0)
-      made = {{"bufferView", glb_.add_view(inside->pcData, inside->mWidth)}, {"mimeType", "image/png"}};
-    else if (inside)
-      made = uncompressed(*inside);
-    else
-      made = {{"uri", encoded(path)}};
-    return images_[path] = glb_.add("images", made);
-  }
-
-  /// The image as a BMP file of 32 bits per pixel, whose rows run upwards.
-  Json uncompressed(const aiTexture& t) {
-    const std::uint32_t size = t.mWidth * t.mHeight * 4;
-    std::string file = "BM";
-    const auto word = [&](std::uint32_t x) { file.append(reinterpret_cast<const char*>(&x), 4); };
-    word(54 + size);
-    word(0);
-    word(54);
-    word(40);
-    word(t.mWidth);
-    word(t.mHeight);
-    word(1 | 32 << 16);
-    for (int i = 0; i < 6; ++i) word(i == 1 ? size : 0);
-    for (unsigned y = t.mHeight; y-- > 0;)
-      file.append(reinterpret_cast<const char*>(t.pcData + size_t(y) * t.mWidth), size_t(t.mWidth) * 4);
-    return {{"bufferView", glb_.add_view(file.data(), file.size())}, {"mimeType", "image/bmp"}};
-  }
-
   const aiScene& scene_;
   Glb& glb_;
   const std::string& ending_;
-  std::map<std::string, size_t> images_;
+  ImageWriter images_;
+  unsigned uv_sets_ = 0;  // of the material being written
 };
 
 }  // namespace
 
 void convert_materials(const aiScene& scene, Glb& glb, const std::string& ending) {
   MaterialWriter writer(scene, glb, ending);
-  for (unsigned i = 0; i < scene.mNumMaterials; ++i) writer.write(*scene.mMaterials[i]);
+  for (unsigned i = 0; i < scene.mNumMaterials; ++i) writer.write(i);
 }
 
 }  // namespace etendue::assimp_helper

@@ -40,6 +40,7 @@ import subprocess
 import sys
 import threading
 import time
+import zlib
 
 OUTCOMES = ("right", "told", "refused", "nameless", "crash", "time", "memory")
 BAD = ("nameless", "crash", "time", "memory")
@@ -81,6 +82,8 @@ CLOUD = """Job {{
 }}
 """
 SERIALIZED = """<scene version="3.0.0"><integrator type="path"/><emitter type="constant"/>
+<sensor type="perspective"><float name="fov" value="45"/><transform name="to_world"><lookat origin="{origin}" target="{target}"
+up="0,1,0"/></transform></sensor>
 <shape type="serialized"><string name="filename" value="{file}"/><integer name="shape_index" value="0"/>
 <bsdf type="twosided"><bsdf type="diffuse"/></bsdf></shape></scene>
 """
@@ -91,6 +94,34 @@ def kind_of(path):
     return path.suffix.lower().lstrip(".") or "none"
 
 
+def bounds_of_serialized(path):
+    """The box around the first mesh of Mitsuba's format: two numbers of 16 bits, then compressed flags, from version 4 on a name, the
+    numbers of vertices and triangles, and the vertices. A unit box where it cannot be read."""
+    unit = (-1, -1, -1), (1, 1, 1)
+    try:
+        data = path.read_bytes()
+        version = int.from_bytes(data[2:4], "little")
+        data = zlib.decompressobj().decompress(data[4:])
+        start = data.index(0, 4) + 1 if version >= 4 else 4
+        count, begin = int.from_bytes(data[start:start + 8], "little"), start + 16
+        values = array.array("d" if data[1] & 0x20 else "f")
+        values.frombytes(data[begin:begin + 3 * values.itemsize * count])
+        values = array.array("d", [v if math.isfinite(v) else 0 for v in values])
+        axes = [values[k::3] for k in range(3)]
+        return tuple(map(min, axes)), tuple(map(max, axes))
+    except (OSError, ValueError, IndexError, zlib.error):
+        return unit
+
+
+def view_of(low, high):
+    """A camera's place, from which an angle of 45 degrees sees the sphere around a box, and the middle of the box."""
+    middle = [(a + b) / 2 for a, b in zip(low, high)]
+    away = (math.dist(low, high) or 1) / 2 / math.sin(math.radians(22.5))
+    direction = (0.5, 0.4, 0.768)  # of length 1
+    listed_numbers = lambda v: ",".join(f"{x:.9g}" for x in v)
+    return {"origin": listed_numbers([m + away * d for m, d in zip(middle, direction)]), "target": listed_numbers(middle)}
+
+
 def scene_for(path, root, folder, name):
     """The file to render: itself, or a scene made around it, and the folders that it may read."""
     text = SCENES.get(kind_of(path))
@@ -98,7 +129,8 @@ def scene_for(path, root, folder, name):
         return path, []
     ending = "xml" if text is SERIALIZED else "etd"
     made = folder / f"{name}.{ending}"
-    made.write_text(text.format(file=str(path).replace("\\", "\\\\").replace('"', '\\"')))
+    view = view_of(*bounds_of_serialized(path)) if text is SERIALIZED else {}
+    made.write_text(text.format(file=str(path).replace("\\", "\\\\").replace('"', '\\"'), **view))
     return made, [str(root)]
 
 

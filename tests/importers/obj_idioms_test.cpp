@@ -71,6 +71,37 @@ TEST(ObjIdioms, ColoursOfVertices) {
   EXPECT_TRUE(read_mesh(folder.write("w.obj", "v 0 0 0 1\nv 1 0 0 1\nv 1 1 0 1\nf 1 2 3\n")).attributes.empty());
 }
 
+// An infinite component does not change the scale of the other colours, and neither becomes part of a rendering.
+TEST(ObjIdioms, ColoursThatAreNotFiniteAreWhite) {
+  const TemporaryFolder folder;
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float red\n"
+      "property float green\nproperty float blue\nelement face 1\nproperty list uchar int vertex_indices\n";
+  const std::string points = "0 0 0 nan 0 0\n1 0 0 0 -inf inf\n0 1 0 0 0 1\n";
+  for (const auto& [name, text] :
+       {std::pair<const char*, std::string>{"c.obj", "v 0 0 0 nan 0 0\nv 1 0 0 0 -inf inf\nv 0 1 0 0 0 1\nf 1 2 3\n"},
+        {"c.off", "COFF\n3 1 0\n" + points + "3 0 1 2\n"},
+        {"b.off", "COFF\n3 1 0\n0 0 0 nan 0 0 255\n1 0 0 0 -inf inf 255\n0 1 0 0 0 255 255\n3 0 1 2\n"},
+        {"c.ply", ply + "end_header\n" + points + "3 0 1 2\n"}}) {
+    testing::internal::CaptureStderr();
+    const MeshData mesh = read_mesh(folder.write(name, text));
+    const std::string said = testing::internal::GetCapturedStderr(), wanted = "colours that are not finite numbers are white";
+    ASSERT_EQ(mesh.attributes.size(), 1u) << name;
+    EXPECT_EQ(mesh.attributes[0].values, (std::vector<float>{1, 1, 1, 1, 1, 1, 0, 0, 1})) << name;
+    EXPECT_NE(said.find(wanted), std::string::npos) << name;
+    EXPECT_EQ(said.find(wanted), said.rfind(wanted)) << name;
+  }
+  const MeshData faces =
+      read_mesh(folder.write("f.ply", ply + "property float red\nproperty float green\nproperty float blue\nend_header\n" +
+                                          points + "3 0 1 2 nan 0 0\n"));
+  ASSERT_EQ(faces.face_attributes.size(), 1u);
+  EXPECT_EQ(faces.face_attributes[0].values, (std::vector<float>{1, 1, 1}));
+  EXPECT_EQ(faces.remarks.size(), 1u);
+  const MeshData off = read_mesh(folder.write("f.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0.5 inf 0\n"));
+  ASSERT_EQ(off.face_attributes.size(), 1u);
+  EXPECT_EQ(off.face_attributes[0].values, (std::vector<float>{1, 1, 1}));
+}
+
 TEST(ObjIdioms, OneMaterialFileThatIsNotThereIsToldOnce) {
   const TemporaryFolder folder;
   EXPECT_EQ(import(folder.write("m.obj", "mtllib My Nice Model.mtl\n" + square + "f 1 2 3\n")).told.size(), 1u);

@@ -78,6 +78,28 @@ TEST_F(UsdSkins, StatedNormalsAreBentWithTheSurface) {
   }
 }
 
+// A mesh may list the joints that move it in an order of its own, or only some of them: here the second of its joints, and the
+// only one, is the skeleton's first, which is rotated.
+TEST_F(UsdSkins, MeshesOrderJointsThemselves) {
+  const auto row = [](const std::string& joints, const std::string& indices, const std::string& weights) {
+    const std::string four = "] (\nelementSize = 2\ninterpolation = \"vertex\"\n)\n";
+    std::string text = skinned("uniform token[] skel:joints = [" + joints + "]\n", "",
+                               "int[] primvars:skel:jointIndices = [" + list(indices, 4) + four +
+                                   "float[] primvars:skel:jointWeights = [" + list(weights, 4) + four);
+    const std::string nested = "\"j/i\"";
+    return text.replace(text.find(nested), nested.size(), "\"i\"");
+  };
+  for (const std::string& text : {row("\"i\", \"j\"", "0, 1", "0, 1"), row("\"j\"", "0, 0", "1, 0")}) {
+    const Ref<Scene> s = scene(y_up + text);
+    ASSERT_TRUE(s) << error_;
+    EXPECT_TRUE(notes_.empty()) << notes_[0];
+    Bounds3 box;
+    for (const Point3& p : mesh_of(*s->objects.at(0)).positions) box.add(p);
+    EXPECT_NEAR(box.low.z, -1, 1e-4) << text;
+    EXPECT_NEAR(box.high.x, 0, 1e-4) << text;
+  }
+}
+
 // Half of an offset is added to a normal before it is bent. For a blend shape without normal offsets the normal follows the
 // surface, which the shape tilts from +z to +x by 45 degrees: it lifts two corners by half of -2 along z.
 TEST_F(UsdSkins, BlendShapesTurnNormals) {

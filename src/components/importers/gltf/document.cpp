@@ -9,6 +9,7 @@
 #include "compression.h"
 #include "data_uri.h"
 #include "files/contained_file.h"
+#include "files/file_kind.h"
 #include "files/gzip.h"
 #include "files/regular_file.h"
 #include "formats/permissions.h"
@@ -29,15 +30,14 @@ struct Opened {
 };
 std::mutex mutex;
 
-/// The file name ending for an image, from its first bytes or its media type.
-std::string image_ending(std::string_view start, const std::string& type) {
-  using namespace std::string_view_literals;
-  if (start.starts_with("\x89PNG")) return "png";
-  if (start.starts_with("\xff\xd8\xff")) return "jpg";
-  if (start.starts_with("RIFF")) return "webp";
+/// The file name ending for an image of this size [bytes], from its first bytes or its media type.
+std::string image_ending(std::string_view start, std::uint64_t size, const std::string& type) {
   if (start.starts_with("BM")) return "bmp";
-  if (start.starts_with("\xabKTX 20"sv)) return "ktx2";
-  return type == "image/jpeg" ? "jpg" : (type == "image/x-tga" ? "tga" : "png");
+  if (const FileKind* kind = kind_of(start, size); kind && kind->what.find("image") != kind->what.npos)
+    return std::string(kind->endings.front());
+  if (type == "image/jpeg") return "jpg";
+  if (type == "image/x-tga") return "tga";
+  return "png";
 }
 
 std::uint32_t word(const char* at) {
@@ -59,7 +59,9 @@ bool register_parts(const std::vector<std::string>& endings) {
   });
   return register_mesh_format(endings, [](const std::string& path, const std::string& part) {
     const PartName name = PartName::parse(part);
-    return read_primitive(*Document::open(path, nullptr, name.converted_at), name);
+    MeshData mesh = read_primitive(*Document::open(path, nullptr, name.converted_at), name);
+    tell_remarks(mesh, path);
+    return mesh;
   });
 }
 
@@ -278,12 +280,12 @@ std::string Document::inner_image(size_t image) const {
     if (const auto view = whole(i, "bufferView")) {
       char start[16] = {};
       read_view(*view, 0, std::min<std::uint64_t>(view_size(*view), sizeof start), start);
-      return fmt::format("images[{}].{}", image, image_ending({start, sizeof start}, type));
+      return fmt::format("images[{}].{}", image, image_ending({start, sizeof start}, view_size(*view), type));
     }
     if (uri.empty()) throw Error("it has neither a 'uri' nor a 'bufferView'");
     if (!is_data_uri(uri)) return {};
     const UriData data = decode_data_uri(std::string_view(uri).substr(0, uri.find(',') + 25));
-    return fmt::format("images[{}].{}", image, image_ending(data.bytes, data.type));
+    return fmt::format("images[{}].{}", image, image_ending(data.bytes, data.bytes.size(), data.type));
   });
 }
 

@@ -84,6 +84,7 @@ void read_colors(const Accessor& accessor, MeshData& mesh) {
     color.values.insert(color.values.end(), {values[i], values[i + 1], values[i + 2]});
     if (accessor.width == 4) alpha.values.push_back(values[i + 3]);
   }
+  replace_infinite_colors(color.values, mesh);
   mesh.attributes.push_back(std::move(color));
   if (accessor.width == 4) mesh.attributes.push_back(std::move(alpha));
 }

@@ -239,7 +239,5 @@ if __name__ == "__main__":
         main()
     except MemoryError:
         sys.exit(f"it needs more memory than its reader may have ({resource.getrlimit(resource.RLIMIT_AS)[0] >> 20} MB, see 'ulimit -v')")
-    except Tf.ErrorException as error:
-        sys.exit(words_of(error)[:400])
     except Exception as error:
-        sys.exit(" ".join(str(error).split())[:400] or type(error).__name__)
+        sys.exit(words_of(error)[:400] or type(error).__name__)

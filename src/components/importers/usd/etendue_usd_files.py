@@ -108,6 +108,7 @@ def take_out(layer, unread):
 
 
 def words_of(error):
-    """What the library finds wrong, without the places in its own source."""
+    """What the library finds wrong, without the places in its own source and the types of its C++ functions."""
     words = re.sub(r"Error in '\S*' at line \d+ in file \S+ : ", "", " ".join(str(error).split()))
+    words = re.sub(r"Python argument types in (\S*?)\(.*did not match C\+\+ signature.*", r"\1 of USD's library takes values of another type", words)
     return words.strip("' ")

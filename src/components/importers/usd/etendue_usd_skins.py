@@ -2,6 +2,7 @@
 import numpy
 from pxr import Usd, UsdGeom, UsdSkel, Vt
 
+from etendue_usd_files import words_of
 from etendue_usd_normals import Normals, turned, smooth_normals
 from etendue_usd_values import array
 
@@ -33,7 +34,7 @@ def bend(stage, time, note, unusable):
                 try:
                     Skin(skin, time, note).pose(joints, weights, place * places.GetLocalToWorldTransform(skin.GetPrim()).GetInverse())
                 except unusable as error:
-                    note(f"{skin.GetPrim().GetPath()} is shown as it is modelled: {error}")
+                    note(f"{skin.GetPrim().GetPath()} is shown as it is modelled: {words_of(error)[:200]}")
 
 
 def open_instances(stage, note):
@@ -115,10 +116,8 @@ class Skin:
     # ---- joints --------------------------------------------------------------------------------------------------------------
 
     def bend(self, points, normals, joints, back):
-        """The bent points, with the normals bent in place; None: it stays as it is."""
-        mapper = self.query.GetJointMapper()
-        if mapper and not mapper.IsIdentity():
-            joints = mapper.RemapTransforms(joints)
+        """The bent points, with the normals bent in place; None: it stays as it is. `joints` are in the skeleton's order, from
+        which the query maps them to the mesh's own."""
         if self.query.IsRigidlyDeformed():
             matrix = self.query.ComputeSkinnedTransform(joints, self.time) * back
             deform = lambda p: moved_by(p, matrix)

@@ -3,6 +3,7 @@
 #include "mesh_data.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "etendue/describe/component.h"
@@ -51,6 +52,18 @@ MeshData read_whole(const std::string& path, const std::string& ending) {
 }
 
 }  // namespace
+
+void replace_infinite_colors(std::span<float> colors, MeshData& mesh) {
+  bool found = false;
+  for (size_t i = 0; i + 3 <= colors.size(); i += 3) {
+    const std::span<float> color = colors.subspan(i, 3);
+    if (std::ranges::all_of(color, [](float x) { return std::isfinite(x); })) continue;
+    std::ranges::fill(color, 1.0f);
+    found = true;
+  }
+  const std::string remark = "colours that are not finite numbers are white";
+  if (found && std::ranges::find(mesh.remarks, remark) == mesh.remarks.end()) mesh.remarks.push_back(remark);
+}
 
 void tell_remarks(const MeshData& mesh, const std::string& path) {
   for (const std::string& remark : mesh.remarks) warn("'" + path + "': " + remark);

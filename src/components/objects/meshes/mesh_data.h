@@ -54,6 +54,10 @@ using ReadPart = MeshData (*)(const std::string& path, const std::string& part);
 /// Reports a reader's remarks on a file as warnings, each text once.
 void tell_remarks(const MeshData&, const std::string& path);
 
+/// Makes those colours white that have a component that is not finite, with one remark on the mesh. `colors` has three numbers
+/// for each, in a scale where 1 is white.
+void replace_infinite_colors(std::span<float> colors, MeshData&);
+
 /// Registers a reader for files with these extensions (without dots, lower case). Called at the program's start.
 bool register_mesh_format(const std::vector<std::string>& endings, ReadPart);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -117,7 +118,7 @@ class ObjColors {
     resize();
     for (size_t c = 0; c < 3; ++c) {
       values_[3 * index + c] = rgb[c];
-      most_ = std::max(most_, rgb[c]);
+      if (std::isfinite(rgb[c])) most_ = std::max(most_, rgb[c]);
     }
   }
   void painted(Lines& lines) {
@@ -135,7 +136,9 @@ class ObjColors {
   void give(MeshData& mesh) {
     if (values_.empty()) return;
     const float scale = most_ > 1 ? 1.0f / 255 : 1;  // some programs write values from 0 to 255
-    for (float& x : values_) x = float(decode_transfer("srgb", double(std::clamp(x * scale, 0.0f, 1.0f))));
+    for (float& x : values_) x *= scale;
+    replace_infinite_colors(values_, mesh);
+    for (float& x : values_) x = float(decode_transfer("srgb", double(std::clamp(x, 0.0f, 1.0f))));
     mesh.attributes.push_back({"color", 3, std::move(values_)});
   }
 

@@ -2,6 +2,7 @@
 // (ST), and polygons, which may have colours: numbers from 0 to 1 that are linear, or bytes that are encoded as sRGB.
 
 #include <algorithm>
+#include <cmath>
 
 #include "etendue/core/error.h"
 #include "etendue/describe/color.h"
@@ -50,9 +51,11 @@ size_t count(Lines& lines, std::string_view file, const char* what) {
 }
 
 /// Colours are bytes if any value is above 1; these are decoded from sRGB to linear.
-void decode(std::vector<float>& colors) {
-  if (std::ranges::none_of(colors, [](float x) { return x > 1; })) return;
-  for (float& x : colors) x = float(decode_transfer("srgb", std::clamp(double(x) / 255, 0.0, 1.0)));
+void decode(std::vector<float>& colors, MeshData& mesh) {
+  const bool bytes = std::ranges::any_of(colors, [](float x) { return x > 1 && std::isfinite(x); });
+  for (float& x : colors)
+    if (bytes && std::isfinite(x)) x = float(decode_transfer("srgb", std::clamp(double(x) / 255, 0.0, 1.0)));
+  replace_infinite_colors(colors, mesh);
 }
 
 /// Colours of faces, given after a face's corners: nothing, an index into a colour map that is not in the file, or red, green,
@@ -73,7 +76,7 @@ class FaceColors {
   void give(MeshData& mesh) {
     if (listed_) mesh.remarks.emplace_back("colours of faces that are places in a list are left out");
     if (!given_) return;
-    decode(values_);
+    decode(values_, mesh);
     for (size_t i = 0; i < unset_.size(); ++i)
       if (unset_[i]) std::fill_n(values_.begin() + std::ptrdiff_t(3 * i), 3, grey);
     mesh.face_attributes.push_back({"face_color", 3, std::move(values_)});
@@ -116,7 +119,7 @@ MeshData read_off(std::string_view file) {
       mesh.uvs.push_back({u, lines.number()});
     }
   }
-  decode(colors.values);
+  decode(colors.values, mesh);
   if (columns.colors) mesh.attributes.push_back(std::move(colors));
   std::vector<std::uint32_t> corners;
   FaceColors face_colors;

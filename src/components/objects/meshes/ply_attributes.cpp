@@ -74,6 +74,12 @@ void FaceAttributes::finish() {
     for (size_t c = 0; c < width; ++c) columns.push_back({groups_[g].properties[c], to + 4 * c, 4 * width, groups_[g].meaning});
   }
   decode_fractions(triangles, columns);
+  replace_infinite_colors(mesh_.face_attributes, mesh_);
+}
+
+void replace_infinite_colors(std::vector<VertexAttribute>& attributes, MeshData& mesh) {
+  for (VertexAttribute& a : attributes)
+    if (a.width == 3 && (a.name == "color" || a.name == "face_color")) etendue::replace_infinite_colors(a.values, mesh);
 }
 
 void decode_fractions(const Element& e, const std::vector<Column>& columns) {

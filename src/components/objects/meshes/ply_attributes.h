@@ -51,4 +51,7 @@ class FaceAttributes {
 /// type, and decodes such colours from sRGB to linear.
 void decode_fractions(const Element&, const std::vector<Column>&);
 
+/// Calls etendue::replace_infinite_colors for the colours among attributes of the mesh.
+void replace_infinite_colors(std::vector<VertexAttribute>&, MeshData&);
+
 }  // namespace etendue::ply

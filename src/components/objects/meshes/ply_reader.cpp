@@ -88,6 +88,7 @@ void read_vertices(const Element& e, Body& body, MeshData& mesh) {
   mesh.centre = inner_origin_for(exact);
   if (mesh.centre != DoublePoint3{}) mesh.positions = relative_to(mesh.centre, exact);
   decode_fractions(e, columns);
+  replace_infinite_colors(mesh.attributes, mesh);
 }
 
 /// If `polygons` is given, faces are stored there without triangulation, and no triangles are made.
