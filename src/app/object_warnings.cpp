@@ -194,7 +194,7 @@ class Objects {
 
   /// Whether the triangles of a closed mesh are clockwise as seen from outside.
   static bool faces_inwards(const SceneObject& object) {
-    const std::optional<TriangleView> mesh = object.triangles();
+    const std::optional<TriangleView> mesh = still_triangles(object);
     return mesh && enclosed_volume(*mesh) < 0;
   }
 

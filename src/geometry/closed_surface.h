@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "etendue/scene_object.h"
+#include "etendue/mesh_facts.h"
 
 namespace etendue {
 
