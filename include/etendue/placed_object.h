@@ -54,8 +54,8 @@ class PlacedObject : public SceneObject {
     Hit hit;
     return local_intersect(ray, hit);
   }
-  /// The point of a hit: computed on the surface to float precision, not merely on the ray. Primitive, u and v are set already. A
-  /// hit at distance 0 that has the primitive, u and v of a point, on a ray whose direction is zero and whose origin is that
+  /// The point of a hit: computed on the surface to float precision, not merely on the ray. Primitive, u and v are set already.
+  /// A hit at distance 0 that has the primitive, u and v of a point, on a ray whose direction is zero and whose origin is that
   /// point, gives the point again.
   virtual void local_point(const Ray&, const Hit&, LocalPoint&) const = 0;
   /// Area in object space, before the transform.

@@ -23,10 +23,11 @@
 //
 // SimplePathTracer (src/components/renderers/simple_path_tracer.cpp) is the same sum written plainly, without w. This class is
 // its fused form: the shadow ray of add_direct is traced together with the next segment, and its light is added then, without a
-// conditional jump; code for media is left out of scenes that have none; all of it is inlined into the algorithm. So next_vertex
-// must be called once more, after `end` too, before `radiance` is complete. Processor time of SimplePathTracer over that of
-// PathTracer, which computes the pdfs for w and w' as well, at the same depth and without roulette: 1.11 in the Cornell box,
-// 1.02 with glossy plates before spheres (scenes/verify/mis_plates.etd), 1.01 with metals (scenes/metals.etd). Weights are free.
+// conditional jump; code for media is left out of scenes that have none; all of it is inlined into the algorithm. So
+// next_vertex must be called once more, after `end` too, before `radiance` is complete. Processor time of SimplePathTracer over
+// that of PathTracer, which computes the pdfs for w and w' as well, at the same depth and without roulette: 1.11 in the Cornell
+// box, 1.02 with glossy plates before spheres (scenes/verify/mis_plates.etd), 1.01 with metals (scenes/metals.etd). Weights are
+// free.
 
 #include <limits>
 
