@@ -118,8 +118,8 @@ def view_of(low, high):
     middle = [(a + b) / 2 for a, b in zip(low, high)]
     away = (math.dist(low, high) or 1) / 2 / math.sin(math.radians(22.5))
     direction = (0.5, 0.4, 0.768)  # of length 1
-    listed_numbers = lambda v: ",".join(f"{x:.9g}" for x in v)
-    return {"origin": listed_numbers([m + away * d for m, d in zip(middle, direction)]), "target": listed_numbers(middle)}
+    origin = [m + away * d for m, d in zip(middle, direction)]
+    return {name: ",".join(f"{x:.9g}" for x in point) for name, point in (("origin", origin), ("target", middle))}
 
 
 def scene_for(path, root, folder, name):
