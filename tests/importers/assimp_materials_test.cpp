@@ -8,6 +8,7 @@
 #include "etendue/render/job.h"
 #include "etendue/scene.h"
 #include "support/image_file.h"
+#include "support/process.h"
 #include "support/render_support.h"
 
 namespace etendue {
