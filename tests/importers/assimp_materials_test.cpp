@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "blend_support.h"
 #include "components/objects/meshes/mesh_data.h"
 #include "etendue/importer.h"
 #include "etendue/render/job.h"
 #include "etendue/scene.h"
 #include "support/image_file.h"
+#include "support/process.h"
 #include "support/render_support.h"
 
 namespace etendue {
