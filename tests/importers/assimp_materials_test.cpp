@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "blend_support.h"
 #include "components/objects/meshes/mesh_data.h"
 #include "etendue/importer.h"
