@@ -102,7 +102,8 @@ TEST(SceneWarnings, MembersOfTheJobsOwnScene) {
   const std::vector<SceneWarning> list = scene_warnings(*job);
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0].at.line, 4);
-  EXPECT_NE(list[0].text.find("'transform' has no effect: of the job's scene"), std::string::npos) << list[0].text;
+  EXPECT_NE(list[0].text.find("'transform' has no effect: only the objects of the job's scene"), std::string::npos)
+      << list[0].text;
 }
 
 const std::string tetrahedron = "positions: [[0,0,0], [1,0,0], [0,1,0], [0,0,1]], triangles: [[0,2,1], [0,1,3], [0,3,2], ";

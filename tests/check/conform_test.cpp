@@ -68,15 +68,6 @@ const std::multimap<std::string, std::string> never_tried = {
     {"VertexConnectionMerging", "the value of a plane under an environment is the known one"},
     {"VertexConnectionMerging", "the value of a plane under a distant light is the known one"},
     {"LightTracer", "the value of a plane under a distant light is the known one"},  // too much noise with few samples
-    {"CosineLobeEmission",
-     "power is the integral of radiance, on a Point"},  // a power was drawn together with a black radiance
-    {"CosineLobeEmission", "power is the integral of radiance, on a Environment"},
-    {"DiffuseEmission",
-     "power is the integral of radiance, on a Environment"},  // intensities were drawn, which an environment does not have
-    {"ProjectorEmission", "power is the integral of radiance, on a Rectangle"},  // it emits to the back
-    {"ProjectorEmission", "power is the integral of radiance, on a Environment"},
-    {"IesEmission", "power is the integral of radiance, on a Environment"},
-    {"GoniometricEmission", "power is the integral of radiance, on a Environment"},
     {"TriangleMesh", "reads a sample file as motion_files"}};
 
 std::string untried(const std::vector<Outcome>& outcomes) {

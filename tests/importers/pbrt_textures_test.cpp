@@ -3,6 +3,7 @@
 #include "components/maps/noise.h"
 #include "etendue/object_map.h"
 #include "pbrt_support.h"
+#include "support/component_test_support.h"
 #include "support/image_file.h"
 
 namespace etendue::pbrt_test {
@@ -130,18 +131,23 @@ TEST(PbrtNoise, IsAsStrongAsInPbrt) {
 }
 
 // The colour of marble is 1.5 times a point of a curve of colours. Where (1 + sin(y + variation noise)) / 2 is 5.5 / 6, the
-// point is 3/8 of the way to the vein.
+// point is 3/8 of the way from the grey of the ground to that of the vein.
 TEST(PbrtNoise, MarbleHasTheColoursOfPbrt) {
-  const double in_vein = std::asin(5 / 6.0), expected = 1.5 * (0.58 - 3 / 8.0 * (0.58 - 0.2));
+  const auto of_color = [](double red, double green, double blue) {
+    return double(test::create<ObjectMap>("ConstantMap", {{"value", rgb_color("srgb", 1.5 * red, 1.5 * green, 1.5 * blue)}})
+                      ->scalar(SurfacePoint{}));
+  };
+  const double ground = of_color(0.58, 0.58, 0.6), vein = of_color(0.2, 0.2, 0.33);
+  const double in_vein = std::asin(5 / 6.0), expected = ground + 3 / 8.0 * (vein - ground);
   const auto marble = [](const Point3& at, double variation) {
     return noise_at(at, "\"spectrum\" \"marble\" \"integer octaves\" 1 \"float variation\" " + std::to_string(variation),
                     "\"texture reflectance\" \"t\"", "color");
   };
-  EXPECT_NEAR(marble({0, float(in_vein), 0}, 0), expected, 0.01);
-  EXPECT_NEAR(marble({0, float(-M_PI / 2), 0}, 0), 1.5 * 0.58, 0.01);
+  EXPECT_NEAR(marble({0, float(in_vein), 0}, 0), expected, 1e-3);
+  EXPECT_NEAR(marble({0, float(-M_PI / 2), 0}, 0), ground, 1e-3);
   const Point3 at{0.3f, 0.4f, -2.4f};
   const double noise = double(perlin_noise(at - Point3{}));
-  EXPECT_NEAR(marble(at, (in_vein - double(at.y)) / noise), expected, 0.02);
+  EXPECT_NEAR(marble(at, (in_vein - double(at.y)) / noise), expected, 1e-3);
 }
 
 TEST(PbrtTexture, CoordinatesOfVersion3) {

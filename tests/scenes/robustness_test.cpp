@@ -162,7 +162,7 @@ TEST(Robustness, SolidsOfWhatHoldsRaysInPlaceComeToAnEnd) {
   solid->all_hits(ray({0, 0, -5}, {0, 0, 1}), list);
   EXPECT_LE(list.size, HitList::capacity);
   EXPECT_GE(solid->area(0), 0);
-  EXPECT_LT(double(std::clock() - begin) / CLOCKS_PER_SEC, 60);
+  EXPECT_LT(double(std::clock() - begin) / CLOCKS_PER_SEC, 180);
 }
 
 // Fewer consecutive null surfaces than the limit do not reduce the light.

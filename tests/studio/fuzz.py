@@ -36,7 +36,7 @@ NUMBERS = [0, 1, 2, 3, 5, 8, -1, 0.5, 1e9, -1e18, 2**31, 2**53, 2**63, 1e308, 42
 def program_requests(source):
     """The requests there are, by name, from the sources, so that none is forgotten."""
     names = set()
-    for file in source.glob("requests_*.cpp"):
+    for file in source.glob("requests/*.cpp"):
         table = file.read_text(encoding="utf-8")
         names |= set(re.findall(r'\{"(\w+)", (?:true|false), \w+\}', table))
     assert len(names) > 50, names

@@ -43,13 +43,13 @@ class EmissionTrial {
     lowest_.fill(infinity);
   }
 
-  void check() {
+  /// Returns why the part refuses the object; empty: it does not.
+  std::string check() {
     const std::string what = fmt::format("power is the integral of radiance, on a {}", name_);
     try {
       power_ = emission_.power(*host_, wavelengths_);
     } catch (const Error& error) {
-      trial.not_tried(what, std::string("the part refuses this object: ") + error.what());
-      return;
+      return error.what();
     }
     trial.expect(power_.finite() && power_.minimum() >= 0, "power is finite and not negative", [&] { return name_; });
     if (!host_->infinite()) {
@@ -57,6 +57,7 @@ class EmissionTrial {
       for (int i = 0; i < (name_ == "Sphere" ? 3 : 1); ++i) check_directions(host_->sample_area(trial.pair(), 0).point);
     }
     check_power(what);
+    return {};
   }
 
  private:
@@ -304,10 +305,22 @@ class EmissionTrial {
 
 void check_emission(Trial& trial) {
   EmissionShader& emission = trial.part<EmissionShader>();
+  // Some light cannot be on every object: what lies at infinity has no intensity, for example.
+  std::vector<std::string> refusals;
+  int objects = 0;
+  const auto check_on = [&](EmissionTrial& object) {
+    ++objects;
+    if (const std::string why = object.check(); !why.empty()) refusals.push_back(why);
+  };
   if (!emission.only_at_infinity())
-    for (const char* name : {"Rectangle", "Sphere", "Point"}) EmissionTrial(trial, emission, name).check();
+    for (const char* name : {"Rectangle", "Sphere", "Point"}) {
+      EmissionTrial object(trial, emission, name);
+      check_on(object);
+    }
   EmissionTrial around(trial, emission, "Environment");
-  around.check();
+  check_on(around);
+  if (int(refusals.size()) == objects)
+    trial.not_tried("power is the integral of radiance", "the part refuses every object: " + refusals.front());
   if (emission.knows_incident()) around.check_incident();
 }
 
