@@ -197,8 +197,8 @@ TEST(Robustness, TurnsThatGoTheShorterWayAreWarnedOf) {
   EXPECT_EQ(said("0, rotate(-90, \"z\"), 1, rotate(170, \"x\")"), "");
   EXPECT_EQ(said("0, translate(0, 0, 0), 1, rotate(270, \"z\")"), "");  // a translation does not determine a previous rotation
   EXPECT_NE(said("0, rotate(0, \"z\"), 1, translate(1, 0, 0) * rotate(270 deg, [0, 0, 2])").find("2:"), std::string::npos);
-  EXPECT_NE(said("0, rotate(0, \"z\"), 1, rotate(360, \"z\")").find("by 0"), std::string::npos);
-  EXPECT_NE(said("0, rotate(100, \"y\"), 1, rotate(100, [0, -1, 0])").find("turn of -200"), std::string::npos);
+  EXPECT_NE(said("0, rotate(0, \"z\"), 1, rotate(360, \"z\")").find("the shorter way, 0 degrees"), std::string::npos);
+  EXPECT_NE(said("0, rotate(100, \"y\"), 1, rotate(100, [0, -1, 0])").find("rotation of -200"), std::string::npos);
 }
 
 }  // namespace
