@@ -1,6 +1,7 @@
 // pbrt's textures as numbers and as colours.
 
 #include "components/maps/noise.h"
+#include "etendue/describe/color.h"
 #include "etendue/object_map.h"
 #include "pbrt_support.h"
 #include "support/component_test_support.h"
