@@ -58,7 +58,7 @@ struct LuminaireBounds {
 };
 
 /// The treatment of light that a shading normal would send through the surface: the mirrored shading-normal correction, or
-/// dropped (see scatter_answers.h).
+/// dropped (see scatter_corrections.h).
 enum class ShadingNormals : std::uint8_t { folded, clipped };
 
 /// How far an object extends. A point light is the limit of a shrinking sphere with a cross section of 1 m^2: the radiance of
