@@ -213,7 +213,8 @@ const ClassInfo* Registry::find(std::string_view name) const {
   try {
     more = found == state_->by_name.end() && capital && load_format_library();
   } catch (const Error&) {
-    (void)meant_class(std::string(name));  // throws the same unless the name resembles one that is known
+    // The library is missing. Where the name resembles a known class the caller suggests that one; otherwise the Error goes on.
+    (void)meant_class(std::string(name));
   }
   if (more) {
     const_cast<Registry*>(this)->adopt();
