@@ -99,10 +99,24 @@ void prepare_tree(Component& root) {
   }
 }
 
+namespace {
+std::mutex warnings_mutex;
+std::function<void(const std::string&, Location)> warning_handler;
+}  // namespace
+
+void handle_warnings(std::function<void(const std::string&, Location)> handle) {
+  const std::lock_guard lock(warnings_mutex);
+  warning_handler = std::move(handle);
+}
+
 void warn(const std::string& message, Location at) {
-  static std::mutex mutex;
   static std::set<std::string> said;
-  const std::lock_guard lock(mutex);
+  std::unique_lock lock(warnings_mutex);
+  if (const auto handle = warning_handler) {
+    lock.unlock();
+    handle(message, at);
+    return;
+  }
   std::string text = at.known() ? std::string(at.file) + ":" : "";
   if (at.line > 0) text += std::to_string(at.line) + ":" + std::to_string(at.column) + ":";
   if (!text.empty()) text += " ";

@@ -68,6 +68,8 @@ Member& AnyDescription::add_member(std::string_view name, std::string_view unit,
   if (opened_) m.group = opened_->name;
   m.get = type.get;
   m.store = type.store;
+  m.view = type.view;
+  m.exchange = type.exchange;
   return m;
 }
 

@@ -102,10 +102,19 @@ std::string files_of(const Component& c) {
   return names.empty() ? names : " (" + names + ")";
 }
 
+/// Null for a helper class that is not registered.
+const ClassInfo* class_of(const Component& c) {
+  try {
+    return &c.class_info();
+  } catch (const Error&) {
+    return nullptr;
+  }
+}
+
 }  // namespace
 
 void blame(const Component& c, std::string_view doing) {
-  const ClassInfo* known = Registry::instance().find(std::type_index(typeid(c)));
+  const ClassInfo* known = class_of(c);
   if (!known) throw;  // an unregistered helper class
   const ClassInfo& info = *known;
   Location place = c.origin ? c.origin->location : Location{};

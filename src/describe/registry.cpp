@@ -85,6 +85,16 @@ struct Registry::State {
   std::map<std::string, void*> plugins;
   std::map<std::string, std::string> refused;  // rejected plugins and why: reopened, they would not enlist again
   std::string provider;                        // of the classes being adopted
+  std::map<std::string, std::function<void(const std::string&)>> readers;  // of plugins, by the ending of their files
+  std::vector<std::unique_ptr<ClassInfo>> replaced;                        // declarations that objects may still have
+
+  /// The function that reads such a plugin; empty: it is a library.
+  std::function<void(const std::string&)> reader_of(const std::string& file) {
+    const std::lock_guard lock(mutex);
+    for (const auto& [ending, read] : readers)
+      if (file.ends_with(ending)) return read;
+    return nullptr;
+  }
 
   /// The loaded classes that can be created by name, and their bases: not those that are bases in tests only.
   std::vector<const ClassInfo*> creatable() const {
@@ -165,7 +175,7 @@ void Registry::adopt() {
     info->name = detail::bare_class_name(type);
     info->type = type;
     info->provider = state_->provider;
-    info->create = node->second->create;
+    info->make = node->second->make;
     if (node->second->parent != typeid(void)) {
       info->parent = take(node->second->parent);
       if (info->parent) {
@@ -267,6 +277,28 @@ Ref<Component> Registry::create(std::string_view name) const {
   return etendue::create(*info);
 }
 
+const ClassInfo& Registry::declare(std::unique_ptr<ClassInfo> info) {
+  all();  // loads all classes, so that a declaration of a compiled name is refused here
+  if (!info->parent) throw Error(info->name + ": a class that is declared needs a parent class");
+  if (info->name.empty() || info->name[0] < 'A' || info->name[0] > 'Z')
+    throw Error(fmt::format("'{}': the name of a class begins with a capital letter", info->name));
+  if (const std::string wrong = fault(*info); !wrong.empty()) throw Error(info->name + ": " + wrong);
+  // Without the lock: a script that makes the object may wait for another thread that waits for the registry.
+  if (const std::string faults = note_defaults({info.get()}); !faults.empty())
+    throw Error(info->name + " cannot be used:" + faults);
+  const std::lock_guard lock(state_->mutex);
+  std::unique_ptr<ClassInfo>& place = state_->by_name[info->name];
+  if (place && !place->declared) throw Error(fmt::format("{}: there already is a class of this name", info->name));
+  if (place) state_->replaced.push_back(std::move(place));
+  place = std::move(info);
+  return *place;
+}
+
+void Registry::read_plugins(const std::string& ending, std::function<void(const std::string&)> read) {
+  const std::lock_guard lock(state_->mutex);
+  state_->readers[ending] = std::move(read);
+}
+
 std::vector<std::string> Registry::plugins() const {
   const std::lock_guard lock(state_->mutex);
   std::vector<std::string> list;
@@ -289,6 +321,16 @@ void Registry::load_plugin(const std::string& path) {
     if (const auto known = state_->refused.find(file); known != state_->refused.end()) throw Error(known->second);
   }
   const auto named = [&] { return Error("plugin '" + file + "': " + thrown_text()); };
+  if (const auto read = state_->reader_of(file)) {
+    try {
+      read(file);
+    } catch (...) {
+      throw named();
+    }
+    const std::lock_guard lock(state_->mutex);
+    state_->plugins[file] = nullptr;
+    return;
+  }
   try {
     // Without the lock, since the child process could not lock it again.
     check_plugin(file, [&] {

@@ -3,6 +3,7 @@
 // is created by the name of its class.
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -29,8 +30,12 @@ class Component {
     if (count_.fetch_sub(1, std::memory_order_acq_rel) == 1) delete this;
   }
 
-  /// The description of the object's class: name, parent, members, factory.
-  const ClassInfo& class_info() const;
+  /// The number of Refs to this object; another thread may change it at any time.
+  int references() const { return count_.load(std::memory_order_acquire); }
+
+  /// The description of the object's class: name, parent, members, factory. By default that of its C++ type. Objects of classes
+  /// that were declared at run time (describe/declared_class.h) override it.
+  virtual const ClassInfo& class_info() const;
 
   /// Called by prepare_tree for its root component, before any component is prepared. A Job sets the origin of rendering space
   /// here.
@@ -73,6 +78,8 @@ void prepare_tree(Component&);
 
 /// Prints a warning; each distinct text is printed once.
 void warn(const std::string& message, Location = {});
+/// From now on each warning is given to `handle` instead, from whichever thread it comes; empty: warnings are printed again.
+void handle_warnings(std::function<void(const std::string& message, Location)> handle);
 
 /// Must be called in a catch block: rethrows an exception that was thrown during an operation on a component, such as
 /// "preparing", as Error. An Error without a location gets that of the component, and its message names the component's plugin.

@@ -288,6 +288,36 @@ constexpr bool in_double = std::is_same_v<T, double> || std::is_same_v<T, Double
 template <class T>
 constexpr bool in_double<std::vector<T>> = in_double<T>;
 
+/// A list whose rows are numbers that lie one after the other.
+template <class T>
+constexpr bool list_of_numbers = false;
+template <class T>
+constexpr bool list_of_numbers<std::vector<T>> = Tuple<T> || (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>);
+
+template <class T>
+constexpr ListInMemory::Scalar scalar_type() {
+  using Scalar = ListInMemory::Scalar;
+  if constexpr (std::is_same_v<T, float>) return Scalar::float32;
+  if constexpr (std::is_same_v<T, double>) return Scalar::float64;
+  if constexpr (std::is_integral_v<T> && sizeof(T) == 4) return std::is_signed_v<T> ? Scalar::int32 : Scalar::uint32;
+  if constexpr (std::is_integral_v<T> && sizeof(T) == 8) return std::is_signed_v<T> ? Scalar::int64 : Scalar::uint64;
+  return Scalar::other;
+}
+
+template <class T>
+ListInMemory view_list(const std::vector<T>& list) {
+  if constexpr (Tuple<T>)
+    return {list.data(), list.size(), Convert<T>::width, scalar_type<typename Convert<T>::Scalar>()};
+  else
+    return {list.data(), list.size(), 1, scalar_type<T>()};
+}
+
+template <class List>
+void exchange_list(List& list, std::shared_ptr<void>& kept) {
+  if (!kept) kept = std::make_shared<List>();
+  std::swap(list, *static_cast<List*>(kept.get()));
+}
+
 template <auto P>
 struct PointerTo;
 template <class C, class T, T C::* P>
@@ -306,6 +336,8 @@ struct MemberType {
   bool list, in_double;
   Value (*get)(const Component&, const Member&);
   void (*store)(Component&, const Member&, const Value&);
+  ListInMemory (*view)(const Component&);
+  void (*exchange)(Component&, std::shared_ptr<void>& kept);
 };
 
 /// The part of a description that does not depend on the class; it is compiled once.
@@ -368,7 +400,8 @@ class Description : public AnyDescription {
     static constexpr MemberType type{
         detail::Convert<Type>::kind, detail::IsVector<Type>::value, detail::in_double<Type>,
         [](const Component& c, const Member& self) { return detail::Convert<Type>::write(static_cast<const T&>(c).*P, self); },
-        [](Component& c, const Member& self, const Value& v) { detail::Convert<Type>::read(v, self, static_cast<T&>(c).*P); }};
+        [](Component& c, const Member& self, const Value& v) { detail::Convert<Type>::read(v, self, static_cast<T&>(c).*P); },
+        view<P, Type>(), exchange<P, Type>()};
     Member& m = add_member(name, unit, text, type, detail::referred_class<detail::Referee<Type>>());
     (option(m, std::move(options)), ...);
     return *this;
@@ -387,6 +420,22 @@ class Description : public AnyDescription {
     set_literal(member);
     return *this;
   }
+
+ private:
+  template <auto P, class Type>
+  static constexpr ListInMemory (*view())(const Component&) {
+    if constexpr (detail::list_of_numbers<Type>)
+      return [](const Component& c) { return detail::view_list(static_cast<const T&>(c).*P); };
+    else
+      return nullptr;
+  }
+  template <auto P, class Type>
+  static constexpr void (*exchange())(Component&, std::shared_ptr<void>&) {
+    if constexpr (detail::list_of_numbers<Type>)
+      return [](Component& c, std::shared_ptr<void>& kept) { detail::exchange_list(static_cast<T&>(c).*P, kept); };
+    else
+      return nullptr;
+  }
 };
 
 // ---- registration -------------------------------------------------------------------------------------------------
@@ -397,7 +446,7 @@ struct RegistrationNode {
   const std::type_info& type;
   const std::type_info& parent;
   void (*describe)(ClassInfo&);
-  Ref<Component> (*create)();
+  Ref<Component> (*make)(const ClassInfo&);
   RegistrationNode* next;
 };
 
@@ -420,12 +469,12 @@ class Register {
   Register() noexcept { enlist(node_); }
 
  private:
-  static Ref<Component> (*factory())() {
+  static Ref<Component> (*factory())(const ClassInfo&) {
     // An interface without pure virtual functions has a protected constructor, so that it counts as abstract.
     if constexpr (std::is_abstract_v<T> || !std::is_default_constructible_v<T>)
       return nullptr;
     else
-      return [] { return Ref<Component>(make<T>()); };
+      return [](const ClassInfo&) { return Ref<Component>(make<T>()); };
   }
   static void describe(ClassInfo& info) {
     Description<T> d(info);

@@ -1,7 +1,9 @@
 #pragma once
 // Registry: the registered classes with their members. It creates components by class name, and reads and sets members by name.
 
+#include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -91,6 +93,15 @@ enum class Kind : std::uint8_t {
 };
 std::string_view name(Kind);
 
+/// The numbers of a list as they lie in memory, in the member's unit, row after row.
+struct ListInMemory {
+  enum class Scalar : std::uint8_t { float32, float64, int32, uint32, int64, uint64, other };
+  const void* data = nullptr;
+  size_t rows = 0;
+  int width = 1;
+  Scalar scalar = Scalar::float32;
+};
+
 /// One described member of a class.
 struct Member {
   // Compiled once, in src/describe/description.cpp.
@@ -122,6 +133,11 @@ struct Member {
   /// Converts, checks and stores a value. Throws Error with a message that does not contain the class and the member. Call
   /// `set` below instead, which prepends them.
   void (*store)(Component&, const Member&, const Value&) = nullptr;
+  /// Views a list of numbers without a copy; null for all other members. The view is valid until the member changes.
+  ListInMemory (*view)(const Component&) = nullptr;
+  /// Exchanges the list with the one that was kept (null: an empty one), without a copy: what was viewed stays valid as long
+  /// as `kept` lives. Null where `view` is.
+  void (*exchange)(Component&, std::shared_ptr<void>& kept) = nullptr;
 };
 
 /// A member of the interface that a class does not have.
@@ -136,12 +152,16 @@ class ClassInfo {
   std::string summary, source;
   std::vector<Member> members;           ///< inherited members first
   std::vector<AbsentMember> absent;      ///< inherited members that have no effect in this class
-  Ref<Component> (*create)() = nullptr;  ///< null: abstract
+  Ref<Component> (*make)(const ClassInfo&) = nullptr;  ///< makes an object; null: abstract
   std::type_index type = typeid(void);
   std::string provider;  ///< "" for built-in classes, else the plugin's file
   std::string literal;   ///< the member that a plain value sets where this class's interface is expected; "" if there is none
 
-  bool abstract() const { return create == nullptr; }
+  /// For classes that were declared at run time: what `make` needs, such as a class of a script.
+  std::shared_ptr<void> declared;
+
+  bool abstract() const { return make == nullptr; }
+  Ref<Component> create() const { return make(*this); }
   bool is_a(const ClassInfo& ancestor) const;
   const Member* find(std::string_view member) const;
 };
@@ -166,6 +186,13 @@ class Registry {
   /// or if the description of one of its classes is invalid. Opening a library again has no effect.
   void load_plugin(const std::string& path);
   std::vector<std::string> plugins() const;
+  /// From now on plugins whose files end so (".py") are not opened as libraries: `read` declares their classes.
+  void read_plugins(const std::string& ending, std::function<void(const std::string& file)> read);
+
+  /// Adds a class that is made at run time, with its inherited members first (describe/declared_class.h helps with that). It
+  /// replaces an earlier declaration of the same name, whose objects keep their description. Throws Error if the description is
+  /// invalid, or the name is that of a compiled class.
+  const ClassInfo& declare(std::unique_ptr<ClassInfo>);
 
   /// Checks and adds the classes that enlisted themselves since the last call (all functions above call it first).
   void adopt();
