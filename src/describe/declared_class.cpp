@@ -14,7 +14,8 @@ Value get_declared(const Component& c, const Member& m) {
   return found == values.end() ? m.default_value : found->second;
 }
 
-/// Converts a value to the C++ type that a compiled class would have, and back: that checks it and brings it into its plain form.
+/// Converts a value to the C++ type that a compiled class would have, and back: that checks it and brings it into its plain
+/// form.
 template <class T>
 void store_as(Component& c, const Member& m, const Value& v) {
   T converted{};

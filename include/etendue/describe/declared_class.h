@@ -1,7 +1,7 @@
 #pragma once
-// Classes that are declared at run time, by a script or a shading language. Their objects are of one C++ type for each interface;
-// what distinguishes the classes is a ClassInfo made at run time (Registry::declare), and what distinguishes the objects are
-// the values of their members, which they keep as values of the language.
+// Classes that are declared at run time, by a script or a shading language. Their objects are of one C++ type for each
+// interface; what distinguishes the classes is a ClassInfo made at run time (Registry::declare), and what distinguishes the
+// objects are the values of their members, which they keep as values of the language.
 
 #include <map>
 #include <string>

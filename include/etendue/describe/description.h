@@ -398,10 +398,13 @@ class Description : public AnyDescription {
   Description& member(std::string_view name, std::string_view unit, std::string_view text, Options... options) {
     using Type = typename detail::PointerTo<P>::Type;
     static constexpr MemberType type{
-        detail::Convert<Type>::kind, detail::IsVector<Type>::value, detail::in_double<Type>,
+        detail::Convert<Type>::kind,
+        detail::IsVector<Type>::value,
+        detail::in_double<Type>,
         [](const Component& c, const Member& self) { return detail::Convert<Type>::write(static_cast<const T&>(c).*P, self); },
         [](Component& c, const Member& self, const Value& v) { detail::Convert<Type>::read(v, self, static_cast<T&>(c).*P); },
-        view<P, Type>(), exchange<P, Type>()};
+        view<P, Type>(),
+        exchange<P, Type>()};
     Member& m = add_member(name, unit, text, type, detail::referred_class<detail::Referee<Type>>());
     (option(m, std::move(options)), ...);
     return *this;

@@ -150,8 +150,8 @@ class ClassInfo {
   std::string name;
   const ClassInfo* parent = nullptr;  ///< null for top-level interfaces
   std::string summary, source;
-  std::vector<Member> members;           ///< inherited members first
-  std::vector<AbsentMember> absent;      ///< inherited members that have no effect in this class
+  std::vector<Member> members;                         ///< inherited members first
+  std::vector<AbsentMember> absent;                    ///< inherited members that have no effect in this class
   Ref<Component> (*make)(const ClassInfo&) = nullptr;  ///< makes an object; null: abstract
   std::type_index type = typeid(void);
   std::string provider;  ///< "" for built-in classes, else the plugin's file

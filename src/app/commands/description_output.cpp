@@ -4,14 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "etendue/language/language.h"
-#include "files/input_files.h"
-#include "files/output_files.h"
-#include "files/whole_file.h"
-#include "language/json.h"
-#include "render/checkpoint.h"
+#include "saving/save_job.h"
 
 namespace etendue {
 
@@ -26,16 +20,7 @@ void write_description_to(const std::string& output, const Job& job, const std::
     fmt::print("{}{}", comments, write_description(job, all));
     return;
   }
-  const Location at{intern("--output"), 0, 0};
-  note_inputs_of(job);
-  OutputFiles files;
-  files.add(output, at);
-  files.raise();
-  std::error_code error;
-  const std::string folder = std::filesystem::absolute(output, error).parent_path().string();
-  if (error) throw Error(fmt::format("cannot write '{}': {}", output, error.message()), at);
-  write_whole_file(output,
-                   language::is_json(output) ? write_json(job, all, folder) : comments + write_description(job, all, folder));
+  save_description(job, output, comments, all, {intern("--output"), 0, 0});
 }
 
 }  // namespace etendue

@@ -1,13 +1,7 @@
 // etendue export FILE -o OUT: exports a render description to a file of another format.
 
-#include <fmt/format.h>
-
 #include "app/scene_options.h"
-#include "components/scenes/import.h"
-#include "etendue/exporter.h"
-#include "files/output_files.h"
-#include "files/whole_file.h"
-#include "render/checkpoint.h"
+#include "saving/save_job.h"
 
 namespace etendue {
 
@@ -19,28 +13,8 @@ struct ExportOptions : SceneOptions {
 
 int write(const ExportOptions& options) {
   const Location at{intern("--output"), 0, 0};
-  const Ref<Exporter> exporter = exporter_of(options.output);
-  if (!exporter) {
-    std::string known;
-    for (const std::string& ending : exported_extensions()) known += (known.empty() ? "." : ", .") + ending;
-    throw Error(fmt::format("no exporter for files named like '{}'; there are those for {}", options.output, known), at);
-  }
-  const Ref<Job> job = options.load();
-  note_inputs_of(*job);
-  read_imports(*job);
-  OutputFiles files;
-  files.add(options.output, at);
-  files.raise();
-  Exporting exporting(options.output);
-  const std::string text = exporter->write(*job, exporting);
-  const std::vector<Error> notes = exporting.notes();
-  if (options.import.strict && !notes.empty()) throw Errors(notes);
-  for (const Error& note : notes) warn(note.what(), note.location);
-  // The files that the exported file refers to are written first, so that it never exists without them.
-  for (const std::string& file : exporting.files_beside()) files.add(file, at);
-  files.raise();
-  exporting.write_files();
-  write_whole_file(options.output, text);
+  require_exporter(options.output, at);
+  export_job(*options.load(), options.output, options.import.strict, at);
   return exit_status::done;
 }
 

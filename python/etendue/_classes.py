@@ -1,0 +1,344 @@
+"""The classes of the registry as Python classes.
+
+None is written here: each is made when it is first asked for, from the description that parser, manual and studio use, too.
+"""
+
+from __future__ import annotations
+
+import inspect
+import json
+import math
+import re
+from collections.abc import Iterator, MutableSequence
+from typing import Any, Iterable, Optional
+
+from . import _core
+from ._errors import Error, NoSuchMember
+
+_made: dict[str, type] = {}
+
+
+class Parts(MutableSequence):
+    """The list of a member that refers to several parts. Changing it changes the member."""
+
+    __slots__ = ("_owner", "_member")
+
+    def __init__(self, owner: "Part", member: str) -> None:
+        self._owner = owner
+        self._member = member
+
+    def _now(self) -> list:
+        return list(_core.get(self._owner, self._member))
+
+    def _store(self, entries: Iterable) -> None:
+        _core.set(self._owner, self._member, list(entries))
+
+    def __len__(self) -> int:
+        return len(_core.get(self._owner, self._member))
+
+    def __getitem__(self, place: Any) -> Any:
+        return self._now()[place]
+
+    def __setitem__(self, place: Any, value: Any) -> None:
+        entries = self._now()
+        entries[place] = value
+        self._store(entries)
+
+    def __delitem__(self, place: Any) -> None:
+        entries = self._now()
+        del entries[place]
+        self._store(entries)
+
+    def insert(self, place: int, value: Any) -> None:
+        entries = self._now()
+        entries.insert(place, value)
+        self._store(entries)
+
+    def extend(self, values: Iterable) -> None:
+        self._store(self._now() + list(values))
+
+    def __eq__(self, other: object) -> bool:
+        return self._now() == list(other) if isinstance(other, (list, tuple, Parts)) else NotImplemented
+
+    def __repr__(self) -> str:
+        return repr(self._now())
+
+
+class Part(_core.Component):
+    """Anything that a scene is made of: the base of all classes (`Component` in the C++ library)."""
+
+    def __init__(self, *literal: Any, **members: Any) -> None:
+        _initialize(self, literal, members)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name.startswith("_"):
+            object.__setattr__(self, name, value)
+        else:
+            _core.set(self, name, value)
+
+    def __getattr__(self, name: str) -> Any:
+        # Reached for names that are neither members nor methods.
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return _core.get(self, name)
+        except Error as e:
+            raise NoSuchMember(str(e), e.faults) from None
+
+    def __delattr__(self, name: str) -> None:
+        if name.startswith("_"):
+            object.__delattr__(self, name)
+        else:
+            raise Error(f"{type(self).__name__}.{name} cannot be deleted; set it to another value")
+
+    def __getitem__(self, path: str) -> Any:
+        """A part or a value by its path: job["scene.objects[2].shader"]."""
+        at: Any = self
+        for name, places in _steps(path):
+            at = getattr(_as_part(at, path), name)
+            for place in places:
+                try:
+                    at = at[place]
+                except (IndexError, TypeError):
+                    raise Error(f"'{path}': {name} has no entry [{place}]{_length(at)}") from None
+        return at
+
+    def __setitem__(self, path: str, value: Any) -> None:
+        steps = list(_steps(path))
+        at: Any = self
+        for name, places in steps[:-1]:
+            at = getattr(_as_part(at, path), name)
+            for place in places:
+                try:
+                    at = at[place]
+                except (IndexError, TypeError):
+                    raise Error(f"'{path}': {name} has no entry [{place}]{_length(at)}") from None
+        name, places = steps[-1]
+        owner = _as_part(at, path)
+        if not places:
+            _core.set(owner, name, value)
+            return
+        entries = getattr(owner, name)
+        for place in places[:-1]:
+            entries = entries[place]
+        changed = [list(e) if hasattr(e, "__len__") and not isinstance(e, str) else e for e in entries]
+        if not 0 <= places[-1] < len(changed):
+            raise Error(f"'{path}': {name} has no entry [{places[-1]}]{_length(entries)}")
+        changed[places[-1]] = value
+        if len(places) > 1:
+            raise Error(f"'{path}': set the whole list instead of a number in it")
+        _core.set(owner, name, changed)
+
+    def __copy__(self) -> "Part":
+        return _core.copy(self)
+
+    def __deepcopy__(self, memo: dict) -> "Part":
+        return _core.copy(self)
+
+    def __reduce__(self) -> tuple:
+        return (_read_part, (_core.class_name(self), _core.write_description(self, False, ""), _core.name_of(self)))
+
+    def __repr__(self) -> str:
+        shown = []
+        for member in described(type(self))["members"]:
+            value = getattr(self, member["name"])
+            if _is_default(value, member):
+                continue
+            shown.append(f"{member['name']}={_short(value)}")
+        return f"{type(self).__name__}({', '.join(shown)})"
+
+
+def _as_part(at: Any, path: str) -> Part:
+    if not isinstance(at, Part):
+        raise Error(f"'{path}': {at!r} is no part and has no members")
+    return at
+
+
+def _length(entries: Any) -> str:
+    try:
+        return f"; it has {len(entries)}"
+    except TypeError:
+        return ""
+
+
+def _steps(path: str) -> Iterator[tuple[str, list[int]]]:
+    for step in path.split("."):
+        match = re.fullmatch(r"([A-Za-z_]\w*)((?:\[\d+\])*)", step)
+        if not match:
+            raise Error(f"'{path}' is no path of members: expected a name, or a name with [number], not '{step}'")
+        yield match[1], [int(n) for n in re.findall(r"\d+", match[2])]
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, Part):
+        return f"<{type(value).__name__}>"
+    if isinstance(value, Parts):
+        return f"[{len(value)} parts]" if len(value) else "[]"
+    if isinstance(value, float):
+        return f"{value:g}"
+    if isinstance(value, tuple) and all(isinstance(x, float) for x in value):
+        return f"({', '.join(f'{x:g}' for x in value)})"
+    if hasattr(value, "shape"):
+        return f"<array of shape {value.shape}>"
+    text = repr(value)
+    return text if len(text) <= 80 else text[:77] + "..."
+
+
+def _is_default(value: Any, member: dict) -> bool:
+    default = member.get("default")
+    if isinstance(value, Part):
+        return False
+    if isinstance(value, Parts) or hasattr(value, "shape"):
+        return len(value) == 0
+    if isinstance(value, tuple):
+        return isinstance(default, list) and list(value) == default
+    if isinstance(value, float) and isinstance(default, (int, float)):
+        return math.isclose(value, default, rel_tol=1e-6)
+    if isinstance(value, _core.Value):
+        return repr(value) == default
+    return value == default
+
+
+def _read_part(class_name: str, text: str, name: str) -> Part:
+    part = _core.loads(text, "pickle", "", {}, True, 0, 0) if class_name == "Job" else _core.parse_component(text, "pickle", "")
+    if name:
+        _core.set_name(part, name)
+    return part
+
+
+def _initialize(self: Part, literal: tuple, members: dict) -> None:
+    description = described(type(self))
+    if literal:
+        member = description.get("literal")
+        if member is None or len(literal) > 1:
+            raise Error(
+                f"{description['name']}: members are given by name, as in {description['name']}("
+                + ", ".join(f"{m['name']}=…" for m in description["members"][:2])
+                + ")"
+            )
+        if member in members:
+            raise Error(f"{description['name']}.{member} is given twice")
+        members = {member: literal[0], **members}
+    _core.init(self, description["name"], members)
+
+
+def described(cls: type) -> dict:
+    """The description of a class: a dict of name, parent, summary, source, members, subclasses."""
+    return cls.__dict__.get("_description") or cls._description  # type: ignore[attr-defined]
+
+
+def _property(member: dict) -> property:
+    name = member["name"]
+    parts = member["type"] == "component" and member.get("list")
+
+    def read(self: Part) -> Any:
+        return Parts(self, name) if parts else _core.get(self, name)
+
+    def write(self: Part, value: Any) -> None:
+        _core.set(self, name, value)
+
+    return property(read, write, doc=_member_text(member))
+
+
+def type_text(member: dict) -> str:
+    """What may be given for a member, in words: "number [m], at least 0"."""
+    text = member.get("class") or member["type"]
+    if member.get("list"):
+        text = f"list of {text}"
+    unit = member.get("unit")
+    if unit and unit != "1":
+        text += f" [{unit}]"
+    if member.get("choices"):
+        text += ": " + ", ".join(map(str, member["choices"]))
+    limits = member.get("range")
+    if limits:
+        low = limits.get("more_than", limits.get("from", limits.get("at_least")))
+        high = limits.get("to", limits.get("at_most"))
+        words = []
+        if low is not None:
+            words.append(("more than " if "more_than" in limits else "at least ") + f"{low:g}")
+        if high is not None:
+            words.append(f"at most {high:g}")
+        if words:
+            text += ", " + " and ".join(words)
+    return text
+
+
+def _member_text(member: dict) -> str:
+    default = "required" if member.get("required") else f"default {member.get('default')}"
+    return f"{member['text']} ({type_text(member)}; {default})"
+
+
+def _class_text(description: dict) -> str:
+    text = description["summary"]
+    if description.get("source"):
+        text += f"\n\nSource: {description['source']}"
+    if description["members"]:
+        text += "\n\nMembers:\n" + "\n".join(f"    {m['name']}: {_member_text(m)}" for m in description["members"])
+    if description.get("subclasses"):
+        text += "\n\nClasses: " + ", ".join(_names(description["subclasses"]))
+    return text
+
+
+def _names(entries: Iterable) -> list[str]:
+    return [e if isinstance(e, str) else e["name"] for e in entries]
+
+
+def _signature(description: dict) -> inspect.Signature:
+    parameters = []
+    if description.get("literal"):
+        parameters.append(inspect.Parameter("value", inspect.Parameter.POSITIONAL_ONLY, default=None))
+    for member in description["members"]:
+        default = inspect.Parameter.empty if member.get("required") else member.get("default")
+        parameters.append(inspect.Parameter(member["name"], inspect.Parameter.KEYWORD_ONLY, default=default))
+    return inspect.Signature(parameters)
+
+
+def class_named(name: str) -> type:
+    """The Python class of a class of the registry; made at the first call."""
+    known = _made.get(name)
+    if known is not None:
+        return known
+    description = json.loads(_core.class_json(name))
+    parent: type = class_named(description["parent"]) if description.get("parent") else Part
+    inherited = {m["name"] for m in getattr(parent, "_description", {}).get("members", ())}
+    namespace: dict[str, Any] = {
+        "__doc__": _class_text(description),
+        "__module__": "etendue",
+        "__qualname__": name,
+        "_description": description,
+        "__signature__": _signature(description),
+    }
+    for member in description["members"]:
+        if member["name"] not in inherited:
+            namespace[member["name"]] = _property(member)
+    for absent in inherited - {m["name"] for m in description["members"]}:
+        namespace[absent] = _absent(absent)
+    made = type(name, (parent,), namespace)
+    _made[name] = made
+    return made
+
+
+def _absent(name: str) -> property:
+    """A member of the interface that has no effect in a class: reading or setting it tells why."""
+
+    def read(self: Part) -> Any:
+        try:
+            return _core.get(self, name)
+        except Error as e:
+            raise NoSuchMember(str(e), e.faults) from None
+
+    def write(self: Part, value: Any) -> None:
+        _core.set(self, name, value)
+
+    return property(read, write, doc="has no effect in this class")
+
+
+def forget(name: str) -> None:
+    """A class of this name was declared anew, or a plugin brought new subclasses."""
+    _made.pop(name, None)
+
+
+def part_class(name: str) -> Optional[type]:
+    """The class of this name, or None."""
+    return class_named(name) if name[:1].isupper() and _core.knows_class(name) else None
