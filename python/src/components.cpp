@@ -118,6 +118,11 @@ void bind_components(nb::module_& m) {
     const Ref<Component> c = component_of(self);
     return matters(*c, member_of(*c, name));
   });
+  m.def("has_default", [](nb::handle self, const std::string& name) {
+    const Ref<Component> c = component_of(self);
+    const Member& member = member_of(*c, name);
+    return equal(member.get(*c, member), member.default_value);
+  });
   m.def("name_of", [](nb::handle self) {
     const Ref<Component> c = component_of(self);
     return c->origin ? c->origin->name : std::string();
@@ -141,7 +146,7 @@ void bind_components(nb::module_& m) {
   });
   m.def("knows_class",
         [](const std::string& name) { return released([&] { return Registry::instance().find(name) != nullptr; }); });
-  m.def("meant_class", &meant_class);
+  m.def("meant_class", [](const std::string& name) { return meant_class(name); });
   m.def("load_plugin", [](const std::string& file) { released([&] { Registry::instance().load_plugin(file); }); });
   m.def("plugins", [] { return Registry::instance().plugins(); });
   m.def("json_schema", [] { return released([] { return json_schema(); }); });

@@ -1,5 +1,7 @@
 // Errors and warnings of the library as Python's.
 
+#include <nanobind/stl/string.h>
+
 #include <mutex>
 #include <vector>
 

@@ -8,6 +8,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <charconv>
 #include <cmath>
 
 #include "etendue/language/language.h"
@@ -124,9 +125,16 @@ Value to_value(nb::handle object, const Member* member, Location at) {
 
 namespace {
 
+/// In the member's unit. A member that is a float gives the shortest number that is the same float: 0.3, not 0.30000001192.
 double in_unit(double value, const Member* member) {
   const Unit* unit = member ? find_unit(member->unit) : nullptr;
-  return unit ? value / unit->factor : value;
+  const double x = unit ? value / unit->factor : value;
+  if (!member || member->in_double || member->kind == Kind::integer || !std::isfinite(x)) return x;
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, float(x)).ptr;
+  double shortest = x;
+  std::from_chars(text, end, shortest);
+  return shortest;
 }
 
 nb::object array_of(const Numbers& n, const Member* member) {
