@@ -16,6 +16,25 @@ from . import _core, _errors
 from ._classes import Part, Parts, described
 from ._errors import Error, Fault, Warning
 from ._files import dumps, from_dict, load, loads, save, to_dict, walk
+from ._points import (
+    ALL_LOBES,
+    SMOOTH_LOBES,
+    SPECULAR_LOBES,
+    AngleSamples,
+    CameraRays,
+    DirectionSamples,
+    FilmPoints,
+    LensSamples,
+    LightChoices,
+    LightSamples,
+    Lobes,
+    Rays,
+    ScatterSamples,
+    SurfacePoints,
+    VolumeCoefficients,
+)
+from ._questions import prepare
+from ._wavelengths import Wavelengths, evaluate, observer, rgb_spectra, rgb_to_xyz, to_xyz, xyz_to_rgb
 
 __version__: str = _core.__version__
 Value = _core.Value
