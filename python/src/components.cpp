@@ -11,6 +11,7 @@
 #include "describe/words.h"
 #include "etendue/describe/reflection.h"
 #include "kept_lists.h"
+#include "live_render.h"
 #include "trees.h"
 
 namespace etendue::python {
@@ -55,7 +56,14 @@ void set_member(nb::handle self, const std::string& name, nb::handle value) {
   const Location at = calling_line();
   const Member* member = c->class_info().find(name);
   const Value given = to_value(value, member, at);
-  if (member && member->kind == Kind::component) refuse_cycle(*c, member->get(*c, *member), given);
+  LiveRender* const live = render_of(*c);
+  if (member && member->kind == Kind::component) refuse_cycle(*c, live ? Value() : member->get(*c, *member), given);
+  if (live && member) {
+    const LiveRender::Change change{c, member, given};
+    live->edit(std::span(&change, 1));
+    if (const LiveRender* still = render_of(*c); !still || still->idle()) note_origin(*c, name, at);
+    return;
+  }
   const KeptList kept(*c, member);
   set(*c, name, given);
   kept.replaced();
@@ -65,6 +73,7 @@ void set_member(nb::handle self, const std::string& name, nb::handle value) {
 nb::object get_member(nb::handle self, const std::string& name) {
   const Ref<Component> c = component_of(self);
   const Member& member = member_of(*c, name);
+  if (nb::object before = value_before_edit(*c, name); before.is_valid()) return before;
   if (member.view) return view_of(c, member);
   return to_python(member.get(*c, member), &member);
 }
@@ -132,13 +141,13 @@ void bind_components(nb::module_& m) {
   });
   m.def("set_name", [](nb::handle self, const std::string& name) {
     const Ref<Component> c = component_of(self);
+    require_no_render(*c, "named");
     if (!c->origin) c->origin = std::make_unique<Component::Origin>();
     c->origin->name = name;
   });
   m.def("copy", [](nb::handle self) {
     const Ref<Component> c = component_of(self);
-    require_shallow(*c);
-    return wrap(copy(*c));
+    return wrap(reading(*c, [&] { return copy(*c); }));
   });
   m.def("equal", [](nb::handle a, nb::handle b) {
     const Ref<Component> first = component_of(a), second = component_of(b);
@@ -148,7 +157,9 @@ void bind_components(nb::module_& m) {
   });
   m.def("prepare", [](nb::handle self) {
     const Ref<Component> c = component_of(self);
+    require_no_render(*c, "prepared");
     require_shallow(*c);
+    use_threads();
     released([&] { prepare_tree(*c); });
   });
   m.def("class_json", [](const std::string& name) { return class_json(class_info(name)); });

@@ -1,6 +1,7 @@
 #pragma once
-// Trees of components that Python builds. The language builds them from texts, which are finite and not too deep; assignments in
-// Python could make a component a part of itself, or a chain of a million parts, and the library traverses trees recursively.
+// Trees of components that Python builds. The language builds them from texts, which are finite and not too deep; assignments
+// in Python could make a component a part of itself, or a chain of a million parts, and the library traverses trees
+// recursively.
 
 #include "binding.h"
 
