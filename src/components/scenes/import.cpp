@@ -108,7 +108,7 @@ class Import final : public Scene {
                                  Import::describe(d);
                                  d.finish();
                                },
-                               [] { return Ref<Component>(make<Import>()); }, nullptr};
+                               [](const ClassInfo&) { return Ref<Component>(make<Import>()); }, nullptr};
   enlist(node);
   return true;
 }();
