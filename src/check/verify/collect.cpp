@@ -184,7 +184,9 @@ bool add_pass(Render& render, const Layout& layout, double factor, const Collect
               Measured& measured, RendererRun& run) {
   std::vector<std::vector<double>> seen;
   Image picture;
-  for (const std::uint32_t mark : limit ? limit->marks() : std::vector{std::uint32_t(options.samples)}) {
+  std::vector<std::uint32_t> marks{std::uint32_t(options.samples)};
+  if (limit) marks = limit->marks();
+  for (const std::uint32_t mark : marks) {
     std::optional<Image> now = picture_at(render, mark);
     if (!now) return false;
     picture = std::move(*now);
