@@ -31,6 +31,8 @@ from ._paths import PathContributions, PathRecord, PathVertices
 from ._progress import Progress
 from ._render import Render, denoise, render
 from ._widgets import Widget, difference, show, side_by_side
+from ._laboratory import Conformance, ErrorComparison, Verification, compare, conform, verify
+from ._tables import Table
 
 __version__: str = _core.__version__
 Value = _core.Value
