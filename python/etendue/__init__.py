@@ -33,6 +33,25 @@ from ._render import Render, denoise, render
 from ._widgets import Widget, difference, show, side_by_side
 from ._laboratory import Conformance, ErrorComparison, Verification, compare, conform, verify
 from ._tables import Table
+from ._points import (
+    ALL_LOBES,
+    SMOOTH_LOBES,
+    SPECULAR_LOBES,
+    AngleSamples,
+    CameraRays,
+    DirectionSamples,
+    FilmPoints,
+    LensSamples,
+    LightChoices,
+    LightSamples,
+    Lobes,
+    Rays,
+    ScatterSamples,
+    SurfacePoints,
+    VolumeCoefficients,
+)
+from ._questions import prepare
+from ._wavelengths import Wavelengths, evaluate, observer, rgb_spectra, rgb_to_xyz, to_xyz, xyz_to_rgb
 
 __version__: str = _core.__version__
 Value = _core.Value

@@ -290,6 +290,12 @@ def _signature(description: dict) -> inspect.Signature:
     return inspect.Signature(parameters)
 
 
+def _questions_of(name: str) -> dict[str, Any]:
+    from ._questions import questions_of
+
+    return questions_of(name)
+
+
 def class_named(name: str) -> type:
     """The Python class of a class of the registry; made at the first call."""
     known = _made.get(name)
@@ -305,7 +311,13 @@ def class_named(name: str) -> type:
         "_description": description,
         "__signature__": _signature(description),
     }
+    questions = _questions_of(name)
+    namespace.update(questions)
+    asked = {*questions, *getattr(parent, "_question_names", ())}
+    namespace["_question_names"] = asked
     for member in description["members"]:
+        if python_name(member["name"]) in asked:
+            raise Error(f"{name}: the member '{member['name']}' has the name of a question (etendue/_questions.py)")
         if member["name"] not in inherited:
             namespace[python_name(member["name"])] = _property(member)
     for absent in inherited - {m["name"] for m in description["members"]}:

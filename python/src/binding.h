@@ -22,6 +22,8 @@ struct Handle {
 
 /// The Python object of a component: always the same one for as long as it lives. None for null.
 nb::object wrap(const Ref<Component>&);
+/// The Python object of a component if it has one that lives; else an invalid one.
+nb::object living_object(const Component&);
 /// The component of a Python object; throws a Python TypeError for other objects, and Error for an object whose __init__ was
 /// not called.
 Ref<Component> component_of(nb::handle);
@@ -64,6 +66,15 @@ void bind_language(nb::module_&);
 void bind_images(nb::module_&);
 void bind_laboratory(nb::module_&);
 void bind_render(nb::module_&);
+void bind_scene_questions(nb::module_&);
+void bind_points(nb::module_&);
+void bind_scatter_questions(nb::module_&);
+void bind_light_questions(nb::module_&);
+void bind_camera_questions(nb::module_&);
+void bind_volume_questions(nb::module_&);
+void bind_map_questions(nb::module_&);
+void bind_spectrum_questions(nb::module_&);
+void bind_sampler_questions(nb::module_&);
 
 // ---- implementation ----------------------------------------------------------------------------------------------------
 

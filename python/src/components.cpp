@@ -13,6 +13,7 @@
 #include "kept_lists.h"
 #include "live_render.h"
 #include "trees.h"
+#include "snapshots.h"
 
 namespace etendue::python {
 
@@ -56,6 +57,7 @@ void set_member(nb::handle self, const std::string& name, nb::handle value) {
   const Location at = calling_line();
   const Member* member = c->class_info().find(name);
   const Value given = to_value(value, member, at);
+  forget_snapshots(*c);
   LiveRender* const live = render_of(*c);
   if (member && member->kind == Kind::component) refuse_cycle(*c, live ? Value() : member->get(*c, *member), given);
   if (live && member) {
@@ -92,6 +94,7 @@ void init(nb::handle self, const std::string& name, const nb::dict& members) {
 }  // namespace
 
 Handle::~Handle() {
+  if (component) release_snapshots(*component);
   const auto known = objects().find(component.get());
   // The object may have been made anew while this one was being destroyed.
   if (known != objects().end() && nb::inst_ptr<Handle>(known->second) == this) objects().erase(known);
@@ -100,13 +103,17 @@ Handle::~Handle() {
 
 nb::object wrap(const Ref<Component>& c) {
   if (!c) return nb::none();
-  if (const auto known = objects().find(c.get()); known != objects().end() && Py_REFCNT(known->second) > 0)
-    return nb::borrow(known->second);
+  if (nb::object known = living_object(*c); known.is_valid()) return known;
   nb::object made = nb::inst_alloc(class_for(c->class_info().name));
   new (nb::inst_ptr<Handle>(made)) Handle{c};
   nb::inst_mark_ready(made);
   objects()[c.get()] = made.ptr();
   return made;
+}
+
+nb::object living_object(const Component& c) {
+  const auto known = objects().find(&c);
+  return known != objects().end() && Py_REFCNT(known->second) > 0 ? nb::borrow(known->second) : nb::object();
 }
 
 bool is_component(nb::handle object) { return nb::isinstance<Handle>(object); }
