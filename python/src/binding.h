@@ -20,6 +20,9 @@ struct Handle {
   ~Handle();
 };
 
+/// From now on the Python object is that of this component, which was made for it.
+void attach(nb::handle object, const Ref<Component>&);
+
 /// The Python object of a component: always the same one for as long as it lives. None for null.
 nb::object wrap(const Ref<Component>&);
 /// The component of a Python object; throws a Python TypeError for other objects, and Error for an object whose __init__ was
@@ -63,6 +66,7 @@ void bind_components(nb::module_&);
 void bind_language(nb::module_&);
 void bind_images(nb::module_&);
 void bind_render(nb::module_&);
+void bind_parts(nb::module_&);
 
 // ---- implementation ----------------------------------------------------------------------------------------------------
 
