@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import inspect
 import json
-import math
+import keyword
 import re
 import sys
 from collections.abc import Iterator, MutableSequence
@@ -87,20 +87,22 @@ class Part(_core.Component):
     def __setattr__(self, name: str, value: Any) -> None:
         if name.startswith("_"):
             object.__setattr__(self, name, value)
-        elif type(self).__name__ in _declared and all(m["name"] != name for m in described(type(self))["members"]):
+        elif type(self).__name__ in _declared and all(
+            m["name"] != _member_name(name) for m in described(type(self))["members"]
+        ):
             raise NoSuchMember(
                 f"{type(self).__name__} has no member '{name}': declare it by etendue.member, or let the name of an attribute "
                 f"that is no member begin with an underscore: self._{name}"
             )
         else:
-            _core.set(self, name, value)
+            _core.set(self, _member_name(name), value)
 
     def __getattr__(self, name: str) -> Any:
         # Reached for names that are neither members nor methods.
         if name.startswith("_"):
             raise AttributeError(name)
         try:
-            return _core.get(self, name)
+            return _core.get(self, _member_name(name))
         except Error as e:
             raise NoSuchMember(str(e), e.faults) from None
 
@@ -160,11 +162,18 @@ class Part(_core.Component):
     def __repr__(self) -> str:
         shown = []
         for member in described(type(self))["members"]:
-            value = getattr(self, member["name"])
-            if _is_default(value, member):
-                continue
-            shown.append(f"{member['name']}={_short(value)}")
+            if not _core.has_default(self, member["name"]):
+                    shown.append(f"{python_name(member['name'])}={_short(getattr(self, member['name']))}")
         return f"{type(self).__name__}({', '.join(shown)})"
+
+
+def python_name(member: str) -> str:
+    """A member's name as Python can write it: `from` is a word of Python, so the member is `from_`."""
+    return f"{member}_" if keyword.iskeyword(member) else member
+
+
+def _member_name(name: str) -> str:
+    return name[:-1] if name.endswith("_") and keyword.iskeyword(name[:-1]) else name
 
 
 def _as_part(at: Any, path: str) -> Part:
@@ -203,21 +212,6 @@ def _short(value: Any) -> str:
     return text if len(text) <= 80 else text[:77] + "..."
 
 
-def _is_default(value: Any, member: dict) -> bool:
-    default = member.get("default")
-    if isinstance(value, Part):
-        return False
-    if isinstance(value, Parts) or hasattr(value, "shape"):
-        return len(value) == 0
-    if isinstance(value, tuple):
-        return isinstance(default, list) and list(value) == default
-    if isinstance(value, float) and isinstance(default, (int, float)):
-        return math.isclose(value, default, rel_tol=1e-6)
-    if isinstance(value, _core.Value):
-        return repr(value) == default
-    return value == default
-
-
 def _read_part(class_name: str, text: str, name: str) -> Part:
     part = _core.loads(text, "pickle", "", {}, True, 0, 0) if class_name == "Job" else _core.parse_component(text, "pickle", "")
     if name:
@@ -238,7 +232,7 @@ def _initialize(self: Part, literal: tuple, members: dict) -> None:
         if member in members:
             raise Error(f"{description['name']}.{member} is given twice")
         members = {member: literal[0], **members}
-    _core.init(self, description["name"], members)
+    _core.init(self, description["name"], {_member_name(name): value for name, value in members.items()})
 
 
 def described(cls: type) -> dict:
@@ -304,12 +298,12 @@ def _names(entries: Iterable) -> list[str]:
 
 
 def _signature(description: dict) -> inspect.Signature:
+    literal = description.get("literal")
     parameters = []
-    if description.get("literal"):
-        parameters.append(inspect.Parameter("value", inspect.Parameter.POSITIONAL_ONLY, default=None))
-    for member in description["members"]:
+    for member in sorted(description["members"], key=lambda m: m["name"] != literal):
         default = inspect.Parameter.empty if member.get("required") else member.get("default")
-        parameters.append(inspect.Parameter(member["name"], inspect.Parameter.KEYWORD_ONLY, default=default))
+        kind = inspect.Parameter.POSITIONAL_OR_KEYWORD if member["name"] == literal else inspect.Parameter.KEYWORD_ONLY
+        parameters.append(inspect.Parameter(python_name(member["name"]), kind, default=default))
     return inspect.Signature(parameters)
 
 
@@ -331,7 +325,7 @@ def class_named(name: str) -> type:
     }
     for member in description["members"]:
         if member["name"] not in inherited:
-            namespace[member["name"]] = _property(member)
+            namespace[python_name(member["name"])] = _property(member)
     for absent in inherited - {m["name"] for m in description["members"]}:
         namespace[absent] = _absent(absent)
     made = type(name, (parent,), namespace)

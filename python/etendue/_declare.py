@@ -239,7 +239,7 @@ def _described_members(cls: type, frame: Optional[types.FrameType]) -> list[dict
 
 
 def _described_member(name: str, declared: _Member, annotation: Any, where: str) -> dict[str, Any]:
-    described = {"name": name, **_kind_of(annotation, where), **declared.options}
+    described = {"name": _classes._member_name(name), **_kind_of(annotation, where), **declared.options}
     kind = described["kind"]
     if kind in _numeric:
         described.setdefault("unit", "1")
@@ -339,7 +339,7 @@ def declare(cls: type, abstract: bool, frame: Optional[types.FrameType]) -> None
     # What objects need that are made while the class is declared; the library's own description replaces it.
     plain = [{"name": m["name"], "type": m["kind"], "list": m.get("list"), "text": m["text"]} for m in members]
     for described in plain:
-        setattr(cls, described["name"], _classes._property(described))
+        setattr(cls, _classes.python_name(described["name"]), _classes._property(described))
     description = {"name": cls.__name__, "summary": summary, "members": _classes.described(parent)["members"] + plain}
     setattr(cls, "_description", description)
     _core.declare(
@@ -360,7 +360,7 @@ def declare(cls: type, abstract: bool, frame: Optional[types.FrameType]) -> None
     cls.__signature__ = _classes._signature(description)  # type: ignore[attr-defined]
     for described in description["members"]:
         if described["name"] in {m["name"] for m in members}:
-            setattr(cls, described["name"], _classes._property(described))
+            setattr(cls, _classes.python_name(described["name"]), _classes._property(described))
     _classes._declared[cls.__name__] = cls
 
 

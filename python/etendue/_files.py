@@ -92,27 +92,11 @@ def to_dict(part: Part, *, all: bool = False) -> dict[str, Any]:
     Parts are dicts, lists are lists, colours and transforms texts of the language; a part that is used twice is written twice.
     """
     result: dict[str, Any] = {"class": _core.class_name(part)}
-    plain = None if all else _default_of(part)
     for member in described(type(part))["members"]:
-        value = getattr(part, member["name"])
-        if plain is not None and _same(value, getattr(plain, member["name"])):
-            continue
-        result[member["name"]] = _plain(value, all)
+        name = member["name"]
+        if all or not _core.has_default(part, name):
+            result[name] = _plain(getattr(part, name), all)
     return result
-
-
-def _default_of(part: Part) -> Optional[Part]:
-    return class_named(_core.class_name(part))()
-
-
-def _same(a: Any, b: Any) -> bool:
-    if isinstance(a, Part) and isinstance(b, Part):
-        return _core.equal(a, b)
-    if isinstance(a, Parts):
-        return len(a) == len(b) and all(_core.equal(x, y) for x, y in zip(a, b))
-    if hasattr(a, "shape") and hasattr(b, "shape"):
-        return a.shape == b.shape and bool((a == b).all())
-    return bool(a == b)
 
 
 def _plain(value: Any, all: bool) -> Any:

@@ -12,6 +12,7 @@
 #include "etendue/describe/reflection.h"
 #include "kept_lists.h"
 #include "parts.h"
+#include "trees.h"
 
 namespace etendue::python {
 
@@ -55,6 +56,7 @@ void set_member(nb::handle self, const std::string& name, nb::handle value) {
   const Location at = calling_line();
   const Member* member = c->class_info().find(name);
   const Value given = to_value(value, member, at);
+  if (member && member->kind == Kind::component) refuse_cycle(*c, member->get(*c, *member), given);
   const KeptList kept(*c, member);
   set(*c, name, given);
   kept.replaced();
@@ -84,6 +86,7 @@ Handle::~Handle() {
   const auto known = objects().find(component.get());
   // The object may have been made anew while this one was being destroyed.
   if (known != objects().end() && nb::inst_ptr<Handle>(known->second) == this) objects().erase(known);
+  release_tree(std::move(component));
 }
 
 nb::object wrap(const Ref<Component>& c) {
@@ -122,6 +125,11 @@ void bind_components(nb::module_& m) {
     const Ref<Component> c = component_of(self);
     return matters(*c, member_of(*c, name));
   });
+  m.def("has_default", [](nb::handle self, const std::string& name) {
+    const Ref<Component> c = component_of(self);
+    const Member& member = member_of(*c, name);
+    return equal(member.get(*c, member), member.default_value);
+  });
   m.def("name_of", [](nb::handle self) {
     const Ref<Component> c = component_of(self);
     return c->origin ? c->origin->name : std::string();
@@ -131,10 +139,20 @@ void bind_components(nb::module_& m) {
     if (!c->origin) c->origin = std::make_unique<Component::Origin>();
     c->origin->name = name;
   });
-  m.def("copy", [](nb::handle self) { return wrap(copy(*component_of(self))); });
-  m.def("equal", [](nb::handle a, nb::handle b) { return equal(Value(component_of(a)), Value(component_of(b))); });
+  m.def("copy", [](nb::handle self) {
+    const Ref<Component> c = component_of(self);
+    require_shallow(*c);
+    return wrap(copy(*c));
+  });
+  m.def("equal", [](nb::handle a, nb::handle b) {
+    const Ref<Component> first = component_of(a), second = component_of(b);
+    require_shallow(*first);
+    require_shallow(*second);
+    return equal(Value(first), Value(second));
+  });
   m.def("prepare", [](nb::handle self) {
     const Ref<Component> c = component_of(self);
+    require_shallow(*c);
     released([&] { prepare_tree(*c); });
   });
   m.def("fail", [](nb::handle self, const std::string& member, const std::string& message) {
@@ -148,7 +166,7 @@ void bind_components(nb::module_& m) {
   });
   m.def("knows_class",
         [](const std::string& name) { return released([&] { return Registry::instance().find(name) != nullptr; }); });
-  m.def("meant_class", &meant_class);
+  m.def("meant_class", [](const std::string& name) { return meant_class(name); });
   m.def("load_plugin", [](const std::string& file) { released([&] { Registry::instance().load_plugin(file); }); });
   m.def("plugins", [] { return Registry::instance().plugins(); });
   m.def("json_schema", [] { return released([] { return json_schema(); }); });

@@ -11,6 +11,7 @@
 #include "etendue/render/job.h"
 #include "language/json.h"
 #include "saving/save_job.h"
+#include "trees.h"
 
 namespace etendue::python {
 
@@ -47,14 +48,17 @@ void bind_language(nb::module_& m) {
   });
   m.def("write_description", [](nb::handle c, bool all, const std::string& folder) {
     const Ref<Component> component = component_of(c);
+    require_shallow(*component);
     return released([&] { return write_description(*component, all, folder); });
   });
   m.def("write_json", [](nb::handle c, bool all, const std::string& folder) {
     const Ref<Component> component = component_of(c);
+    require_shallow(*component);
     return released([&] { return write_json(*component, all, folder); });
   });
   m.def("save", [](nb::handle job, const std::string& file, bool all, bool strict) {
     const Ref<Job> saved = component_as<Job>(job, "a Job");
+    require_shallow(*saved);
     const Location at = calling_line();
     released([&] {
       if (file.ends_with(".etd") || language::is_json(file))

@@ -23,6 +23,7 @@
 
 #include <unordered_map>
 
+#include "describe/expansion.h"
 #include "parts.h"
 
 namespace etendue::python {
@@ -33,22 +34,6 @@ namespace {
 
 PythonPart* part_of(const Component& c) {
   return const_cast<PythonPart*>(dynamic_cast<const PythonPart*>(&c));  // the object itself is never const
-}
-
-void add_components(const Value& value, std::vector<const Component*>& to) {
-  if (const auto* c = value.as<Ref<Component>>()) {
-    if (*c) to.push_back(c->get());
-  } else if (const auto* list = value.as<Value::List>()) {
-    for (const Value& item : *list) add_components(item, to);
-  }
-}
-
-/// The components that the members of a component refer to, one entry for each reference.
-std::vector<const Component*> referred(const Component& c) {
-  std::vector<const Component*> all;
-  for (const Member& m : c.class_info().members)
-    if (m.kind == Kind::component) add_components(m.get(c, m), all);
-  return all;
 }
 
 /// Calls `report(P)` for each part T whose reference T -> P the Python object of `root` reports.
@@ -65,7 +50,7 @@ int report_parts(const Component& root, const Report& report) {
     const Component* const at = left.back();
     left.pop_back();
     // All references that reading the members made are gone when they are counted.
-    for (const Component* c : referred(*at)) {
+    for (const Component* c : components_of(*at)) {
       const int owners = ++counted[c];
       if (PythonPart* const part = part_of(*c)) {
         if (part->self && owners == c->references() - 1)

@@ -330,6 +330,8 @@ void Registry::load_plugin(const std::string& path) {
   if (const auto read = state_->reader_of(file)) {
     try {
       read(file);
+    } catch (const Error& e) {
+      throw Error("plugin '" + file + "': " + e.what(), e.location);
     } catch (...) {
       throw named();
     }

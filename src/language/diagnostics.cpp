@@ -232,8 +232,13 @@ std::optional<size_t> invalid_utf8(const std::string& text) {
   return std::nullopt;
 }
 
+/// "7:27", or "7" for a line of a script, whose columns are not known.
+std::string lines_text(const Location& at) {
+  return at.column > 0 ? fmt::format("{}:{}", at.line, at.column) : std::to_string(at.line);
+}
+
 std::string place(const Location& at, const Location& seen_from) {
-  const std::string position = fmt::format("{}:{}", at.line, at.column);
+  const std::string position = lines_text(at);
   return at.file == seen_from.file ? "line " + position : fmt::format("{}:{}", at.file, position);
 }
 
@@ -244,11 +249,12 @@ std::string show(const Error& error) {
   const std::string message = language::shortened(error.what());
   if (!at.known()) return message;
   if (at.line <= 0) return fmt::format("{}: {}", at.file, message);
-  std::string result = fmt::format("{}:{}:{}: {}{}", at.file, at.line, at.column, language::path_in_json(at), message);
+  std::string result = fmt::format("{}:{}: {}{}", at.file, language::lines_text(at), language::path_in_json(at), message);
   if (const auto found = language::excerpt(at)) {
     const std::string number = std::to_string(at.line);
-    result += fmt::format("\n    {} | {}\n    {} | {}^", number, found->text, std::string(number.size(), ' '),
-                          std::string(size_t(found->caret), ' '));
+    result += fmt::format("\n    {} | {}", number, found->text);
+    if (at.column > 0)
+      result += fmt::format("\n    {} | {}^", std::string(number.size(), ' '), std::string(size_t(found->caret), ' '));
   }
   return result;
 }

@@ -51,7 +51,7 @@ std::string refusal() {
                                  T::describe(d);
                                  d.finish();
                                },
-                               [] { return Ref<Component>(make<T>()); }, nullptr};
+                               [](const ClassInfo&) { return Ref<Component>(make<T>()); }, nullptr};
   // The class name is that of a template instantiation, so it is unique.
   enlist(node);
   try {

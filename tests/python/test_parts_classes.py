@@ -68,7 +68,6 @@ def test_the_language_knows_the_class():
     assert type(part) is Everything
     assert part.number == pytest.approx(0.5) and type(part.parts[1]) is Everything
     assert etendue.equal(part, etendue.loads(etendue.dumps(part)))
-    assert etendue.equal(part, etendue.loads(etendue.dumps(part, format="json"), name="x.json"))
     with pytest.raises(etendue.Error, match="did you mean 'number'"):
         etendue.loads("Everything { nummer: 1 }")
     shader = etendue.Lambertian(color=part)
