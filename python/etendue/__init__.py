@@ -14,6 +14,20 @@ from typing import Any
 
 from . import _core, _errors
 from ._classes import Part, Parts, described
+from ._declare import (
+    Color,
+    Condition,
+    Lobe,
+    Normal3,
+    Point3,
+    ScatterSample,
+    Transform,
+    Vector2,
+    Vector3,
+    member,
+    unless,
+    when,
+)
 from ._errors import Error, Fault, Warning
 from ._files import dumps, from_dict, load, loads, save, to_dict, walk
 from ._images import (
@@ -77,10 +91,7 @@ def load_plugin(file: Any) -> None:
     """Opens a plugin: a shared library, or a Python file that declares classes."""
     import os
 
-    from . import _classes
-
     _core.load_plugin(os.fspath(file))
-    _classes._made.clear()
 
 
 def _this() -> Any:

@@ -12,6 +12,7 @@
 #include "etendue/describe/reflection.h"
 #include "kept_lists.h"
 #include "live_render.h"
+#include "parts.h"
 #include "trees.h"
 #include "snapshots.h"
 
@@ -82,12 +83,11 @@ nb::object get_member(nb::handle self, const std::string& name) {
 
 /// Writes values over those of a new object, keyword by keyword.
 void init(nb::handle self, const std::string& name, const nb::dict& members) {
-  const ClassInfo& info = class_info(name);
+  if (nb::inst_ready(self)) throw Error(name + ": the object has been initialized already");
+  const ClassInfo* const declared = declared_class_of(self.type());
+  const ClassInfo& info = declared ? *declared : class_info(name);
   if (info.abstract()) throw Error(info.name + " is an interface; make an object of one of its classes");
-  Handle* const handle = nb::inst_ptr<Handle>(self);
-  new (handle) Handle{create(info)};
-  nb::inst_mark_ready(self);
-  objects()[handle->component.get()] = self.ptr();
+  attach(self, declared ? make_declared(info, self.ptr()) : create(info));
   for (const auto [key, value] : members) set_member(self, nb::cast<std::string>(key), value);
 }
 
@@ -105,15 +105,19 @@ nb::object wrap(const Ref<Component>& c) {
   if (!c) return nb::none();
   if (nb::object known = living_object(*c); known.is_valid()) return known;
   nb::object made = nb::inst_alloc(class_for(c->class_info().name));
-  new (nb::inst_ptr<Handle>(made)) Handle{c};
-  nb::inst_mark_ready(made);
-  objects()[c.get()] = made.ptr();
+  attach(made, c);
   return made;
 }
 
 nb::object living_object(const Component& c) {
   const auto known = objects().find(&c);
   return known != objects().end() && Py_REFCNT(known->second) > 0 ? nb::borrow(known->second) : nb::object();
+}
+
+void attach(nb::handle object, const Ref<Component>& c) {
+  new (nb::inst_ptr<Handle>(object)) Handle{c};
+  nb::inst_mark_ready(object);
+  objects()[c.get()] = object.ptr();
 }
 
 bool is_component(nb::handle object) { return nb::isinstance<Handle>(object); }
@@ -127,8 +131,8 @@ Ref<Component> component_of(nb::handle object) {
 }
 
 void bind_components(nb::module_& m) {
-  nb::class_<Handle>(m, "Component", nb::dynamic_attr(), nb::is_weak_referenceable(),
-                     "The base of all classes of the registry.");
+  // Attributes and weak references are those of the Python class that derives from it.
+  nb::class_<Handle>(m, "Component", nb::type_slots(ownership_slots()), "The base of all classes of the registry.");
   m.def("init", &init, "Makes the component of a Python object, and sets members.");
   m.def("get", &get_member);
   m.def("set", &set_member, nb::arg("self"), nb::arg("name"), nb::arg("value").none());
@@ -168,6 +172,9 @@ void bind_components(nb::module_& m) {
     require_shallow(*c);
     use_threads();
     released([&] { prepare_tree(*c); });
+  });
+  m.def("fail", [](nb::handle self, const std::string& member, const std::string& message) {
+    component_of(self)->fail(member, message);
   });
   m.def("class_json", [](const std::string& name) { return class_json(class_info(name)); });
   m.def("class_names", [] {
