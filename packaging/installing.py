@@ -70,7 +70,9 @@ def install_native(prefix: pathlib.Path, building: bool) -> None:
     """What the launcher's own build has: this processor's architecture, this machine's Python."""
     with locked():
         if building:
-            configure(ROOT, BUILD, f"-DETENDUE_BUNDLED_OPENIMAGEIO={FOLDER / 'openimageio'}", "-DETENDUE_PYTHON=ON")
+            # With the Python that runs this, as the launcher configures it.
+            python = ["-DETENDUE_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}"]
+            configure(ROOT, BUILD, f"-DETENDUE_BUNDLED_OPENIMAGEIO={FOLDER / 'openimageio'}", *python)
             build_targets(BUILD, *TARGETS, "etendue_python")
         install(BUILD, prefix)
 

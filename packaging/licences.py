@@ -1,5 +1,6 @@
 """The licences of what a package brings along, from the packages of Debian that it is built with."""
 
+import json
 import pathlib
 import re
 import subprocess
@@ -60,7 +61,8 @@ def collected(bundled: dict[str, str], tools: pathlib.Path, openimageio_folder: 
     return texts
 
 
-def versions(bundled: dict[str, str]) -> dict[str, str]:
-    """Versions of the libraries, for etendue.build_info()."""
+def write_versions(bundled: dict[str, str], prefix: pathlib.Path) -> None:
+    """The versions of the libraries that a package brings, for etendue.build_info()."""
     plain = {re.sub(r"[0-9.+-]+(v5)?$", "", package.removeprefix("lib")): version for package, version in bundled.items()}
-    return dict(sorted({**plain, "openimageio": openimageio.VERSION}.items()))
+    versions = dict(sorted({**plain, "openimageio": openimageio.VERSION}.items()))
+    (prefix / "share" / "etendue" / "bundled.json").write_text(json.dumps({"bundled": versions}, indent=2) + "\n")

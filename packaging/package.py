@@ -30,6 +30,7 @@ def lay_out(tree: pathlib.Path, built: pathlib.Path) -> None:
     shutil.rmtree(tree, ignore_errors=True)
     usr = tree / "usr"
     shutil.copytree(built, usr / "lib" / "etendue")
+    licences.write_versions({}, usr / "lib" / "etendue")
     for file in usr.glob("lib/etendue/lib/*.so*"):
         file.chmod(0o644)
     write(usr / "bin" / "etendue", (installing.ROOT / "packaging" / "etendue.sh").read_text(encoding="utf-8"), executable=True)

@@ -8,8 +8,8 @@ The wheels are in build/dist. Equal sources give equal wheels: files are sorted,
 
 import argparse
 import base64
+import datetime
 import hashlib
-import json
 import os
 import pathlib
 import shutil
@@ -18,7 +18,6 @@ import sys
 import sysconfig
 import tomllib
 import zipfile
-import datetime
 
 import bundling
 import installing
@@ -140,7 +139,7 @@ def main() -> None:
     shutil.rmtree(prefix, ignore_errors=True)
     shutil.copytree(built, prefix)
     bundled = bundling.bundle(prefix)
-    (prefix / "share" / "etendue" / "bundled.json").write_text(json.dumps({"bundled": licences.versions(bundled)}, indent=2) + "\n")
+    licences.write_versions(bundled, prefix)
     texts = licences.collected(bundled, installing.BUILD / "python-tools", installing.FOLDER / "openimageio")
     kinds = extensions(prefix)
     if not kinds:

@@ -80,19 +80,18 @@ def _known() -> list[tuple[str, list[str]]]:
 
 def _best(available: list[str]) -> tuple[Optional[str], list[str]]:
     """The best available architecture that this processor can run, and the flags that it lacks for the next better one."""
-    there: set[str] = set()
-    with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
-        for line in file:
-            if line.startswith("flags"):
-                there.update(line.split())
-                break
-    best = None
+    there, best = _processor_flags(), None
     for name, flags in reversed(_known()):
         if lacking := [flag for flag in flags if flag not in there]:
             return best, lacking
         if name in available:
             best = name
     return best, []
+
+
+def _processor_flags() -> set[str]:
+    with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
+        return next((set(line.split()) for line in file if line.startswith("flags")), set())
 
 
 def _program(folder: str) -> str:
