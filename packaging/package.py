@@ -4,7 +4,7 @@
     ./etendue package --native    for processors like this machine's, from the launcher's own build: to try the package
 
 The Debian package has in /usr/lib/etendue what a wheel has in etendue/_prefix, but depends on Debian's own libraries. OpenImageIO alone
-is brought along, as Debian's needs 250 packages.
+is brought along, as Debian's needs 250 others.
 """
 
 import argparse
