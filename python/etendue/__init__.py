@@ -12,6 +12,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from . import _installation
+
+__path__.append(_installation.folder_of_build())  # where the extension module is
+
 from . import _core, _errors
 from ._classes import Part, Parts, described
 from ._declare import (
@@ -29,6 +33,7 @@ from ._declare import (
     when,
 )
 from ._errors import Error, Fault, Warning
+from ._installation import build_info
 from ._files import dumps, from_dict, load, loads, save, to_dict, walk
 from ._images import (
     ChannelComparison,
