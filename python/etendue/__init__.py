@@ -12,10 +12,46 @@ from __future__ import annotations
 
 from typing import Any
 
+from . import _installation
+
+__path__.append(_installation.folder_of_build())  # where the extension module is
+
 from . import _core, _errors
 from ._classes import Part, Parts, described
+from ._declare import (
+    Color,
+    Condition,
+    Lobe,
+    Normal3,
+    Point3,
+    ScatterSample,
+    Transform,
+    Vector2,
+    Vector3,
+    member,
+    unless,
+    when,
+)
 from ._errors import Error, Fault, Warning
+from ._installation import build_info
 from ._files import dumps, from_dict, load, loads, save, to_dict, walk
+from ._images import (
+    ChannelComparison,
+    Comparison,
+    Image,
+    TileRatios,
+    compare_images,
+    light_groups,
+    read_image,
+    relight,
+    tile_ratios,
+)
+from ._paths import PathContributions, PathRecord, PathVertices
+from ._progress import Progress
+from ._render import Render, denoise, render
+from ._widgets import Widget, difference, show, side_by_side
+from ._laboratory import Conformance, ErrorComparison, Verification, compare, conform, verify
+from ._tables import Table
 from ._points import (
     ALL_LOBES,
     SMOOTH_LOBES,
@@ -60,10 +96,7 @@ def load_plugin(file: Any) -> None:
     """Opens a plugin: a shared library, or a Python file that declares classes."""
     import os
 
-    from . import _classes
-
     _core.load_plugin(os.fspath(file))
-    _classes._made.clear()
 
 
 def _this() -> Any:

@@ -9,13 +9,16 @@ import inspect
 import json
 import keyword
 import re
+import sys
 from collections.abc import Iterator, MutableSequence
-from typing import Any, Iterable, Optional
+from typing import Any, Iterable, NoReturn, Optional
 
 from . import _core
 from ._errors import Error, NoSuchMember
 
 _made: dict[str, type] = {}
+_declared: dict[str, type] = {}  # classes written in Python (_declare.py)
+_declare: Any = None  # declares such a class; set by _declare.py
 
 
 class Parts(MutableSequence):
@@ -70,9 +73,27 @@ class Part(_core.Component):
     def __init__(self, *literal: Any, **members: Any) -> None:
         _initialize(self, literal, members)
 
+    def __init_subclass__(cls, abstract: bool = False, **options: Any) -> None:
+        """A class written in Python: see etendue.member. abstract: only other classes derive from it, and it has no objects."""
+        super().__init_subclass__(**options)
+        if "_made_by_registry" not in cls.__dict__:
+            _declare(cls, abstract, sys._getframe(1))
+
+    def fail(self, member: str, message: str) -> NoReturn:
+        """Raises Error about a member, with the place where it was written: for the method `prepare` of classes in Python."""
+        _core.fail(self, member, message)
+        raise AssertionError
+
     def __setattr__(self, name: str, value: Any) -> None:
         if name.startswith("_"):
             object.__setattr__(self, name, value)
+        elif type(self).__name__ in _declared and all(
+            m["name"] != _member_name(name) for m in described(type(self))["members"]
+        ):
+            raise NoSuchMember(
+                f"{type(self).__name__} has no member '{name}': declare it by etendue.member, or let the name of an attribute "
+                f"that is no member begin with an underscore: self._{name}"
+            )
         else:
             _core.set(self, _member_name(name), value)
 
@@ -104,6 +125,11 @@ class Part(_core.Component):
         return at
 
     def __setitem__(self, path: str, value: Any) -> None:
+        owner, name, changed = self._target(path, value)
+        _core.set(owner, name, changed)
+
+    def _target(self, path: str, value: Any) -> tuple["Part", str, Any]:
+        """The part whose member has to be set, the member, and its new value, for a value at a path."""
         steps = list(_steps(path))
         at: Any = self
         for name, places in steps[:-1]:
@@ -116,8 +142,7 @@ class Part(_core.Component):
         name, places = steps[-1]
         owner = _as_part(at, path)
         if not places:
-            _core.set(owner, name, value)
-            return
+            return owner, name, value
         entries = getattr(owner, name)
         for place in places[:-1]:
             entries = entries[place]
@@ -127,7 +152,7 @@ class Part(_core.Component):
         changed[places[-1]] = value
         if len(places) > 1:
             raise Error(f"'{path}': set the whole list instead of a number in it")
-        _core.set(owner, name, changed)
+        return owner, name, changed
 
     def __copy__(self) -> "Part":
         return _core.copy(self)
@@ -294,7 +319,7 @@ def _questions_of(name: str) -> dict[str, Any]:
 
 def class_named(name: str) -> type:
     """The Python class of a class of the registry; made at the first call."""
-    known = _made.get(name)
+    known = _declared.get(name) or _made.get(name)
     if known is not None:
         return known
     description = json.loads(_core.class_json(name))
@@ -305,6 +330,7 @@ def class_named(name: str) -> type:
         "__module__": "etendue",
         "__qualname__": name,
         "_description": description,
+        "_made_by_registry": True,
         "__signature__": _signature(description),
     }
     questions = _questions_of(name)

@@ -20,6 +20,9 @@ struct Handle {
   ~Handle();
 };
 
+/// From now on the Python object is that of this component, which was made for it.
+void attach(nb::handle object, const Ref<Component>&);
+
 /// The Python object of a component: always the same one for as long as it lives. None for null.
 nb::object wrap(const Ref<Component>&);
 /// The Python object of a component if it has one that lives; else an invalid one.
@@ -64,6 +67,7 @@ void bind_values(nb::module_&);
 void bind_components(nb::module_&);
 void bind_language(nb::module_&);
 void bind_images(nb::module_&);
+void bind_laboratory(nb::module_&);
 void bind_render(nb::module_&);
 void bind_scene_questions(nb::module_&);
 void bind_points(nb::module_&);
@@ -74,6 +78,7 @@ void bind_volume_questions(nb::module_&);
 void bind_map_questions(nb::module_&);
 void bind_spectrum_questions(nb::module_&);
 void bind_sampler_questions(nb::module_&);
+void bind_parts(nb::module_&);
 
 // ---- implementation ----------------------------------------------------------------------------------------------------
 

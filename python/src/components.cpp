@@ -11,6 +11,9 @@
 #include "describe/words.h"
 #include "etendue/describe/reflection.h"
 #include "kept_lists.h"
+#include "live_render.h"
+#include "parts.h"
+#include "trees.h"
 #include "snapshots.h"
 
 namespace etendue::python {
@@ -56,6 +59,14 @@ void set_member(nb::handle self, const std::string& name, nb::handle value) {
   const Member* member = c->class_info().find(name);
   const Value given = to_value(value, member, at);
   forget_snapshots(*c);
+  LiveRender* const live = render_of(*c);
+  if (member && member->kind == Kind::component) refuse_cycle(*c, live ? Value() : member->get(*c, *member), given);
+  if (live && member) {
+    const LiveRender::Change change{c, member, given};
+    live->edit(std::span(&change, 1));
+    if (const LiveRender* still = render_of(*c); !still || still->idle()) note_origin(*c, name, at);
+    return;
+  }
   const KeptList kept(*c, member);
   set(*c, name, given);
   kept.replaced();
@@ -65,18 +76,18 @@ void set_member(nb::handle self, const std::string& name, nb::handle value) {
 nb::object get_member(nb::handle self, const std::string& name) {
   const Ref<Component> c = component_of(self);
   const Member& member = member_of(*c, name);
+  if (nb::object before = value_before_edit(*c, name); before.is_valid()) return before;
   if (member.view) return view_of(c, member);
   return to_python(member.get(*c, member), &member);
 }
 
 /// Writes values over those of a new object, keyword by keyword.
 void init(nb::handle self, const std::string& name, const nb::dict& members) {
-  const ClassInfo& info = class_info(name);
+  if (nb::inst_ready(self)) throw Error(name + ": the object has been initialized already");
+  const ClassInfo* const declared = declared_class_of(self.type());
+  const ClassInfo& info = declared ? *declared : class_info(name);
   if (info.abstract()) throw Error(info.name + " is an interface; make an object of one of its classes");
-  Handle* const handle = nb::inst_ptr<Handle>(self);
-  new (handle) Handle{create(info)};
-  nb::inst_mark_ready(self);
-  objects()[handle->component.get()] = self.ptr();
+  attach(self, declared ? make_declared(info, self.ptr()) : create(info));
   for (const auto [key, value] : members) set_member(self, nb::cast<std::string>(key), value);
 }
 
@@ -87,21 +98,26 @@ Handle::~Handle() {
   const auto known = objects().find(component.get());
   // The object may have been made anew while this one was being destroyed.
   if (known != objects().end() && nb::inst_ptr<Handle>(known->second) == this) objects().erase(known);
+  release_tree(std::move(component));
 }
 
 nb::object wrap(const Ref<Component>& c) {
   if (!c) return nb::none();
   if (nb::object known = living_object(*c); known.is_valid()) return known;
   nb::object made = nb::inst_alloc(class_for(c->class_info().name));
-  new (nb::inst_ptr<Handle>(made)) Handle{c};
-  nb::inst_mark_ready(made);
-  objects()[c.get()] = made.ptr();
+  attach(made, c);
   return made;
 }
 
 nb::object living_object(const Component& c) {
   const auto known = objects().find(&c);
   return known != objects().end() && Py_REFCNT(known->second) > 0 ? nb::borrow(known->second) : nb::object();
+}
+
+void attach(nb::handle object, const Ref<Component>& c) {
+  new (nb::inst_ptr<Handle>(object)) Handle{c};
+  nb::inst_mark_ready(object);
+  objects()[c.get()] = object.ptr();
 }
 
 bool is_component(nb::handle object) { return nb::isinstance<Handle>(object); }
@@ -115,8 +131,8 @@ Ref<Component> component_of(nb::handle object) {
 }
 
 void bind_components(nb::module_& m) {
-  nb::class_<Handle>(m, "Component", nb::dynamic_attr(), nb::is_weak_referenceable(),
-                     "The base of all classes of the registry.");
+  // Attributes and weak references are those of the Python class that derives from it.
+  nb::class_<Handle>(m, "Component", nb::type_slots(ownership_slots()), "The base of all classes of the registry.");
   m.def("init", &init, "Makes the component of a Python object, and sets members.");
   m.def("get", &get_member);
   m.def("set", &set_member, nb::arg("self"), nb::arg("name"), nb::arg("value").none());
@@ -136,14 +152,29 @@ void bind_components(nb::module_& m) {
   });
   m.def("set_name", [](nb::handle self, const std::string& name) {
     const Ref<Component> c = component_of(self);
+    require_no_render(*c, "named");
     if (!c->origin) c->origin = std::make_unique<Component::Origin>();
     c->origin->name = name;
   });
-  m.def("copy", [](nb::handle self) { return wrap(copy(*component_of(self))); });
-  m.def("equal", [](nb::handle a, nb::handle b) { return equal(Value(component_of(a)), Value(component_of(b))); });
+  m.def("copy", [](nb::handle self) {
+    const Ref<Component> c = component_of(self);
+    return wrap(reading(*c, [&] { return copy(*c); }));
+  });
+  m.def("equal", [](nb::handle a, nb::handle b) {
+    const Ref<Component> first = component_of(a), second = component_of(b);
+    require_shallow(*first);
+    require_shallow(*second);
+    return equal(Value(first), Value(second));
+  });
   m.def("prepare", [](nb::handle self) {
     const Ref<Component> c = component_of(self);
+    require_no_render(*c, "prepared");
+    require_shallow(*c);
+    use_threads();
     released([&] { prepare_tree(*c); });
+  });
+  m.def("fail", [](nb::handle self, const std::string& member, const std::string& message) {
+    component_of(self)->fail(member, message);
   });
   m.def("class_json", [](const std::string& name) { return class_json(class_info(name)); });
   m.def("class_names", [] {

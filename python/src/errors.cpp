@@ -7,6 +7,7 @@
 
 #include "binding.h"
 #include "etendue/language/language.h"
+#include "parts_calls.h"
 
 namespace etendue::python {
 
@@ -23,15 +24,23 @@ nb::dict location_dict(const Error& e) {
   return d;
 }
 
-/// Raises etendue.Error: its text is what the program prints, and its attributes are made by etendue/_errors.py.
+/// Raises etendue.Error: its text is what the program prints, and its attributes are made by etendue/_errors.py. An exception of
+/// a method that is written in Python is its cause; what is no failure, such as KeyboardInterrupt, is raised itself again.
 void raise(const std::vector<Error>& errors) {
   std::string text;
   nb::list all;
+  nb::object cause;
   for (const Error& e : errors) {
     text += (text.empty() ? "" : "\n") + show(e);
     all.append(location_dict(e));
+    if (!cause.is_valid()) cause = cause_of(e.what());
+  }
+  if (cause.is_valid() && !PyErr_GivenExceptionMatches(cause.ptr(), PyExc_Exception)) {
+    PyErr_SetObject(cause.type().ptr(), cause.ptr());
+    return;
   }
   nb::object made = nb::handle(error_type)(text, all);
+  if (cause.is_valid()) PyException_SetCause(made.ptr(), cause.release().ptr());
   PyErr_SetObject(error_type, made.ptr());
 }
 

@@ -86,7 +86,7 @@ struct Registry::State {
   std::map<std::string, std::string> refused;  // rejected plugins and why: reopened, they would not enlist again
   std::string provider;                        // of the classes being adopted
   std::map<std::string, std::function<void(const std::string&)>> readers;  // of plugins, by the ending of their files
-  std::vector<std::unique_ptr<ClassInfo>> replaced;                        // declarations that objects may still have
+  std::vector<std::unique_ptr<ClassInfo>> replaced;  // declarations that were replaced or refused: objects may have them
 
   /// The function that reads such a plugin; empty: it is a library.
   std::function<void(const std::string&)> reader_of(const std::string& file) {
@@ -284,11 +284,17 @@ const ClassInfo& Registry::declare(std::unique_ptr<ClassInfo> info) {
     throw Error(fmt::format("'{}': the name of a class begins with a capital letter", info->name));
   if (const std::string wrong = fault(*info); !wrong.empty()) throw Error(info->name + ": " + wrong);
   // Without the lock: a script that makes the object may wait for another thread that waits for the registry.
-  if (const std::string faults = note_defaults({info.get()}); !faults.empty())
-    throw Error(info->name + " cannot be used:" + faults);
+  const std::string faults = note_defaults({info.get()});
   const std::lock_guard lock(state_->mutex);
   std::unique_ptr<ClassInfo>& place = state_->by_name[info->name];
-  if (place && !place->declared) throw Error(fmt::format("{}: there already is a class of this name", info->name));
+  const bool taken = place && !place->declared;
+  const std::string name = info->name;
+  // A class that is refused is kept as well: the objects that were made for its defaults may still exist.
+  if (!faults.empty() || taken) {
+    state_->replaced.push_back(std::move(info));
+    if (!place) state_->by_name.erase(name);
+    throw Error(taken ? name + ": there already is a class of this name" : name + " cannot be used:" + faults);
+  }
   if (place) state_->replaced.push_back(std::move(place));
   place = std::move(info);
   return *place;
@@ -324,6 +330,8 @@ void Registry::load_plugin(const std::string& path) {
   if (const auto read = state_->reader_of(file)) {
     try {
       read(file);
+    } catch (const Error& e) {
+      throw Error("plugin '" + file + "': " + e.what(), e.location);
     } catch (...) {
       throw named();
     }

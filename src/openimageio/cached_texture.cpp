@@ -68,14 +68,15 @@ float cache_megabytes() {
 }  // namespace
 
 OIIO::ImageCache& image_cache() {
-  static OIIO::ImageCache* const cache = [] {
-    OIIO::ImageCache* c = OIIO::ImageCache::create(false);
+  // Never destroyed. From version 3 on, OpenImageIO returns a shared pointer, before that a plain one.
+  static auto& cache = *new auto([] {
+    auto c = OIIO::ImageCache::create(false);
     c->attribute("autotile", CachedTexture::tile_side);
     c->attribute("accept_untiled", 1);
     c->attribute("accept_unmipped", 1);
     c->attribute("max_memory_MB", cache_megabytes());
     return c;
-  }();
+  }());
   return *cache;
 }
 

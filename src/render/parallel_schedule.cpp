@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include <bit>
+#include <map>
 #include <mutex>
 
 namespace etendue {
@@ -17,12 +18,53 @@ std::uint32_t samples_per_step(const PixelArea& area) {
   return std::uint32_t(std::bit_floor(std::clamp<std::uint64_t>(wanted / std::max<std::uint64_t>(pixels, 1), 1, 1 << 14)));
 }
 
+namespace {
+
+/// A task arena for a number of threads, which is kept for the next schedule: an arena that is destroyed while a worker joins
+/// it is never freed (7 kB each, oneTBB 2021.8), and programs make thousands of schedules.
+class ReusedArena {
+ public:
+  explicit ReusedArena(int threads) : threads_(threads) {
+    const std::lock_guard lock(mutex());
+    std::vector<std::unique_ptr<tbb::task_arena>>& left = idle()[threads];
+    if (!left.empty()) {
+      arena_ = std::move(left.back());
+      left.pop_back();
+    } else {
+      arena_ = std::make_unique<tbb::task_arena>(threads);
+    }
+  }
+  ~ReusedArena() {
+    const std::lock_guard lock(mutex());
+    idle()[threads_].push_back(std::move(arena_));
+  }
+  ReusedArena(const ReusedArena&) = delete;
+  ReusedArena& operator=(const ReusedArena&) = delete;
+  tbb::task_arena& operator*() const { return *arena_; }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex guard;
+    return guard;
+  }
+  /// By the number of threads; never destroyed, as renders may end after the static objects.
+  static std::map<int, std::vector<std::unique_ptr<tbb::task_arena>>>& idle() {
+    static auto* all = new std::map<int, std::vector<std::unique_ptr<tbb::task_arena>>>;
+    return *all;
+  }
+
+  int threads_;
+  std::unique_ptr<tbb::task_arena> arena_;
+};
+
+}  // namespace
+
 struct ParallelSchedule::State {
   Film& film;
   std::function<void(std::uint64_t, std::uint64_t)> tick;
   int threads;
   tbb::global_control limit;
-  tbb::task_arena tasks;
+  ReusedArena tasks;
   tbb::enumerable_thread_specific<Arena> arenas;
 
   // Tiles are reused: a worker takes one, and returns it after merging.
@@ -52,7 +94,7 @@ ParallelSchedule::ParallelSchedule(Film& film, int threads, const std::atomic<bo
                        std::move(tick),
                        thread_count(threads),
                        tbb::global_control(tbb::global_control::max_allowed_parallelism, size_t(thread_count(threads))),
-                       tbb::task_arena(thread_count(threads)),
+                       ReusedArena(thread_count(threads)),
                        {},
                        {},
                        {}}) {
@@ -88,7 +130,7 @@ void ParallelSchedule::film_items(std::uint64_t count, FilmWork work, void* self
   std::uint64_t done = 0;
   const size_t largest = s.film.largest_kept();
   in_order<ImageTile>(
-      s.tasks, s.threads, count, [&] { return aborted(); },
+      *s.tasks, s.threads, count, [&] { return aborted(); },
       [&](std::uint64_t item) {
         std::unique_ptr<ImageTile> tile(s.take());
         tile->keep_largest(largest);
@@ -105,7 +147,7 @@ void ParallelSchedule::film_items(std::uint64_t count, FilmWork work, void* self
 void ParallelSchedule::items(std::uint64_t count, Results& results) {
   State& s = *state_;
   in_order<void>(
-      s.tasks, s.threads, count, [&] { return aborted(); },
+      *s.tasks, s.threads, count, [&] { return aborted(); },
       [&](std::uint64_t item) {
         void* some = results.make();
         Arena& arena = s.arenas.local();
