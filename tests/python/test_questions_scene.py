@@ -171,6 +171,15 @@ def test_light_sampler():
     assert np.allclose(power.probability, np.where(power.object == 0, 0.25, 0.75), rtol=1e-3)
     near = scene.sample_light(points, np.stack([u, u, u], axis=1), NM)
     assert (near.object == 0).mean() > 0.9
+    # The luminaire's probability is part of the pdf.
+    for sampler in (None, etendue.PowerLightSampler(uniform=0)):
+        s = scene.sample_light(points, np.stack([u, u[::-1], u], axis=1), NM, light_sampler=sampler)
+        found = scene.nearest(points[np.zeros(1000, int)].leave(s.direction))
+        assert np.array_equal(found.object, s.object)
+        assert np.allclose(scene.light_pdf(points, found, light_sampler=sampler), s.pdf, rtol=1e-2)
+    # With the probabilities 1/4 and 3/4; without them the pdfs are as the squared distances, 9 and 90.
+    first, second = (s.pdf[s.object == i].mean() for i in (0, 1))
+    assert 3 * first / second == pytest.approx(9 / 90, rel=0.02)
 
 
 def test_questions_of_several_threads_and_edits_between():
