@@ -21,6 +21,23 @@ from ._classes import Part, Parts, described
 from ._errors import Error, Fault, Warning
 from ._installation import build_info
 from ._files import dumps, from_dict, load, loads, save, to_dict, walk
+from ._images import (
+    ChannelComparison,
+    Comparison,
+    Image,
+    TileRatios,
+    compare_images,
+    light_groups,
+    read_image,
+    relight,
+    tile_ratios,
+)
+from ._paths import PathContributions, PathRecord, PathVertices
+from ._progress import Progress
+from ._render import Render, denoise, render
+from ._widgets import Widget, difference, show, side_by_side
+from ._laboratory import Conformance, ErrorComparison, Verification, compare, conform, verify
+from ._tables import Table
 
 __version__: str = _core.__version__
 Value = _core.Value

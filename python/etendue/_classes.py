@@ -104,6 +104,11 @@ class Part(_core.Component):
         return at
 
     def __setitem__(self, path: str, value: Any) -> None:
+        owner, name, changed = self._target(path, value)
+        _core.set(owner, name, changed)
+
+    def _target(self, path: str, value: Any) -> tuple["Part", str, Any]:
+        """The part whose member has to be set, the member, and its new value, for a value at a path."""
         steps = list(_steps(path))
         at: Any = self
         for name, places in steps[:-1]:
@@ -116,8 +121,7 @@ class Part(_core.Component):
         name, places = steps[-1]
         owner = _as_part(at, path)
         if not places:
-            _core.set(owner, name, value)
-            return
+            return owner, name, value
         entries = getattr(owner, name)
         for place in places[:-1]:
             entries = entries[place]
@@ -127,7 +131,7 @@ class Part(_core.Component):
         changed[places[-1]] = value
         if len(places) > 1:
             raise Error(f"'{path}': set the whole list instead of a number in it")
-        _core.set(owner, name, changed)
+        return owner, name, changed
 
     def __copy__(self) -> "Part":
         return _core.copy(self)

@@ -62,6 +62,7 @@ void bind_values(nb::module_&);
 void bind_components(nb::module_&);
 void bind_language(nb::module_&);
 void bind_images(nb::module_&);
+void bind_laboratory(nb::module_&);
 void bind_render(nb::module_&);
 
 // ---- implementation ----------------------------------------------------------------------------------------------------

@@ -11,6 +11,8 @@
 #include "describe/words.h"
 #include "etendue/describe/reflection.h"
 #include "kept_lists.h"
+#include "live_render.h"
+#include "trees.h"
 
 namespace etendue::python {
 
@@ -54,6 +56,14 @@ void set_member(nb::handle self, const std::string& name, nb::handle value) {
   const Location at = calling_line();
   const Member* member = c->class_info().find(name);
   const Value given = to_value(value, member, at);
+  LiveRender* const live = render_of(*c);
+  if (member && member->kind == Kind::component) refuse_cycle(*c, live ? Value() : member->get(*c, *member), given);
+  if (live && member) {
+    const LiveRender::Change change{c, member, given};
+    live->edit(std::span(&change, 1));
+    if (const LiveRender* still = render_of(*c); !still || still->idle()) note_origin(*c, name, at);
+    return;
+  }
   const KeptList kept(*c, member);
   set(*c, name, given);
   kept.replaced();
@@ -63,6 +73,7 @@ void set_member(nb::handle self, const std::string& name, nb::handle value) {
 nb::object get_member(nb::handle self, const std::string& name) {
   const Ref<Component> c = component_of(self);
   const Member& member = member_of(*c, name);
+  if (nb::object before = value_before_edit(*c, name); before.is_valid()) return before;
   if (member.view) return view_of(c, member);
   return to_python(member.get(*c, member), &member);
 }
@@ -84,6 +95,7 @@ Handle::~Handle() {
   const auto known = objects().find(component.get());
   // The object may have been made anew while this one was being destroyed.
   if (known != objects().end() && nb::inst_ptr<Handle>(known->second) == this) objects().erase(known);
+  release_tree(std::move(component));
 }
 
 nb::object wrap(const Ref<Component>& c) {
@@ -129,13 +141,25 @@ void bind_components(nb::module_& m) {
   });
   m.def("set_name", [](nb::handle self, const std::string& name) {
     const Ref<Component> c = component_of(self);
+    require_no_render(*c, "named");
     if (!c->origin) c->origin = std::make_unique<Component::Origin>();
     c->origin->name = name;
   });
-  m.def("copy", [](nb::handle self) { return wrap(copy(*component_of(self))); });
-  m.def("equal", [](nb::handle a, nb::handle b) { return equal(Value(component_of(a)), Value(component_of(b))); });
+  m.def("copy", [](nb::handle self) {
+    const Ref<Component> c = component_of(self);
+    return wrap(reading(*c, [&] { return copy(*c); }));
+  });
+  m.def("equal", [](nb::handle a, nb::handle b) {
+    const Ref<Component> first = component_of(a), second = component_of(b);
+    require_shallow(*first);
+    require_shallow(*second);
+    return equal(Value(first), Value(second));
+  });
   m.def("prepare", [](nb::handle self) {
     const Ref<Component> c = component_of(self);
+    require_no_render(*c, "prepared");
+    require_shallow(*c);
+    use_threads();
     released([&] { prepare_tree(*c); });
   });
   m.def("class_json", [](const std::string& name) { return class_json(class_info(name)); });

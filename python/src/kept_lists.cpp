@@ -66,8 +66,10 @@ nb::object view_of(const Ref<Component>& c, const Member& member) {
                   nb::rv_policy::reference);
 }
 
+bool is_viewed(const Component& component, const Member& member) { return viewed().contains({&component, &member}); }
+
 KeptList::KeptList(Component& component, const Member* member) : component_(component) {
-  if (!member || !member->exchange || !viewed().contains({&component, member})) return;
+  if (!member || !member->exchange || !is_viewed(component, *member)) return;
   member_ = member;
   member_->exchange(component_, kept_);
 }

@@ -10,6 +10,8 @@ namespace etendue::python {
 
 /// A read-only array of the member's list, shape (rows,) or (rows, width), which shares the component's memory.
 nb::object view_of(const Ref<Component>&, const Member&);
+/// Whether an array views the list that the member has now.
+bool is_viewed(const Component&, const Member&);
 
 /// Guards the arrays of one member while the member is set. Made before; `replaced` is called when the new value is in place.
 /// Without that call, because the value was refused, the old list is put back.

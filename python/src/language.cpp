@@ -10,6 +10,7 @@
 #include "etendue/language/language.h"
 #include "etendue/render/job.h"
 #include "language/json.h"
+#include "live_render.h"
 #include "saving/save_job.h"
 
 namespace etendue::python {
@@ -47,16 +48,16 @@ void bind_language(nb::module_& m) {
   });
   m.def("write_description", [](nb::handle c, bool all, const std::string& folder) {
     const Ref<Component> component = component_of(c);
-    return released([&] { return write_description(*component, all, folder); });
+    return reading(*component, [&] { return write_description(*component, all, folder); });
   });
   m.def("write_json", [](nb::handle c, bool all, const std::string& folder) {
     const Ref<Component> component = component_of(c);
-    return released([&] { return write_json(*component, all, folder); });
+    return reading(*component, [&] { return write_json(*component, all, folder); });
   });
   m.def("save", [](nb::handle job, const std::string& file, bool all, bool strict) {
     const Ref<Job> saved = component_as<Job>(job, "a Job");
     const Location at = calling_line();
-    released([&] {
+    reading(*saved, [&] {
       if (file.ends_with(".etd") || language::is_json(file))
         save_description(*saved, file, "", all, at);
       else

@@ -12,6 +12,7 @@ NB_MODULE(_core, m) {
   bind_language(m);
   bind_images(m);
   bind_render(m);
+  bind_laboratory(m);
   // The interpreter may end while parts, pictures and classes are still referred to: that is no leak worth a message.
   nb::set_leak_warnings(false);
 }

@@ -21,6 +21,8 @@ namespace {
 /// A NumPy array, or what looks like one, as doubles in C order.
 using Doubles = nb::ndarray<const double, nb::numpy, nb::c_contig>;
 
+std::string text_of(const nb::object& object) { return nb::cast<std::string>(nb::steal<nb::str>(PyObject_Str(object.ptr()))); }
+
 std::string class_of(nb::handle object) { return nb::cast<std::string>(nb::str(object.type().attr("__name__"))); }
 
 bool is_text_kind(Kind k) { return k == Kind::string || k == Kind::file || k == Kind::choice; }
@@ -60,7 +62,7 @@ Value from_array(nb::object array, const Member* member, Location at) {
   const std::string kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
   if (kind == "U" || kind == "S" || kind == "O") return to_value(array.attr("tolist")(), member, at);
   if (kind != "b" && kind != "i" && kind != "u" && kind != "f")
-    throw Error("cannot be an array of " + nb::cast<std::string>(nb::str(array.attr("dtype"))), at);
+    throw Error("cannot be an array of " + text_of(array.attr("dtype")), at);
   const nb::object numpy = nb::module_::import_("numpy");
   if (nb::cast<size_t>(array.attr("ndim")) == 0) {
     if (kind == "b") return Value(nb::cast<bool>(array.attr("item")()), at);
@@ -74,7 +76,7 @@ Value from_array(nb::object array, const Member* member, Location at) {
     return transform_from({doubles.data(), doubles.data() + count}, at);
   }
   if (doubles.ndim() > 2 || (doubles.ndim() == 2 && (doubles.shape(1) < 1 || doubles.shape(1) > 4)))
-    throw Error(fmt::format("cannot be an array of shape {}", nb::cast<std::string>(nb::str(array.attr("shape")))), at);
+    throw Error(fmt::format("cannot be an array of shape {}", text_of(array.attr("shape"))), at);
   Numbers numbers;
   numbers.width = doubles.ndim() == 2 ? int(doubles.shape(1)) : 1;
   numbers.values.assign(doubles.data(), doubles.data() + count);
@@ -114,7 +116,7 @@ Value to_value(nb::handle object, const Member* member, Location at) {
     return Value(Number{nb::cast<double>(nb::float_(object))}, at);
   if (nb::isinstance<nb::str>(object)) return from_text(nb::cast<std::string>(object), member, at);
   if (nb::isinstance<nb::list>(object) || nb::isinstance<nb::tuple>(object)) return from_sequence(object, member, at);
-  if (nb::hasattr(object, "__fspath__")) return Value(nb::cast<std::string>(nb::str(object.attr("__fspath__")())), at);
+  if (nb::hasattr(object, "__fspath__")) return Value(text_of(object.attr("__fspath__")()), at);
   if (nb::hasattr(object, "_etendue_value_")) return to_value(object.attr("_etendue_value_")(), member, at);
   if (const nb::object array = as_array(object); array.is_valid()) return from_array(array, member, at);
   if (nb::hasattr(object, "__float__") || nb::hasattr(object, "__index__"))

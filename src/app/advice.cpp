@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
+#include "core/number_text.h"
 #include "describe/guard.h"
 #include "etendue/describe/registry.h"
-#include "text.h"
 
 namespace etendue {
 

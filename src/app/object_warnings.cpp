@@ -5,13 +5,13 @@
 #include <set>
 #include <unordered_set>
 
+#include "core/number_text.h"
 #include "etendue/describe/registry.h"
 #include "etendue/mesh_facts.h"
 #include "etendue/object_map.h"
 #include "etendue/transport/medium_stack.h"
 #include "geometry/closed_surface.h"
 #include "scene_warnings.h"
-#include "text.h"
 
 namespace etendue {
 namespace {

@@ -1,6 +1,7 @@
 // Shows the progress of a render as a bar or lines of text, or as JSON for other programs.
 
 #include "progress_display.h"
+#include "core/number_text.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -8,8 +9,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-
-#include "text.h"
 
 namespace etendue {
 

@@ -1,10 +1,9 @@
 #include "scene_warnings.h"
+#include "core/number_text.h"
 
 #include <fmt/format.h>
 
 #include <map>
-
-#include "text.h"
 
 namespace etendue {
 

@@ -1,15 +1,10 @@
 #pragma once
-// Conversion of numbers and times from and to text, and reading of text files.
+// Reading of numbers, times and text files.
 
-#include <cstdint>
 #include <string>
 
 namespace etendue {
 
-/// 1234567 as "1,234,567".
-std::string grouped(std::uint64_t);
-/// "4.2 s", "3 m 07 s", "2 h 05 m".
-std::string duration_text(double seconds);
 /// "90", "90s", "5m", "1.5h", "1h30m" in seconds. Throws Error, with `option` as location, for anything else.
 double parse_duration(const std::string& text, const std::string& option);
 /// Exactly `count` integers separated by `separator`. Throws Error with `option` as location for anything else.

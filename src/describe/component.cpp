@@ -66,12 +66,12 @@ void read_ahead(Component& root) {
 
 void prepare_tree(Component& root) {
   // Depth-first search with an explicit stack, so that long chains need no deep recursion.
-  struct Step {
+  struct Visit {
     Component* component;
     std::vector<Component*> rest;
   };
   std::unordered_set<const Component*> seen;
-  std::vector<Step> way;
+  std::vector<Visit> way;
   Expansion expansion;
   const auto visit = [&](Component& c) {
     if (seen.insert(&c).second) way.push_back({&c, components_of(c)});
@@ -80,14 +80,14 @@ void prepare_tree(Component& root) {
   read_ahead(root);
   visit(root);
   while (!way.empty()) {
-    Step& step = way.back();
-    if (!step.rest.empty()) {
-      Component* next = step.rest.back();
-      step.rest.pop_back();
+    Visit& last = way.back();
+    if (!last.rest.empty()) {
+      Component* next = last.rest.back();
+      last.rest.pop_back();
       visit(*next);
       continue;
     }
-    Component& c = *step.component;
+    Component& c = *last.component;
     way.pop_back();
     expansion.check(c);
     try {

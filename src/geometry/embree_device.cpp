@@ -85,7 +85,7 @@ float exact_distance(const MovingTriangleView& view, std::uint32_t triangle, con
 
 EmbreeTriangles::EmbreeTriangles(const MovingTriangleView& view) : scene_(rtcNewScene(embree_device())), view_(view) {
   check_embree("making a scene");
-  rtcSetSceneFlags(scene_.get(), RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  rtcSetSceneFlags(scene_.get(), RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | embree_filter_flag));
   if (view.times.empty()) {
     attach_triangles(scene_.get(), {view.positions.first(view.vertices), view.triangles}, RTC_BUILD_QUALITY_MEDIUM);
   } else {
@@ -98,14 +98,13 @@ EmbreeTriangles::EmbreeTriangles(const MovingTriangleView& view) : scene_(rtcNew
 }
 
 bool EmbreeTriangles::nearest(const Ray& ray, float& t, std::uint32_t& triangle, float& u, float& v) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  EmbreeContext context;
   RTCRayHit query;
   set_embree_ray(query.ray, ray, clock_);
   while (true) {
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_.get(), &context, &query);
+    embree_intersect(scene_.get(), context, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     t = exact_distance(view_, query.hit.primID, ray);
     if (t > 0 && t < ray.maximum) [[likely]]
@@ -120,12 +119,11 @@ bool EmbreeTriangles::nearest(const Ray& ray, float& t, std::uint32_t& triangle,
 
 bool EmbreeTriangles::any(const Ray& ray) const {
   struct Context {
-    RTCIntersectContext embree;
+    EmbreeContext embree;
     const EmbreeTriangles& triangles;
     const Ray& ray;
   } context{{}, *this, ray};
-  rtcInitIntersectContext(&context.embree);
-  context.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
+  const RTCFilterFunctionN filter = [](const RTCFilterFunctionNArguments* arguments) {
     const Context& c = *reinterpret_cast<const Context*>(arguments->context);
     const RTCHit& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
     const float t = exact_distance(c.triangles.view_, hit.primID, c.ray);
@@ -133,7 +131,7 @@ bool EmbreeTriangles::any(const Ray& ray) const {
   };
   RTCRay query;
   set_embree_ray(query, ray, clock_);
-  rtcOccluded1(scene_.get(), &context.embree, &query);
+  embree_occluded(scene_.get(), context.embree, query, filter);
   return query.tfar < 0;
 }
 

@@ -1,12 +1,11 @@
 #pragma once
 // Shared by all code that uses Embree: the device, error checks, and EmbreeTriangles, a set of triangles with its own
-// hierarchy.
-
-#include <embree3/rtcore.h>
+// hierarchy. embree_versions.h has the ray queries.
 
 #include <functional>
 #include <utility>
 
+#include "embree_versions.h"
 #include "finite_ray.h"
 #include "moving_triangles.h"
 

@@ -25,9 +25,9 @@ class GuidedProcess : public Base {
  public:
   /// Settings of a guide; `nullopt`: the process has no guide and is its base. `memory` in MiB. `longest`: the most training
   /// samples of one path.
-  GuidedProcess(const Renderer& renderer, const RenderContext& context, const std::optional<GuideSettings>& settings,
+  GuidedProcess(const Renderer& renderer_, const RenderContext& context_, const std::optional<GuideSettings>& settings,
                 int memory, int longest)
-      : Base(renderer, context), longest_(longest) {
+      : Base(renderer_, context_), longest_(longest) {
     if (settings) guide_.emplace(*settings, size_t(memory) << 20);
   }
 

@@ -89,14 +89,14 @@ class BeamMap {
     if (pieces_.empty()) return;
     const Vector3& d = ray.direction;
     const Vector3 inverse{1 / d.x, 1 / d.y, 1 / d.z};
-    struct Range {
+    struct Subtree {
       std::uint32_t begin, end;
       std::uint64_t node;
     };
-    std::array<Range, 64> stack;
+    std::array<Subtree, 64> stack;
     stack[0] = {0, std::uint32_t(pieces_.size()), 0};
     for (int waiting = 1; waiting > 0;) {
-      const Range at = stack[size_t(--waiting)];
+      const Subtree at = stack[size_t(--waiting)];
       if (!goes_through(boxes_[at.node], ray.origin, inverse, reach)) continue;
       if (at.end - at.begin > PointTree::leaf) {
         const std::uint32_t middle = at.begin + (at.end - at.begin) / 2;

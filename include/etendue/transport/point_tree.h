@@ -99,20 +99,20 @@ class PointTree {
   /// `visit` may reduce `squared`.
   template <class Visit>
   void search(const Point3& centre, const float& squared, const Visit& visit) const {
-    struct Range {
+    struct Subtree {
       std::uint32_t begin, end;
       std::uint64_t node;
       float least;  ///< lower bound of the squared distance to the points, from the planes above
     };
-    std::array<Range, 64> stack;
+    std::array<Subtree, 64> stack;
     int waiting = 0;
-    Range at{0, std::uint32_t(points_.size()), 0, 0};
+    Subtree at{0, std::uint32_t(points_.size()), 0, 0};
     while (true) {
       while (at.end - at.begin > leaf) {
         const Plane& plane = planes_[at.node];
         const float over = centre[int(plane.axis)] - plane.at;
         const std::uint32_t middle = at.begin + (at.end - at.begin) / 2;
-        Range lower{at.begin, middle, 2 * at.node + 1, at.least}, upper{middle, at.end, 2 * at.node + 2, at.least};
+        Subtree lower{at.begin, middle, 2 * at.node + 1, at.least}, upper{middle, at.end, 2 * at.node + 2, at.least};
         if (over > 0) std::swap(lower, upper);
         upper.least = std::max(at.least, square(over));
         if (upper.least < squared) stack[size_t(waiting++)] = upper;

@@ -7,7 +7,7 @@
 #include "app/advice.h"
 #include "app/scene_options.h"
 #include "app/scene_warnings.h"
-#include "app/text.h"
+#include "core/number_text.h"
 #include "etendue/mesh_facts.h"
 
 namespace etendue {

@@ -1,11 +1,10 @@
 #include "compare_progress.h"
+#include "core/number_text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-
-#include "app/text.h"
 
 namespace etendue {
 

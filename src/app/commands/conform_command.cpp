@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <map>
 
 #include "app/commands.h"
 #include "app/common_options.h"
@@ -54,45 +53,6 @@ std::string ConformOptions::command_line() const {
   return text + fmt::format(" --drawn {} --seed {}", drawn, seed);
 }
 
-/// Indents each line and drops empty lines.
-std::string set_in(const std::string& text, const std::string& margin) {
-  std::string out;
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    if (end > begin) out += margin + text.substr(begin, end - begin) + "\n";
-    begin = end + 1;
-  }
-  return out;
-}
-
-/// Prints failures and checks that could not be run in full, the rest in one line for each class.
-void print(const std::vector<conform::Outcome>& outcomes, bool parts) {
-  struct Tally {
-    int passed = 0, failed = 0, not_tried = 0;
-  };
-  std::map<std::string, Tally> classes;
-  Tally all;
-  for (const conform::Outcome& o : outcomes)
-    for (Tally* t : {&classes[o.class_name], &all})
-      ++(o.result == conform::Result::passed ? t->passed : o.result == conform::Result::failed ? t->failed : t->not_tried);
-
-  const std::string* last_part = nullptr;
-  for (const auto& [name, tally] : classes) {
-    fmt::print("{:32} {:4} passed{}{}\n", name, tally.passed, tally.failed > 0 ? fmt::format(", {} FAILED", tally.failed) : "",
-               tally.not_tried > 0 ? fmt::format(", {} not tried", tally.not_tried) : "");
-    for (const conform::Outcome& o : outcomes) {
-      if (o.class_name != name) continue;
-      if (parts && (!last_part || *last_part != o.part)) fmt::print("{}", set_in(o.part, "    "));
-      last_part = &o.part;
-      if (o.result == conform::Result::passed) continue;
-      fmt::print("  {}: {}\n{}", o.result == conform::Result::failed ? "FAILED" : "not tried", o.check,
-                 set_in(o.detail, "    "));
-      if (!parts) fmt::print("{}", set_in(o.part, "    | "));
-    }
-  }
-  fmt::print("{} classes, {} checks passed, {} failed, {} not tried\n", classes.size(), all.passed, all.failed, all.not_tried);
-}
-
 /// Lists all interfaces, and whether there are checks of their own for their classes.
 int list_interfaces() {
   const std::vector<std::string> checked = conform::checked_interfaces();
@@ -128,7 +88,7 @@ int run_conform(const ConformOptions& options) {
     };
   const std::vector<conform::Outcome> outcomes = conform::conform(asked);
   if (show) fmt::print(stderr, "\r\x1b[K");
-  print(outcomes, options.parts);
+  fmt::print("{}", conform::results_text(outcomes, options.parts));
   if (!options.report.empty()) write_whole_file(options.report, conform::html_report(outcomes, options.command_line()));
   const auto any = [&](conform::Result result) {
     return std::ranges::find(outcomes, result, &conform::Outcome::result) != outcomes.end();

@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "app/render_options.h"
-#include "app/text.h"
+#include "core/number_text.h"
 #include "etendue/language/language.h"
 #include "files/input_files.h"
 #include "render/checkpoint.h"

@@ -13,6 +13,7 @@
 #include "app/tev.h"
 #include "app/text.h"
 #include "check/replay/replay.h"
+#include "core/number_text.h"
 #include "etendue/language/language.h"
 #include "files/input_files.h"
 #include "files/whole_file.h"

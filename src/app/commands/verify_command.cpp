@@ -8,13 +8,13 @@
 #include "app/scene_options.h"
 #include "app/text.h"
 #include "check/verify/report.h"
-#include "display_tone_map.h"
+#include "check/verify/report_pictures.h"
+#include "check/verify/text.h"
 #include "etendue/language/language.h"
 #include "files/input_files.h"
 #include "files/output_files.h"
 #include "files/whole_file.h"
 #include "render/checkpoint.h"
-#include "verify_text.h"
 
 namespace etendue {
 
@@ -137,14 +137,7 @@ int verify_file(const VerifyOptions& options) {
   Render render(job, {.threads = options.threads});
 
   verify::Choice choice = verify::choose_renderers(*job, options.renderers, options.force);
-  if (choice.candidates.size() < 2) {
-    std::string message = choice.candidates.empty() ? "there is no renderer to compare"
-                                                    : "there is only " + choice.candidates.front().name +
-                                                          ", and no other renderer to compare it with";
-    for (const verify::LeftOut& left : choice.left_out) message += fmt::format("\n  {}: {}", left.name, left.reason);
-    throw Error(message +
-                "\nname others with --renderers, such as 'PathTracer{next_event: false}'; --force keeps those that miss light");
-  }
+  verify::require_two(choice);
   const verify::Collected collected = collect(render, choice, options);
   if (!collected.complete) {
     fmt::print(stderr, "interrupted: no verdict\n");
@@ -153,16 +146,15 @@ int verify_file(const VerifyOptions& options) {
   verify::leave_out_refused(choice, collected);
   const verify::Agreement agreement = verify::compare(collected.layout, collected.measured, options.significance);
   if (!options.report.empty()) {
-    const Ref<ToneMap> tone_map = display_tone_map(*job);
+    const Ref<ToneMap> tone_map = verify::display_tone_map(*job);
     const std::string html =
         verify::html_report({options.file, options.command_line(), tone_map.get()}, choice, collected, agreement);
     write_whole_file(options.report, html.data(), html.size());
   }
   if (options.json)
-    fmt::print("{}\n",
-               verify_json(choice, collected, agreement).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    fmt::print("{}", verify::results_json(choice, collected, agreement));
   else if (!options.quiet)
-    fmt::print("{}", verify_text(choice, collected, agreement));
+    fmt::print("{}", verify::results_text(choice, collected, agreement));
   return agreement.disagrees() ? exit_status::failed : exit_status::done;
 }
 

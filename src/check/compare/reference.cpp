@@ -46,6 +46,25 @@ Reference AgreedMean::mean(std::optional<size_t> left_out, std::optional<size_t>
   return r;
 }
 
+Reference reference_from(const Image& picture, const std::string& what, int width, int height) {
+  const Image image = convert_color_space(picture, "xyz");
+  if (image.width != width || image.height != height)
+    throw Error(
+        fmt::format("{} has {} x {} pixels, the scene's picture {} x {}", what, image.width, image.height, width, height));
+  Reference r;
+  size_t not_finite = 0, channel[3] = {};
+  for (size_t c = 0; c < 3; ++c)
+    channel[c] = size_t(std::ranges::find(image.channels, std::string(1, char('X' + c))) - image.channels.begin());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (size_t c = 0; c < 3; ++c) {
+        r.mean.push_back(image.at(x, y, channel[c]));
+        not_finite += !std::isfinite(r.mean.back());
+      }
+  if (not_finite > 0) throw Error(fmt::format("{} values of {} are not finite", not_finite, what));
+  return r;
+}
+
 Reference read_reference(const std::string& path, int width, int height) {
   const Location at{intern("--reference"), 0, 0};
   note_input(path);
@@ -68,22 +87,7 @@ Reference read_reference(const std::string& path, int width, int height) {
         throw Error(fmt::format("{}; and it is not a checkpoint: {}", no_image.what(), no_checkpoint.what()));
       }
     }
-    image = convert_color_space(image, "xyz");
-    if (image.width != width || image.height != height)
-      throw Error(fmt::format("the reference '{}' has {} x {} pixels, the scene's picture {} x {}", path, image.width,
-                              image.height, width, height));
-    Reference r;
-    size_t not_finite = 0, channel[3] = {};
-    for (size_t c = 0; c < 3; ++c)
-      channel[c] = size_t(std::ranges::find(image.channels, std::string(1, char('X' + c))) - image.channels.begin());
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)
-        for (size_t c = 0; c < 3; ++c) {
-          r.mean.push_back(image.at(x, y, channel[c]));
-          not_finite += !std::isfinite(r.mean.back());
-        }
-    if (not_finite > 0) throw Error(fmt::format("{} values of the reference '{}' are not finite", not_finite, path));
-    return r;
+    return reference_from(image, fmt::format("the reference '{}'", path), width, height);
   } catch (const Error& e) {
     throw Error(e.what(), at);
   }

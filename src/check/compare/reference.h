@@ -34,6 +34,9 @@ class AgreedMean {
   std::vector<double> weights_;
 };
 
+/// A reference from a picture of linear values. `what` names it in errors. Throws Error if it has another size, or if values
+/// are not finite.
+Reference reference_from(const Image&, const std::string& what, int width, int height);
 /// Reads a reference: an image file of linear values, or a checkpoint. Throws Error, with --reference as location, if it cannot
 /// be read or has another size.
 Reference read_reference(const std::string& path, int width, int height);

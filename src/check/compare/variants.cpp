@@ -50,6 +50,11 @@ bool only_renderer(const std::string& path) {
 
 void apply(Job& job, const Variant& variant, const Job& described) {
   std::vector<Error> errors;
+  if (variant.renderer) {
+    const Ref<Renderer> given = ref_cast<Renderer>(copy(*variant.renderer));
+    verify::take_over(*given, *described.renderer);
+    job.renderer = given;
+  }
   for (const auto& [path, expression] : variant.sets) {
     try {
       if (path != "renderer") {

@@ -12,10 +12,11 @@
 
 namespace etendue::comparing {
 
-/// A way to render, as given on the command line: the file with some members set.
+/// A way to render: the scene with another renderer, or with some members set, or both.
 struct Variant {
   std::string name;
   std::vector<std::pair<std::string, std::string>> sets;  ///< paths of members, and expressions
+  Ref<Renderer> renderer = {};  ///< set before the members; null: that of the scene. It is copied for each scene.
 };
 
 /// The variants of "--renderers A,B{x: 1}" (each sets the renderer, and is named by its expression), followed by those of each

@@ -152,6 +152,7 @@ std::vector<Outcome> conform(const Options& options) {
   tbb::parallel_for(
       size_t(0), outcomes.size(),
       [&](size_t i) {
+        if (options.go_on && !options.go_on()) return;
         const ClassInfo& info = *classes[i / parts];
         outcomes[i] = try_part(info, int(i % parts), options, fixtures);
         const std::lock_guard lock(mutex);

@@ -18,6 +18,8 @@ struct Options {
   int threads = 0;  ///< 0: all cores
   /// Called after each component, from any thread, one call at a time.
   std::function<void(const std::string& class_name, int done, int of)> progress = {};
+  /// Called before each component, from any thread; false ends all, and the outcomes are those of the components until then.
+  std::function<bool()> go_on = {};
 };
 
 /// Runs all checks of the chosen classes. The outcomes depend on the options only, except for the number of threads. A
@@ -26,6 +28,10 @@ std::vector<Outcome> conform(const Options&);
 
 /// The names of the interfaces that have checks of their own, including those of plugins.
 std::vector<std::string> checked_interfaces();
+
+/// The text that `etendue conform` prints: failures and checks that could not be run in full, the rest in one line for each
+/// class. `parts`: also the components that were tested.
+std::string results_text(const std::vector<Outcome>&, bool parts = false);
 
 /// An HTML page with the outcomes: classes, checks, and the components that failed.
 std::string html_report(const std::vector<Outcome>&, const std::string& command_line);

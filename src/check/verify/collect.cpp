@@ -103,35 +103,58 @@ std::vector<std::string> split_expressions(const std::string& list) {
   return parts;
 }
 
-Choice choose_renderers(const Job& job, const std::string& names, bool force) {
-  const std::string own_class = job.renderer->class_info().name;
-  const bool named = !trimmed(names).empty();
-  std::vector<Candidate> all;
-  if (named) {
-    std::vector<Error> errors;
-    for (const std::string& expression : split_expressions(names)) {
-      try {
-        if (expression.empty()) throw Error("a name is missing in '" + names + "'", {intern("--renderers"), 0, 0});
-        if (std::ranges::find(all, expression, &Candidate::name) != all.end())
-          throw Error(fmt::format("'{}' is named twice", expression), {intern("--renderers"), 0, 0});
-        all.push_back({expression, named_renderer(job, expression, "--renderers"), {}});
-      } catch (const Errors& several) {
-        errors.insert(errors.end(), several.errors.begin(), several.errors.end());
-      } catch (const Error& error) {
-        errors.push_back(error);
-      }
+std::vector<NamedRenderer> named_renderers(const Job& job, const std::string& list) {
+  std::vector<NamedRenderer> all;
+  if (trimmed(list).empty()) return all;
+  std::vector<Error> errors;
+  for (const std::string& expression : split_expressions(list)) {
+    try {
+      if (expression.empty()) throw Error("a name is missing in '" + list + "'", {intern("--renderers"), 0, 0});
+      all.push_back({expression, named_renderer(job, expression, "--renderers")});
+    } catch (const Errors& several) {
+      errors.insert(errors.end(), several.errors.begin(), several.errors.end());
+    } catch (const Error& error) {
+      errors.push_back(error);
     }
-    if (!errors.empty()) throw Errors(std::move(errors));
-  } else {
-    all.push_back({own_class, job.renderer, {}});
-    const Registry& registry = Registry::instance();
-    for (const ClassInfo* info : registry.subclasses(*registry.find("Renderer")))
-      if (info->name != own_class) all.push_back({info->name, ref_cast<Renderer>(create(*info)), {}});
   }
+  if (!errors.empty()) throw Errors(std::move(errors));
+  return all;
+}
 
+namespace {
+
+/// Throws Errors for names that occur twice.
+void require_different(const std::vector<NamedRenderer>& all) {
+  std::vector<Error> errors;
+  for (auto one = all.begin(); one != all.end(); ++one)
+    if (std::ranges::find(all.begin(), one, one->name, &NamedRenderer::name) != one)
+      errors.push_back(Error(fmt::format("'{}' is named twice", one->name), {intern("--renderers"), 0, 0}));
+  if (!errors.empty()) throw Errors(std::move(errors));
+}
+
+/// The job's own renderer, and one of each other class.
+std::vector<NamedRenderer> all_renderers(const Job& job) {
+  const std::string own_class = job.renderer->class_info().name;
+  std::vector<NamedRenderer> all{{own_class, job.renderer}};
+  const Registry& registry = Registry::instance();
+  for (const ClassInfo* info : registry.subclasses(*registry.find("Renderer")))
+    if (info->name != own_class) all.push_back({info->name, ref_cast<Renderer>(create(*info))});
+  return all;
+}
+
+}  // namespace
+
+Choice choose_renderers(const Job& job, const std::string& list, bool force) {
+  return choose_renderers(job, named_renderers(job, list), force);
+}
+
+Choice choose_renderers(const Job& job, const std::vector<NamedRenderer>& given, bool force) {
+  const bool named = !given.empty();
+  require_different(given);
   const SceneTraits traits = scene_traits(*job.scene, *job.camera);
   Choice choice;
-  for (Candidate& candidate : all) {
+  for (const NamedRenderer& one : named ? given : all_renderers(job)) {
+    Candidate candidate{one.name, one.renderer, {}};
     if (candidate.renderer != job.renderer) {
       try {
         take_over(*candidate.renderer, *job.renderer);
@@ -151,6 +174,16 @@ Choice choose_renderers(const Job& job, const std::string& names, bool force) {
       choice.candidates.push_back(std::move(candidate));
   }
   return choice;
+}
+
+void require_two(const Choice& choice) {
+  if (choice.candidates.size() >= 2) return;
+  std::string message = choice.candidates.empty()
+                            ? "there is no renderer to compare"
+                            : "there is only " + choice.candidates.front().name + ", and no other renderer to compare it with";
+  for (const LeftOut& left : choice.left_out) message += fmt::format("\n  {}: {}", left.name, left.reason);
+  throw Error(message +
+              "\nname others with --renderers, such as 'PathTracer{next_event: false}'; --force keeps those that miss light");
 }
 
 void prepare_picture(Job& job, int lengths) {
@@ -184,7 +217,9 @@ bool add_pass(Render& render, const Layout& layout, double factor, const Collect
               Measured& measured, RendererRun& run) {
   std::vector<std::vector<double>> seen;
   Image picture;
-  for (const std::uint32_t mark : limit ? limit->marks() : std::vector{std::uint32_t(options.samples)}) {
+  std::vector<std::uint32_t> marks{std::uint32_t(options.samples)};
+  if (limit) marks = limit->marks();
+  for (const std::uint32_t mark : marks) {
     std::optional<Image> now = picture_at(render, mark);
     if (!now) return false;
     picture = std::move(*now);

@@ -42,11 +42,23 @@ void take_over(Renderer& to, const Renderer& from);
 /// Descriptions of the scene's light that a renderer misses.
 std::vector<std::string> missed_light(const Renderer&, const SceneTraits&);
 
-/// The renderers to compare on a prepared job's scene, which find all of its light. Without names: the job's own and one of
-/// each other class that is unbiased. A name is a class (the job's own class: the job's own renderer) or an expression,
-/// "PathTracer{next_event: false}". New renderers take over the job's sampler, light sampler and max_depth unless their
-/// expression sets them. `force` keeps named ones that miss light. Throws Errors for invalid names.
-Choice choose_renderers(const Job&, const std::string& names, bool force);
+/// A renderer with the name that results give it.
+struct NamedRenderer {
+  std::string name;
+  Ref<Renderer> renderer;
+};
+
+/// The renderers of a list "A,B{x: 1}", whose names are its expressions (named_renderer). Throws Errors for invalid ones.
+std::vector<NamedRenderer> named_renderers(const Job&, const std::string& list);
+
+/// The renderers to compare on a prepared job's scene, which find all of its light. Without named ones: the job's own and one
+/// of each other class that is unbiased. Renderers other than the job's own take over its sampler, light sampler and max_depth
+/// unless these members were written. `force` keeps named ones that miss light. Throws Errors if a name occurs twice.
+Choice choose_renderers(const Job&, const std::vector<NamedRenderer>& named, bool force);
+/// The same with a list as of named_renderers.
+Choice choose_renderers(const Job&, const std::string& list, bool force);
+/// Throws Error, with the reasons why others are left out, if there are not two renderers to compare.
+void require_two(const Choice&);
 
 struct CollectOptions {
   int samples = 4;     ///< per pixel and pass

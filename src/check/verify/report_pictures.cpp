@@ -62,6 +62,13 @@ std::string difference_map(const Layout& layout, const PairAgreement& pair, size
   return png_uri(width, height, rgb);
 }
 
+Ref<ToneMap> display_tone_map(const Job& job) {
+  if (job.tone_map && job.tone_map->clips()) return job.tone_map;
+  Ref<ToneMap> map = make<Job>()->tone_map;
+  prepare_tree(*map);
+  return map;
+}
+
 std::string displayed_picture(const Image& xyz, const ToneMap& tone_map) {
   const Image shown = tone_map.apply(xyz);
   std::vector<unsigned char> rgb;

@@ -2,6 +2,7 @@
 // Images for the report, as data URIs.
 
 #include "agreement.h"
+#include "etendue/render/job.h"
 #include "etendue/tone_map.h"
 
 namespace etendue::verify {
@@ -16,6 +17,9 @@ inline constexpr double z_of_full_color = 5;
 
 /// The colour of a z-score on these maps, each component from 0 to 255.
 std::array<unsigned char, 3> difference_color(double z);
+
+/// The tone map for the images of a report: the job's own, if its results fit a display, else the default one, prepared.
+Ref<ToneMap> display_tone_map(const Job&);
 
 /// An XYZ image, tone mapped, as a data URI.
 std::string displayed_picture(const Image&, const ToneMap&);

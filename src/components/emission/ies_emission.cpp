@@ -79,9 +79,9 @@ class IesEmission final : public ShapedEmission {
     const double luminance =
         integrate_spectrum(Quantity::flux, [&](float lambda) { return colour->at(lambda, ColorUse::radiance); });
     if (!(luminance > 0)) fail("color", "is black to the eye, so it cannot have the shape of a lamp's spectrum");
-    const double lumens = normalized ? ies_.lumens() : 1;
-    if (!(lumens > 0)) fail("normalized", "the file's lamp gives no light");
-    const double factor = ies_.tilt_factor(double(tilt)) * (amount_asked() ? 1 : double(multiplier) / lumens);
+    const double reference_lumens = normalized ? ies_.lumens() : 1;
+    if (!(reference_lumens > 0)) fail("normalized", "the file's lamp gives no light");
+    const double factor = ies_.tilt_factor(double(tilt)) * (amount_asked() ? 1 : double(multiplier) / reference_lumens);
     per_candela_ = float(factor / luminance);
     flux_ = ies_.lumens() * factor / luminance;
     front_ = front_lumens() * factor / luminance;

@@ -30,13 +30,12 @@ class EmbreeScene final : public Scene {
 
   bool find_nearest(const Ray& ray, Hit& hit) const override {
     Context context{{}, *this, ray, &hit, nullptr};
-    rtcInitIntersectContext(&context.embree);
     RTCRayHit query;
     set_embree_ray(query.ray, ray, clock_);
     while (true) {
       query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(scene_.get(), &context.embree, &query);
+      embree_intersect(scene_.get(), context.embree, query);
       if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
       const unsigned instance = query.hit.instID[0];
       const bool nested = instance != RTC_INVALID_GEOMETRY_ID;
@@ -49,8 +48,7 @@ class EmbreeScene final : public Scene {
   // The filter function records each hit that Embree finds and rejects it, so that Embree continues the search.
   void find_all(const Ray& ray, HitList& list) const override {
     Context context{{}, *this, ray, nullptr, &list};
-    rtcInitIntersectContext(&context.embree);
-    context.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
+    const RTCFilterFunctionN filter = [](const RTCFilterFunctionNArguments* arguments) {
       Hit hit;
       if (complete(*arguments, hit)) reinterpret_cast<const Context*>(arguments->context)->list->add(hit);
       arguments->valid[0] = 0;
@@ -59,19 +57,18 @@ class EmbreeScene final : public Scene {
     set_embree_ray(query.ray, ray, clock_);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_.get(), &context.embree, &query);
+    embree_intersect(scene_.get(), context.embree, query, filter);
   }
 
   bool find_any(const Ray& ray) const override {
     Context context{{}, *this, ray, nullptr, nullptr};
-    rtcInitIntersectContext(&context.embree);
-    context.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
+    const RTCFilterFunctionN filter = [](const RTCFilterFunctionNArguments* arguments) {
       Hit hit;
       if (!complete(*arguments, hit)) arguments->valid[0] = 0;
     };
     RTCRay query;
     set_embree_ray(query, ray, clock_);
-    rtcOccluded1(scene_.get(), &context.embree, &query);
+    embree_occluded(scene_.get(), context.embree, query, filter);
     return query.tfar < 0;
   }
 
@@ -83,7 +80,7 @@ class EmbreeScene final : public Scene {
                                    : quality == Quality::medium ? RTC_BUILD_QUALITY_MEDIUM
                                                                 : RTC_BUILD_QUALITY_HIGH;
     rtcSetSceneBuildQuality(scene_.get(), effort);
-    int flags = RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+    int flags = RTC_SCENE_FLAG_ROBUST | embree_filter_flag;
     if (compact) flags |= RTC_SCENE_FLAG_COMPACT;
     rtcSetSceneFlags(scene_.get(), RTCSceneFlags(flags));
     geometries_.clear();
@@ -120,7 +117,7 @@ class EmbreeScene final : public Scene {
 
   /// The data of callbacks, which get the address of `embree`.
   struct Context {
-    RTCIntersectContext embree;
+    EmbreeContext embree;
     const EmbreeScene& scene;
     const Ray& ray;
     Hit* hit;

@@ -131,9 +131,9 @@ void Scene::choose_origin() {
   constexpr float far = 64;
   const Vector3 away = all.centre() - Point3{};
   if (!(max_component(abs(away)) > far * max_component(all.diagonal()))) return;
-  const DoublePoint3 origin = transform.inner_origin() + DoubleVector3(away);
-  transform.set_inner_origin(origin);
-  for (const Ref<SceneObject>& object : objects) move_origin(*object, origin, *chooses_origin_at_);
+  const DoublePoint3 inner_origin = transform.inner_origin() + DoubleVector3(away);
+  transform.set_inner_origin(inner_origin);
+  for (const Ref<SceneObject>& object : objects) move_origin(*object, inner_origin, *chooses_origin_at_);
 }
 
 void Scene::prepare() {

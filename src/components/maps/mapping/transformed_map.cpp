@@ -36,9 +36,9 @@ class TransformedMap final : public ObjectMap, public BoundedMap {
 
  private:
   /// A transform of world space, expressed in rendering space with the given origin.
-  Transform in_rendering_space(const DoublePoint3& origin, float time) const {
+  Transform in_rendering_space(const DoublePoint3& rendering_origin, float time) const {
     AnimatedTransform shifted = transform.written(time);
-    shifted.set_origins(origin, origin);
+    shifted.set_origins(rendering_origin, rendering_origin);
     return shifted.still();
   }
 

@@ -7,7 +7,7 @@ namespace {
 
 /// Data for the callbacks: Embree passes the address of the context to them.
 struct Context {
-  RTCIntersectContext embree;
+  EmbreeContext embree;
   const DoubleRay* ray;
   Hit* hit;
 };
@@ -67,22 +67,20 @@ PieceHierarchy::PieceHierarchy(const Pieces& pieces, std::uint32_t count) : scen
 bool PieceHierarchy::nearest(const Ray& ray, Hit& hit) const {
   const DoubleRay exact(ray);
   Context context{{}, &exact, &hit};
-  rtcInitIntersectContext(&context.embree);
   RTCRayHit query;
   set_embree_ray(query.ray, ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene_.get(), &context.embree, &query);
+  embree_intersect(scene_.get(), context.embree, query);
   return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
 bool PieceHierarchy::any(const Ray& ray) const {
   const DoubleRay exact(ray);
   Context context{{}, &exact, nullptr};
-  rtcInitIntersectContext(&context.embree);
   RTCRay query;
   set_embree_ray(query, ray);
-  rtcOccluded1(scene_.get(), &context.embree, &query);
+  embree_occluded(scene_.get(), context.embree, query);
   return query.tfar < 0;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 /// The state of a ray during traversal.
 struct Query {
-  RTCIntersectContext context;  // must be first: Embree passes a pointer to it to the callbacks
+  EmbreeContext context;  // must be first: Embree passes a pointer to it to the callbacks
   bezier::Line line;
   bezier::Root root;
 };
@@ -49,7 +49,7 @@ struct BezierObject::Accelerator {
   }
 
   /// Finds the nearest root in a cell at a distance below `maximum`, and sets `maximum` to its distance.
-  bool meets(RTCIntersectContext* context, unsigned cell, float& maximum) const {
+  bool meets(EmbreeContext* context, unsigned cell, float& maximum) const {
     Query& q = *reinterpret_cast<Query*>(context);
     const bezier::Cell& c = object.cells_[cell];
     bezier::Root root;
@@ -77,7 +77,6 @@ struct BezierObject::Accelerator {
 
   static Query query(const Ray& ray) {
     Query q;
-    rtcInitIntersectContext(&q.context);
     q.line = {{double(ray.origin.x), double(ray.origin.y), double(ray.origin.z)},
               {double(ray.direction.x), double(ray.direction.y), double(ray.direction.z)}};
     return q;
@@ -125,7 +124,7 @@ bool BezierObject::local_intersect(const Ray& ray, Hit& hit) const {
   set_embree_ray(query.ray, ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(accelerator_->scene.get(), &q.context, &query);
+  embree_intersect(accelerator_->scene.get(), q.context, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit.distance = query.ray.tfar;
   hit.primitive = q.root.patch;
@@ -138,7 +137,7 @@ bool BezierObject::local_occludes(const Ray& ray) const {
   Query q = Accelerator::query(ray);
   RTCRay query;
   set_embree_ray(query, ray);
-  rtcOccluded1(accelerator_->scene.get(), &q.context, &query);
+  embree_occluded(accelerator_->scene.get(), q.context, query);
   return query.tfar < 0;
 }
 

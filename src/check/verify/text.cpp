@@ -1,16 +1,16 @@
-// The text that `etendue verify` prints.
-
-#include "verify_text.h"
+#include "text.h"
 
 #include <fmt/format.h>
 
-#include "app/text.h"
+#include <nlohmann/json.hpp>
 
-namespace etendue {
+#include "core/number_text.h"
 
-using namespace verify;
+namespace etendue::verify {
 
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 std::string p_text(double p) { return p >= 1 ? "1" : fmt::format("{:.2g}", p); }
 
@@ -95,32 +95,32 @@ std::string pair_text(const Collected& collected, const PairAgreement& pair) {
   return text;
 }
 
-nlohmann::ordered_json test_json(const Layout& layout, const MeanTest& t) {
+Json test_json(const Layout& layout, const MeanTest& t) {
   const PixelArea area = layout.area(t.place);
   const Layer& layer = layout.layers[t.layer];
-  nlohmann::ordered_json json = {{"area", {area.x0, area.y0, area.x1, area.y1}},
-                                 {"whole_picture", t.place == layout.whole()},
-                                 {"length", layer.length},
-                                 {"channel", std::string(1, layer.channel)},
-                                 {"mean_a", t.mean_a},
-                                 {"mean_b", t.mean_b},
-                                 {"ratio", t.ratio()},
-                                 {"z", t.z},
-                                 {"plain_p", t.plain_p},
-                                 {"p", t.p},
-                                 {"corrected_p", t.corrected},
-                                 {"verdict", name(t.verdict)}};
+  Json json = {{"area", {area.x0, area.y0, area.x1, area.y1}},
+               {"whole_picture", t.place == layout.whole()},
+               {"length", layer.length},
+               {"channel", std::string(1, layer.channel)},
+               {"mean_a", t.mean_a},
+               {"mean_b", t.mean_b},
+               {"ratio", t.ratio()},
+               {"z", t.z},
+               {"plain_p", t.plain_p},
+               {"p", t.p},
+               {"corrected_p", t.corrected},
+               {"verdict", name(t.verdict)}};
   if (t.doubt != Doubt::none) json["why"] = doubt_text(t.doubt);
   return json;
 }
 
-nlohmann::ordered_json pair_json(const Collected& collected, const PairAgreement& pair) {
+Json pair_json(const Collected& collected, const PairAgreement& pair) {
   const Layout& layout = collected.layout;
-  nlohmann::ordered_json json = {{"a", collected.measured[pair.a].name},
-                                 {"b", collected.measured[pair.b].name},
-                                 {"verdict", name(pair.verdict)},
-                                 {"would_notice", pair.noticeable},
-                                 {"by_length", pair.by_length}};
+  Json json = {{"a", collected.measured[pair.a].name},
+               {"b", collected.measured[pair.b].name},
+               {"verdict", name(pair.verdict)},
+               {"would_notice", pair.noticeable},
+               {"by_length", pair.by_length}};
   if (const std::optional<PairConvergence> c = convergence_of(collected, pair)) {
     const Convergence& of = c->convergence;
     json["convergence"] = {{"renderer", collected.measured[c->renderer].name},
@@ -130,11 +130,11 @@ nlohmann::ordered_json pair_json(const Collected& collected, const PairAgreement
     if (of.rate) json["convergence"]["rate"] = {{"value", of.rate->value}, {"standard_error", of.rate->error}};
   }
   for (const LayerSummary& s : summarize(layout, pair)) {
-    nlohmann::ordered_json layer = {{"name", layer_text(layout, s.layer)},
-                                    {"verdict", name(s.verdict)},
-                                    {"tiles_that_disagree", s.disagreeing_tiles},
-                                    {"tiles_undecided", s.undecided_tiles},
-                                    {"whole", test_json(layout, *s.whole)}};
+    Json layer = {{"name", layer_text(layout, s.layer)},
+                  {"verdict", name(s.verdict)},
+                  {"tiles_that_disagree", s.disagreeing_tiles},
+                  {"tiles_undecided", s.undecided_tiles},
+                  {"whole", test_json(layout, *s.whole)}};
     for (const MeanTest& t : pair.tests)
       if (t.layer == s.layer && t.place != layout.whole()) {
         layer["tiles"]["mean_a"].push_back(t.mean_a);
@@ -145,7 +145,7 @@ nlohmann::ordered_json pair_json(const Collected& collected, const PairAgreement
     json["layers"].push_back(std::move(layer));
   }
   for (const Verdict verdict : {Verdict::disagrees, Verdict::undecided}) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    Json list = Json::array();
     for (const MeanTest* t : tests_with(pair, verdict)) list.push_back(test_json(layout, *t));
     json[verdict == Verdict::disagrees ? "disagreements" : "undecided"] = std::move(list);
   }
@@ -154,7 +154,7 @@ nlohmann::ordered_json pair_json(const Collected& collected, const PairAgreement
 
 }  // namespace
 
-std::string verify_text(const Choice& choice, const Collected& collected, const Agreement& agreement) {
+std::string results_text(const Choice& choice, const Collected& collected, const Agreement& agreement) {
   std::string text = renderers_text(choice, collected);
   for (const PairAgreement& pair : agreement.pairs) text += pair_text(collected, pair);
   bool undecided = false;
@@ -166,10 +166,9 @@ std::string verify_text(const Choice& choice, const Collected& collected, const 
                             grouped(agreement.tests), agreement.significance);
 }
 
-nlohmann::ordered_json verify_json(const Choice& choice, const Collected& collected, const Agreement& agreement) {
+std::string results_json(const Choice& choice, const Collected& collected, const Agreement& agreement) {
   const Layout& layout = collected.layout;
-  nlohmann::ordered_json json = {
-      {"agree", !agreement.disagrees()}, {"significance", agreement.significance}, {"comparisons", agreement.tests}};
+  Json json = {{"agree", !agreement.disagrees()}, {"significance", agreement.significance}, {"comparisons", agreement.tests}};
   for (const PixelArea& tile : layout.tiles) json["tiles"].push_back({tile.x0, tile.y0, tile.x1, tile.y1});
   for (size_t i = 0; i < collected.measured.size(); ++i) {
     const Measured& measured = collected.measured[i];
@@ -186,10 +185,10 @@ nlohmann::ordered_json verify_json(const Choice& choice, const Collected& collec
                                  {"tells_lengths", measured.tells_lengths},
                                  {"remark", remark(measured, run, choice.candidates[i])}});
   }
-  json["left_out"] = nlohmann::ordered_json::array();
+  json["left_out"] = Json::array();
   for (const LeftOut& left : choice.left_out) json["left_out"].push_back({{"name", left.name}, {"reason", left.reason}});
   for (const PairAgreement& pair : agreement.pairs) json["pairs"].push_back(pair_json(collected, pair));
-  return json;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace etendue
+}  // namespace etendue::verify

@@ -1,13 +1,10 @@
-#include "compare_text.h"
+#include "text.h"
 
 #include <fmt/format.h>
 
-#include "app/text.h"
-#include "check/compare/tables.h"
+#include "tables.h"
 
-namespace etendue {
-
-using namespace comparing;
+namespace etendue::comparing {
 
 namespace {
 
@@ -40,7 +37,7 @@ std::string scene_text(const SceneResult& scene) {
 
 }  // namespace
 
-std::string compare_text(const Results& results) {
+std::string results_text(const Results& results) {
   std::string text;
   for (const SceneResult& scene : results.scenes) text += scene_text(scene);
   if (results.scenes.size() > 1) {
@@ -55,4 +52,4 @@ std::string compare_text(const Results& results) {
   return text + significance_text(results) + ".\nSeconds are CPU time, summed over all threads.\n";
 }
 
-}  // namespace etendue
+}  // namespace etendue::comparing
