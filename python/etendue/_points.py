@@ -106,7 +106,14 @@ def rays_of(origins: Any, directions: Any, maximum: Any, time: Any) -> Rays:
         return origins
     if directions is None:
         raise Error("directions: needed with origins; or give Rays")
-    return Rays(origins, directions, maximum, time)
+    given = {
+        "origins": rows(origins, 3, "origins", np.float64),
+        "directions": rows(directions, 3, "directions"),
+        "maximum": scalars(maximum, "maximum"),
+        "time": scalars(time, "time"),
+    }
+    count_of(**given)  # raises Error if the numbers of rows differ
+    return Rays(*given.values())
 
 
 class SurfacePoints:

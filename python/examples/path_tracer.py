@@ -41,7 +41,7 @@ def radiance(scene, rays, wavelengths, random, max_depth):
         T = T * next.weight * wavelengths.drop_secondary(next.dispersive)
         on = (next.pdf > 0) & ~next.subsurface
         specular, path, T = next.specular[on], path[on], T[on]
-        L, wavelengths, rays = L, wavelengths[on], x[on].leave(next[on])
+        wavelengths, rays = wavelengths[on], x[on].leave(next[on])
     return L
 
 

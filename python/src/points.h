@@ -1,6 +1,10 @@
 #pragma once
 // Points: many points on surfaces, found by rays or made by hand. They keep all that shaders and emissions read.
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 #include <memory>
 #include <new>
 
@@ -15,15 +19,33 @@ template <class T>
 class Block {
  public:
   Block() = default;
-  explicit Block(size_t count) : data_(static_cast<T*>(::operator new(std::max<size_t>(count, 1) * sizeof(T)))) {}
+  explicit Block(size_t count) : data_(allocate(std::max<size_t>(count, 1) * sizeof(T))) {}
   explicit operator bool() const { return bool(data_); }
   T& operator[](size_t i) const { return data_.get()[i]; }
 
  private:
+  static constexpr std::align_val_t huge_page{size_t(1) << 21};
   struct Free {
-    void operator()(T* p) const { ::operator delete(p); }
+    bool huge = false;
+    void operator()(T* p) const {
+      if (huge)
+        ::operator delete(p, huge_page);
+      else
+        ::operator delete(p);
+    }
   };
-  std::unique_ptr<T, Free> data_;
+  using Memory = std::unique_ptr<T, Free>;
+  /// A block for a million points has 45,000 pages of ordinary size, which take longer to be mapped than the points to be found.
+  static Memory allocate(size_t bytes) {
+    const bool huge = bytes >= 4 * size_t(huge_page);
+    if (!huge) return Memory(static_cast<T*>(::operator new(bytes)));
+    void* const memory = ::operator new(bytes, huge_page);
+#ifdef __linux__
+    madvise(memory, bytes, MADV_HUGEPAGE);
+#endif
+    return Memory(static_cast<T*>(memory), Free{true});
+  }
+  Memory data_;
 };
 
 /// A point, and what is left of the ray that found it.

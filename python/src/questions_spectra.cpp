@@ -112,8 +112,8 @@ nb::object transfer(const std::string& name, const Array<double>& values, bool e
 
 void bind_spectrum_questions(nb::module_& m) {
   using namespace nb::literals;
-  m.def("spectrum_evaluate", &evaluate);
-  m.def("spectrum_xyz", &xyz_of_spectrum, "spectrum"_a, "use"_a, "illuminant"_a.none());
+  m.def("spectrum_evaluate", &evaluate, "spectrum"_a.none(), "wavelengths"_a, "use"_a, "imaginary"_a);
+  m.def("spectrum_xyz", &xyz_of_spectrum, "spectrum"_a.none(), "use"_a, "illuminant"_a.none());
   m.def("wavelengths_xyz", &xyz_of_values);
   m.def("observer", &observers);
   m.def("observer_y_integral", &observer_y_integral);
