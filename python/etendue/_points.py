@@ -17,13 +17,19 @@ from . import _core
 from ._arrays import Array, array, count_of, places, rows, scalars
 from ._errors import Error
 
+_flags: Any = enum.IntFlag  # the names are known at run time only
 #: Kinds of scattering: Lobes.DIFFUSE_REFLECTION, … A sum of them is a set.
-Lobes = enum.IntFlag("Lobes", {name.upper().replace(" ", "_"): bit for name, bit in _core.lobe_bits().items()})  # type: ignore[misc]
+Lobes: Any = _flags("Lobes", {name.upper().replace(" ", "_"): bit for name, bit in _core.lobe_bits().items()})
 
-ALL_LOBES = Lobes(sum(Lobes))
-SPECULAR_LOBES = Lobes(sum(b for b in Lobes if b.name is not None and ("SPECULAR" in b.name or "NULL" in b.name)))
-SMOOTH_LOBES = ALL_LOBES & ~SPECULAR_LOBES
-TRANSMISSION_LOBES = Lobes(sum(b for b in Lobes if b.name is not None and ("TRANSMISSION" in b.name or "NULL" in b.name)))
+
+def _lobes_named(*words: str) -> Any:
+    return Lobes(sum(lobe for lobe in Lobes if any(word in lobe.name for word in words)))
+
+
+ALL_LOBES: Any = _lobes_named("")
+SPECULAR_LOBES: Any = _lobes_named("SPECULAR", "NULL")
+SMOOTH_LOBES: Any = ALL_LOBES & ~SPECULAR_LOBES
+TRANSMISSION_LOBES: Any = _lobes_named("TRANSMISSION", "NULL")
 
 
 def _take(values: Any, where: Array, count: int) -> Any:
@@ -133,6 +139,23 @@ class SurfacePoints:
     footprint: shape (N,) [m], the width of the ray's cone. time: shape (N,) [s]. ray_direction: shape (N, 3).
     """
 
+    hit: Array
+    position: Array
+    distance: Array
+    normal: Array
+    shading_normal: Array
+    uv: Array
+    dpdu: Array
+    dpdv: Array
+    object: Array
+    primitive: Array
+    error: Array
+    object_position: Array
+    object_normal: Array
+    footprint: Array
+    time: Array
+    ray_direction: Array
+
     def __init__(
         self,
         position: Any,
@@ -202,12 +225,6 @@ class SurfacePoints:
         return Rays(*_core.points_leave(self._core, count_of(points=self, directions=d), d, lobe))
 
 
-_COLUMNS = (
-    "hit position distance normal shading_normal uv dpdu dpdv object primitive error object_position object_normal footprint time"
-    " ray_direction"
-).split()
-
-
 def _column(name: str) -> Any:
     def read(self: SurfacePoints) -> Array:
         values: Array = _core.points_column(self._core, name)
@@ -220,7 +237,7 @@ def _column(name: str) -> Any:
     return made
 
 
-for _name in _COLUMNS:
+for _name in SurfacePoints.__annotations__:
     setattr(SurfacePoints, _name, _column(_name))
 
 
@@ -248,12 +265,12 @@ class ScatterSamples(_Columns):
     @property
     def specular(self) -> Array:
         """shape (N,): whether the direction is that of a delta distribution."""
-        return (self.lobe & np.uint8(SPECULAR_LOBES)) != 0
+        return np.asarray((self.lobe & np.uint8(SPECULAR_LOBES)) != 0)
 
     @property
     def transmitted(self) -> Array:
         """shape (N,): whether the direction goes through the surface."""
-        return (self.lobe & np.uint8(TRANSMISSION_LOBES)) != 0
+        return np.asarray((self.lobe & np.uint8(TRANSMISSION_LOBES)) != 0)
 
 
 @dataclass(frozen=True)
@@ -357,7 +374,7 @@ class VolumeCoefficients(_Columns):
     @property
     def extinction(self) -> Array:
         """shape (N, K) [1/m]: absorption and scattering."""
-        return self.absorption + self.scattering  # type: ignore[no-any-return]
+        return self.absorption + self.scattering
 
 
 @dataclass(frozen=True)

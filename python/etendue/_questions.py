@@ -265,10 +265,10 @@ class SceneQuestions:
         """
         at, numbers, w = points_of(points), rows(u, 3, "u"), wavelengths_of(wavelengths)
         count = count_of(points=at, u=numbers, wavelengths=w)
-        *values, origin, direction, maximum, time = _core.scene_sample_light(
+        direction, distance, radiance, pdf, luminaire, delta, *shadow = _core.scene_sample_light(
             self, at._core, count, numbers, w._core(), light_sampler
         )
-        return LightSamples(*values, Rays(origin, direction, maximum, time))
+        return LightSamples(direction, distance, radiance, pdf, luminaire, delta, Rays(*shadow))
 
     def light_pdf(self: Any, points: SurfacePoints, found: SurfacePoints, *, light_sampler: Any = None) -> Array:
         """The pdf [1/sr] with which `sample_light` at `points` samples what rays that left them found: shape (N,), 0 for points on

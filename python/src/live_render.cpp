@@ -13,6 +13,7 @@
 #include "describe/expansion.h"
 #include "etendue/describe/reflection.h"
 #include "kept_lists.h"
+#include "snapshots.h"
 
 namespace etendue::python {
 
@@ -340,6 +341,7 @@ void LiveRender::edit(std::span<const Change> changes) {
     throw;
   }
   if (other_parts) claim_parts_of_job();
+  for (const Change& change : changes) forget_snapshots(*change.component);
 }
 
 }  // namespace etendue::python

@@ -35,7 +35,8 @@ class Block {
     }
   };
   using Memory = std::unique_ptr<T, Free>;
-  /// A block for a million points has 45,000 pages of ordinary size, which take longer to be mapped than the points to be found.
+  /// A block for a million points has 45,000 pages of ordinary size, which take longer to be mapped than the points to be
+  /// found.
   static Memory allocate(size_t bytes) {
     const bool huge = bytes >= 4 * size_t(huge_page);
     if (!huge) return Memory(static_cast<T*>(::operator new(bytes)));
@@ -76,7 +77,7 @@ struct Points {
 
   Points(size_t n, std::shared_ptr<const Snapshot> from, bool tracked)
       : count(n), scene(std::move(from)), at(n), media(tracked ? Block<MediumStack>(n) : Block<MediumStack>()) {}
-  DoublePoint3 own_origin;   ///< of points that were made by hand
+  DoublePoint3 own_origin;  ///< of points that were made by hand
   DoublePoint3 origin() const { return scene ? scene->origin() : own_origin; }
   DoublePoint3 world(size_t i) const { return origin() + DoubleVector3(at[i].point.position - Point3{}); }
   /// The place of the i-th item of a question about `of` items: a single point is that of all of them.

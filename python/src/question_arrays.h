@@ -17,6 +17,7 @@
 #include "etendue/core/arena.h"
 #include "etendue/core/spectrum.h"
 #include "etendue/core/vector.h"
+#include "live_render.h"
 
 namespace etendue::python {
 
@@ -95,6 +96,7 @@ class Answers {
 template <class F>
 void for_all(size_t count, F&& work) {
   constexpr size_t block = 256;
+  use_threads();
   released([&] {
     tbb::parallel_for(tbb::blocked_range<size_t>(0, count, block), [&](const tbb::blocked_range<size_t>& items) {
       Arena arena;
@@ -106,12 +108,12 @@ void for_all(size_t count, F&& work) {
   });
 }
 
-/// The wavelengths of each item: any number, in groups of as many as a path carries. The last group is filled with copies of its
-/// last wavelength.
+/// The wavelengths of each item: any number, in groups of as many as a path carries. The last group is filled with copies of
+/// its last wavelength.
 class WavelengthRows {
  public:
-  /// `nm` and `pdf` have a row of wavelengths for each item or one for all; `single` says whether the secondary wavelengths were
-  /// dropped.
+  /// `nm` and `pdf` have a row of wavelengths for each item or one for all; `single` says whether the secondary wavelengths
+  /// were dropped.
   WavelengthRows(const Array<float>& nm, const Array<float>& pdf, const Array<bool>& single)
       : nm_(nm), pdf_(pdf), single_(single), count_(nm.shape(1)), groups_((count_ + spectrum_size - 1) / spectrum_size) {
     if (nm.shape(0) != 1) return;

@@ -12,9 +12,7 @@ namespace {
 using Asked = std::shared_ptr<const Snapshot>;
 
 /// A camera that has been asked for a film of this size.
-Asked camera_snapshot(nb::handle part, int width, int height) {
-  return snapshot_of<Camera>(part, "a camera", {width, height});
-}
+Asked camera_snapshot(nb::handle part, int width, int height) { return snapshot_of<Camera>(part, "a camera", {width, height}); }
 
 /// The arrays of RayRows; then, if wavelengths are given, the weights of the rays, and whether their secondary wavelengths are
 /// dropped.
@@ -88,7 +86,8 @@ nb::tuple sample_lens(nb::handle part, int width, int height, size_t count, cons
   if (!wavelengths.is_none()) rows.emplace(wavelength_rows(nb::cast<nb::tuple>(wavelengths)));
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   Answers<double> lens({count, 3});
-  Answers<float> direction({count, 3}), distance({count}), pdf({count}), importance({count}), film({count, 2}), nearest({count});
+  Answers<float> direction({count, 3}), distance({count}), pdf({count}), importance({count}), film({count, 2}),
+      nearest({count});
   Answers<float> weights({rows ? count : 0, rows ? rows->count() : 1});
   for_all(count, [&](size_t i, Arena&) {
     const Point3 from = asked->from_world(froms[i]);
@@ -102,11 +101,10 @@ nb::tuple sample_lens(nb::handle part, int width, int height, size_t count, cons
     film[i][0] = s ? s->film.x : nan;
     film[i][1] = s ? s->film.y : nan;
     nearest.set(i, s ? s->nearest : 0);
-    if (rows)
-      rows->fill(i, weights[i], [&](const Wavelengths& w) { return s ? camera.lens_weight(*s, w) : Spectrum(); });
+    if (rows) rows->fill(i, weights[i], [&](const Wavelengths& w) { return s ? camera.lens_weight(*s, w) : Spectrum(); });
   });
-  return nb::make_tuple(lens.take(), direction.take(), distance.take(), pdf.take(), importance.take(), film.take(), nearest.take(),
-                        rows ? weights.take() : nb::none());
+  return nb::make_tuple(lens.take(), direction.take(), distance.take(), pdf.take(), importance.take(), film.take(),
+                        nearest.take(), rows ? weights.take() : nb::none());
 }
 
 nb::object shutter_times(nb::handle part, size_t count, const Array<float>& u) {
@@ -121,7 +119,8 @@ nb::object shutter_times(nb::handle part, size_t count, const Array<float>& u) {
 
 void bind_camera_questions(nb::module_& m) {
   using namespace nb::literals;
-  m.def("camera_rays", &rays, "camera"_a, "width"_a, "height"_a, "count"_a, "film"_a, "lens"_a, "time"_a, "wavelengths"_a.none());
+  m.def("camera_rays", &rays, "camera"_a, "width"_a, "height"_a, "count"_a, "film"_a, "lens"_a, "time"_a,
+        "wavelengths"_a.none());
   m.def("camera_film_points", &film_points);
   m.def("camera_sample_lens", &sample_lens, "camera"_a, "width"_a, "height"_a, "count"_a, "points"_a, "u"_a, "time"_a,
         "wavelengths"_a.none());

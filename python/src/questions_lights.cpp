@@ -11,7 +11,8 @@ namespace {
 
 using Asked = std::shared_ptr<const Snapshot>;
 
-// ---- luminaires of a scene ---------------------------------------------------------------------------------------------------
+// ---- luminaires of a scene
+// ---------------------------------------------------------------------------------------------------
 
 /// The radiance that each point emits in a direction; without directions, towards the origin of the ray that found the point,
 /// where a ray that hit nothing sees the luminaires at infinity.
@@ -147,7 +148,8 @@ nb::tuple choose(nb::handle light_sampler, nb::handle part, const Points& points
   return nb::make_tuple(object.take(), probability.take());
 }
 
-// ---- emission shaders --------------------------------------------------------------------------------------------------------
+// ---- emission shaders
+// --------------------------------------------------------------------------------------------------------
 
 nb::object radiance(nb::handle part, const Points& points, size_t count, const Array<float>& directions,
                     const nb::tuple& wavelengths) {
@@ -231,7 +233,8 @@ nb::object power(nb::handle object, const nb::tuple& wavelengths, size_t count) 
 void bind_light_questions(nb::module_& m) {
   using namespace nb::literals;
   m.def("scene_emitted", &emitted, "scene"_a, "points"_a, "count"_a, "directions"_a.none(), "wavelengths"_a);
-  m.def("scene_sample_light", &sample_light, "scene"_a, "points"_a, "count"_a, "u"_a, "wavelengths"_a, "light_sampler"_a.none());
+  m.def("scene_sample_light", &sample_light, "scene"_a, "points"_a, "count"_a, "u"_a, "wavelengths"_a,
+        "light_sampler"_a.none());
   m.def("scene_light_pdf", &light_pdf, "scene"_a, "from"_a, "found"_a, "count"_a, "light_sampler"_a.none());
   m.def("scene_luminaires", &luminaires);
   m.def("light_sampler_choose", &choose);

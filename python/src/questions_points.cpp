@@ -69,8 +69,7 @@ nb::object column_named(const Points& points, const std::string& name) {
   const auto number = [&](auto get) {
     return column<float>(points, 1, [&](size_t i, Answers<float>& to) { to.set(i, get(points.at[i])); });
   };
-  if (name == "hit")
-    return column<bool>(points, 1, [&](size_t i, Answers<bool>& to) { to.set(i, points.at[i].exists()); });
+  if (name == "hit") return column<bool>(points, 1, [&](size_t i, Answers<bool>& to) { to.set(i, points.at[i].exists()); });
   if (name == "position") return positions(points);
   if (name == "distance") return number([](const FoundPoint& p) { return p.distance; });
   if (name == "error") return number([](const FoundPoint& p) { return p.point.error; });
@@ -88,7 +87,8 @@ nb::object column_named(const Points& points, const std::string& name) {
       to[i][1] = points.at[i].point.uv.y;
     });
   if (name == "primitive")
-    return column<std::uint32_t>(points, 1, [&](size_t i, Answers<std::uint32_t>& to) { to.set(i, points.at[i].point.primitive); });
+    return column<std::uint32_t>(points, 1,
+                                 [&](size_t i, Answers<std::uint32_t>& to) { to.set(i, points.at[i].point.primitive); });
   if (name == "object") return objects(points);
   if (name == "dpdu" || name == "dpdv") {
     return vectors(points, [u = name == "dpdu"](SurfacePoint p) {

@@ -21,7 +21,8 @@ class Scattering {
     }
     asked_ = snapshot_of<Scene>(scene, "a scene");
     require_present(points, asked_);
-    if (!points.scene) throw Error("points that were made by hand have no shader: ask one for them, as in shader.evaluate(points, …)");
+    if (!points.scene)
+      throw Error("points that were made by hand have no shader: ask one for them, as in shader.evaluate(points, …)");
   }
   /// The point of an item.
   const SurfacePoint& point(size_t i) const { return points_.row(i).point; }
@@ -150,7 +151,8 @@ void bind_scatter_questions(nb::module_& m) {
         "wavelengths"_a, "importance"_a, "lobes"_a, "values"_a);
   m.def("scatter_sample", &sample, none("shader"), none("scene"), "points"_a, "count"_a, "outgoing"_a, "wavelengths"_a, "u"_a,
         "importance"_a, "lobes"_a);
-  m.def("scatter_albedo", &albedo, none("shader"), none("scene"), "points"_a, "count"_a, "outgoing"_a, "wavelengths"_a, "lobes"_a);
+  m.def("scatter_albedo", &albedo, none("shader"), none("scene"), "points"_a, "count"_a, "outgoing"_a, "wavelengths"_a,
+        "lobes"_a);
   m.def("scatter_lobes", &lobes_at, none("shader"), none("scene"), "points"_a, "count"_a, "outgoing"_a, "wavelengths"_a);
   m.def("interior_index", &interior_index);
   m.def("lobe_bits", &lobe_bits);

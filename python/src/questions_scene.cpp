@@ -67,8 +67,8 @@ nb::object occluded(nb::handle part, size_t count, const nb::tuple& given) {
   return blocked.take();
 }
 
-/// Calls call(i, ray, first point, usable, arena) for each item, with the ray from one point to the other, which begins and ends
-/// just beside their surfaces.
+/// Calls call(i, ray, first point, usable, arena) for each item, with the ray from one point to the other, which begins and
+/// ends just beside their surfaces.
 template <class F>
 void for_segments(const Snapshot& scene, size_t count, const Points& a, const Points& b, const F& call) {
   const Vector3 from_a = Vector3(a.origin() - scene.origin()), from_b = Vector3(b.origin() - scene.origin());
@@ -117,8 +117,7 @@ nb::object transmittance(nb::handle part, size_t count, const Points& a, const P
     const MediumStack* const media = media_after(scene, from, ray, stack);
     const auto item = std::uint32_t(i);
     NumberStream stream(numbers->as<Sampler>(), SampleKey(seed, int(item & 0xffff), int(item >> 16), 0));
-    rows.fill(i, values[i],
-              [&](const Wavelengths& w) { return shadow_transmittance(scene, ray, media, w, stream, arena); });
+    rows.fill(i, values[i], [&](const Wavelengths& w) { return shadow_transmittance(scene, ray, media, w, stream, arena); });
   });
   return values.take();
 }

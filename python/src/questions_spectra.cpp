@@ -102,9 +102,8 @@ nb::object transfer(const std::string& name, const Array<double>& values, bool e
   const size_t count = values.size();
   (encode ? encode_transfer : decode_transfer)(name, 0);  // throws Error for an unknown name
   Answers<double> answers({count});
-  for_all(count, [&](size_t i, Arena&) {
-    answers.set(i, (encode ? encode_transfer : decode_transfer)(name, values.data()[i]));
-  });
+  for_all(count,
+          [&](size_t i, Arena&) { answers.set(i, (encode ? encode_transfer : decode_transfer)(name, values.data()[i])); });
   return answers.take();
 }
 

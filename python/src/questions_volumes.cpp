@@ -45,8 +45,8 @@ nb::object majorant(nb::handle part, const nb::tuple& wavelengths, size_t count)
 
 /// T(d) in a medium that fills all of object space: in closed form if the medium is homogeneous, else by ratio tracking with
 /// the numbers of a hash.
-Spectrum transmittance_along(const VolumeShader& volume, const Point3& from, const Vector3& direction, float distance, float time,
-                             const Wavelengths& w, std::uint64_t key) {
+Spectrum transmittance_along(const VolumeShader& volume, const Point3& from, const Vector3& direction, float distance,
+                             float time, const Wavelengths& w, std::uint64_t key) {
   if (volume.homogeneous()) return exp(-volume.coefficients(from, time, w).extinction() * distance);
   const float m = volume.majorant(w).maximum();
   Spectrum product(1.0f);
@@ -76,7 +76,8 @@ nb::object transmittance(nb::handle part, size_t count, const Array<float>& orig
     const bool usable = make_unit(d) && is_finite(from) && distance >= 0 && (std::isfinite(distance) || volume.homogeneous());
     rows.fill(i, values[i], [&](const Wavelengths& w) {
       if (!usable) return Spectrum(std::numeric_limits<float>::quiet_NaN());
-      return distance == 0 ? Spectrum(1.0f) : transmittance_along(volume, from, d, distance, times.at(i), w, mix_bits(seed) ^ i);
+      return distance == 0 ? Spectrum(1.0f)
+                           : transmittance_along(volume, from, d, distance, times.at(i), w, mix_bits(seed) ^ i);
     });
   });
   return values.take();

@@ -1,12 +1,14 @@
 #include "snapshots.h"
 
+#include <tbb/task.h>
+
 #include <unordered_set>
 
 #include "describe/expansion.h"
 #include "etendue/camera.h"
-#include "etendue/describe/reflection.h"
 #include "etendue/render/renderer.h"
 #include "geometry/rendering_space.h"
+#include "live_render.h"
 
 namespace etendue::python {
 
@@ -42,7 +44,6 @@ void copy_attributes(const Component& original, Component& copied) {
 struct Entry {
   Ref<Component> original;
   FilmSize film;
-  Tree tree;
   std::shared_ptr<Snapshot> snapshot;
 };
 
@@ -51,34 +52,27 @@ std::vector<Entry>& entries() {
   return *all;
 }
 
-/// The number of edits so far: a snapshot during whose preparation the part was edited is not kept.
+/// The number of edits so far: a snapshot is not kept if there was one while it was made.
 std::uint64_t edits = 0;
 
 /// More snapshots than this are not kept, as each is looked at when a part is edited.
 constexpr size_t most_entries = 256;
 
-Tree tree_of(Component& root) {
-  Tree tree{&root};
-  std::vector<Component*> left{&root};
-  while (!left.empty()) {
-    Component* const c = left.back();
-    left.pop_back();
-    for (Component* const part : components_of(*c))
-      if (tree.insert(part).second) left.push_back(part);
-  }
-  return tree;
-}
-
 }  // namespace
 
-Snapshot::Snapshot(Ref<Component> original, FilmSize film) : part_(copy(*original)) {
-  for_pairs(*original, *part_, [&](Component& from, Component& to) {
+Snapshot::Snapshot(Component& original, FilmSize film) : copied_at_(edits), part_(copy(original)), film_(film) {
+  for_pairs(original, *part_, [&](Component& from, Component& to) {
+    parts_.insert(&from);
     copy_attributes(from, to);
     if (const auto* object = dynamic_cast<const SceneObject*>(&to); object && &to != part_.get()) {
       index_.emplace(object, int(objects_.size()));
       objects_.emplace_back(&from);
     }
   });
+}
+
+void Snapshot::prepare() {
+  use_threads();
   released([&] {
     if (auto* const scene = dynamic_cast<Scene*>(part_.get())) {
       prepare_scene(*scene);
@@ -87,7 +81,7 @@ Snapshot::Snapshot(Ref<Component> original, FilmSize film) : part_(copy(*origina
       if (place && is_finite(place->position)) origin_ = place->position;
       camera->rendering_origin = origin_;
       prepare_tree(*camera);
-      camera->set_film(film.width, film.height);
+      camera->set_film(film_.width, film_.height);
     } else {
       prepare_tree(*part_);
     }
@@ -130,16 +124,30 @@ const LightSampler& Snapshot::light_sampler(nb::handle given) const {
   return *built_.back().sampler;
 }
 
+namespace {
+
+/// A snapshot that is not prepared yet, copied while no living render edits the part.
+std::shared_ptr<Snapshot> copied(Component& original, FilmSize film) {
+  LiveRender* const live = render_of(original);
+  // Within a step of the render no edit can be made, and one that waits for the step must not be waited for.
+  if (!live || tbb::task::current_context()) return std::make_shared<Snapshot>(original, film);
+  return live->unedited([&](Render&) {
+    const nb::gil_scoped_acquire with;
+    return std::make_shared<Snapshot>(original, film);
+  });
+}
+
+}  // namespace
+
 std::shared_ptr<const Snapshot> snapshot_of(nb::handle part, FilmSize film) {
   const Ref<Component> original = component_of(part);
   for (const Entry& known : entries())
     if (known.original == original && known.film == film) return known.snapshot;
-  const std::uint64_t before = edits;
-  Tree tree = tree_of(*original);
-  const auto made = std::make_shared<Snapshot>(original, film);
-  if (edits != before) return made;
+  const std::shared_ptr<Snapshot> made = copied(*original, film);
+  made->prepare();
+  if (made->copied_at() != edits) return made;
   if (entries().size() == most_entries) entries().erase(entries().begin());
-  entries().push_back({original, film, std::move(tree), made});
+  entries().push_back({original, film, made});
   return made;
 }
 
@@ -147,8 +155,7 @@ void forget_snapshots(const Component& part) {
   ++edits;
   std::vector<Entry> dropped;  // destroyed last, as that may call Python
   std::erase_if(entries(), [&](Entry& entry) {
-    if (!entry.tree.contains(&part)) return false;
-    entry.snapshot->become_outdated();
+    if (!entry.snapshot->is_of(part)) return false;
     dropped.push_back(std::move(entry));
     return true;
   });

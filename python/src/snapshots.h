@@ -1,13 +1,14 @@
 #pragma once
-// Snapshots: prepared copies of parts, which answer questions on arrays. A part must be prepared before it can be asked, and stay
-// unchanged while it is asked. A copy stays unchanged whatever Python's other threads and living renders do with the part itself;
-// and what was found in it, such as points on surfaces, stays valid for as long as it is referred to.
+// Snapshots: prepared copies of parts, which answer questions on arrays. A part must be prepared before it can be asked, and
+// stay unchanged while it is asked. A copy stays unchanged whatever Python's other threads and living renders do with the part
+// itself; and what was found in it, such as points on surfaces, stays valid for as long as it is referred to.
 //
 // A snapshot is made when a part is first asked, and again after a member of the part, or of a part within it, was set. The
 // interpreter's lock guards everything here.
 
 #include <memory>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "binding.h"
@@ -24,7 +25,9 @@ struct FilmSize {
 
 class Snapshot {
  public:
-  Snapshot(Ref<Component> original, FilmSize);
+  /// A copy, which must be prepared before it is asked.
+  Snapshot(Component& original, FilmSize);
+  void prepare();
 
   const Component& part() const { return *part_; }
   template <class C>
@@ -43,9 +46,11 @@ class Snapshot {
   /// The place in `objects` of an object of the snapshot, or of a proxy of one; -1: none.
   int index_of(const SceneObject&) const;
 
-  /// Whether a member of the part, or of a part within it, has been set since.
-  bool outdated() const { return outdated_; }
-  void become_outdated() { outdated_ = true; }
+  /// Whether a part is the one that was copied, or a part within it.
+  bool is_of(const Component& part) const { return parts_.contains(&part); }
+
+  /// The number of edits of any part before the copy was made.
+  std::uint64_t copied_at() const { return copied_at_; }
 
   /// A light sampler that is built for this scene: a copy of the given one, or of the one that renderers have by default.
   const LightSampler& light_sampler(nb::handle given) const;
@@ -53,11 +58,13 @@ class Snapshot {
  private:
   void prepare_scene(Scene&);
 
+  const std::uint64_t copied_at_;
   Ref<Component> part_;
+  FilmSize film_;
   DoublePoint3 origin_;
   std::vector<Ref<Component>> objects_;
   std::unordered_map<const SceneObject*, int> index_;
-  bool outdated_ = false;
+  std::unordered_set<const Component*> parts_;
   struct Built {
     std::shared_ptr<const Snapshot> described;  ///< null: the one by default
     Ref<LightSampler> sampler;
