@@ -269,8 +269,8 @@ def type_text(member: dict) -> str:
         text += ": " + ", ".join(map(str, member["choices"]))
     limits = member.get("range")
     if limits:
-        low = limits.get("more_than", limits.get("from", limits.get("at_least")))
-        high = limits.get("to", limits.get("at_most"))
+        low = limits.get("more_than", limits.get("low"))
+        high = limits.get("high")
         words = []
         if low is not None:
             words.append(("more than " if "more_than" in limits else "at least ") + f"{low:g}")

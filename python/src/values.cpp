@@ -12,7 +12,7 @@
 #include <cmath>
 
 #include "etendue/language/language.h"
-#include "language/evaluator.h"
+#include "language/calls.h"
 
 namespace etendue::python {
 
@@ -240,6 +240,16 @@ void bind_values(nb::module_& m) {
       },
       "Calls a function of the language.");
   m.def("is_function", &language::is_function);
+  m.def("functions", [] {
+    nb::list all;  // (name, usage, what it makes)
+    const auto add = [&](std::span<const language::Function> functions, const char* makes) {
+      for (const language::Function& f : functions) all.append(nb::make_tuple(f.name, f.usage, makes));
+    };
+    add(language::color_functions(), "color");
+    add(language::transform_functions(), "transform");
+    add(language::math_functions(), "number");
+    return all;
+  });
   m.def("parse_value", [](const std::string& text) { return to_python(parse_value(text), nullptr); });
   m.def("write_value", [](nb::handle value) { return write_value(to_value(value, nullptr)); });
 }
