@@ -7,7 +7,6 @@ interface has the questions of its parts (_questions.py) as a base, which the cl
 from __future__ import annotations
 
 import ast
-import inspect
 import pathlib
 import sys
 from typing import Any, Iterable, Optional
@@ -119,7 +118,7 @@ def _class_stub(cls: type) -> str:
     bases = [description.get("parent") or "Part"]
     if questions := _questions_class(name):
         bases.append(f"_questions.{questions}")
-    lines = [f"class {name}({', '.join(bases)}):", _quoted(inspect.cleandoc(cls.__doc__ or ""), "    ")]
+    lines = [f"class {name}({', '.join(bases)}):", _quoted(_classes._class_text({**description, "members": []}), "    ")]
     parameters, literal = [], description.get("literal")
     for member in description["members"]:
         parameter = f"{python_name(member['name'])}: {given_type(member)}{'' if member.get('required') else ' = ...'}"
@@ -174,7 +173,7 @@ def _own_names() -> Iterable[str]:
 def _import_stub(module: str, name: str, original: str) -> str:
     kind = getattr(getattr(etendue, name, None), "kind", None)
     if isinstance(getattr(etendue, name, None), _declare._Kind):  # an annotation of members
-        found = found_type({"type": kind})
+        found = found_type({"type": kind, "required": True})
         return f"{name}: _t.TypeAlias = {found}"
     return f"from .{module} import {original} as {name}"
 
