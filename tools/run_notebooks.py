@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "docs" / "notebooks"
-ALL = ("first-picture", "an-animation", "a-lens", "a-bsdf-under-the-microscope", "a-path-tracer-of-ones-own", "which-algorithm")
+ALL = sorted(file.stem for file in FOLDER.glob("*.ipynb"))
 
 
 def file_of(name):
