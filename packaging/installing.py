@@ -77,12 +77,13 @@ def install_native(prefix: pathlib.Path, building: bool) -> None:
         install(BUILD, prefix)
 
 
-def install_architecture(architecture: str, pythons: list[str], prefix: pathlib.Path) -> None:
+def install_architecture(architecture: str, pythons: list[str], prefix: pathlib.Path, building: bool) -> None:
     say(f"building for {architecture}")
     build = FOLDER / architecture
     options = [f"-DETENDUE_ARCHITECTURE={architecture}"]
     configure(ROOT, build, *options, f"-DETENDUE_BUNDLED_OPENIMAGEIO={FOLDER / 'openimageio'}", "-DETENDUE_TESTS=OFF")
-    build_targets(build, *TARGETS)
+    if building:
+        build_targets(build, *TARGETS)
     install(build, prefix)
     for python in pythons:
         say(f"building the extension module for {architecture} and Python {python}")
@@ -92,7 +93,8 @@ def install_architecture(architecture: str, pythons: list[str], prefix: pathlib.
         tools = f"-DETENDUE_PYTHON_TOOLS={BUILD / 'python-tools'}"
         found = [] if include else ["-DPython_EXECUTABLE=/usr/bin/python3.11"]
         configure(ROOT / "python", extension, *options, *found, f"-Detendue_ROOT={prefix}", f"-DETENDUE_PYTHON_HEADERS={include}", tools)
-        build_targets(extension, "etendue_python")
+        if building:
+            build_targets(extension, "etendue_python")
         install(extension, prefix)
 
 
@@ -105,6 +107,6 @@ def installed(native: bool, building: bool, pythons: list[str]) -> pathlib.Path:
         install_native(prefix, building)
     else:
         for architecture in architectures():
-            install_architecture(architecture, pythons, prefix)
+            install_architecture(architecture, pythons, prefix, building)
     install_page(prefix)
     return prefix

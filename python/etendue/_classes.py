@@ -11,7 +11,7 @@ import keyword
 import re
 import sys
 from collections.abc import Iterator, MutableSequence
-from typing import Any, Iterable, NoReturn, Optional
+from typing import TYPE_CHECKING, Any, Iterable, NoReturn, Optional
 
 from . import _core
 from ._errors import Error, NoSuchMember
@@ -21,7 +21,7 @@ _declared: dict[str, type] = {}  # classes written in Python (_declare.py)
 _declare: Any = None  # declares such a class; set by _declare.py
 
 
-class Parts(MutableSequence):
+class Parts(MutableSequence[Any]):
     """The list of a member that refers to several parts. Changing it changes the member."""
 
     __slots__ = ("_owner", "_member")
@@ -30,10 +30,10 @@ class Parts(MutableSequence):
         self._owner = owner
         self._member = member
 
-    def _now(self) -> list:
+    def _now(self) -> list[Any]:
         return list(_core.get(self._owner, self._member))
 
-    def _store(self, entries: Iterable) -> None:
+    def _store(self, entries: Iterable[Any]) -> None:
         _core.set(self._owner, self._member, list(entries))
 
     def __len__(self) -> int:
@@ -57,7 +57,7 @@ class Parts(MutableSequence):
         entries.insert(place, value)
         self._store(entries)
 
-    def extend(self, values: Iterable) -> None:
+    def extend(self, values: Iterable[Any]) -> None:
         self._store(self._now() + list(values))
 
     def __eq__(self, other: object) -> bool:
@@ -84,27 +84,29 @@ class Part(_core.Component):
         _core.fail(self, member, message)
         raise AssertionError
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        if name.startswith("_"):
-            object.__setattr__(self, name, value)
-        elif type(self).__name__ in _declared and all(
-            m["name"] != _member_name(name) for m in described(type(self))["members"]
-        ):
-            raise NoSuchMember(
-                f"{type(self).__name__} has no member '{name}': declare it by etendue.member, or let the name of an attribute "
-                f"that is no member begin with an underscore: self._{name}"
-            )
-        else:
-            _core.set(self, _member_name(name), value)
+    if not TYPE_CHECKING:  # type checkers have the members from the stubs (_stubs.py)
 
-    def __getattr__(self, name: str) -> Any:
-        # Reached for names that are neither members nor methods.
-        if name.startswith("_"):
-            raise AttributeError(name)
-        try:
-            return _core.get(self, _member_name(name))
-        except Error as e:
-            raise NoSuchMember(str(e), e.faults) from None
+        def __setattr__(self, name: str, value: Any) -> None:
+            if name.startswith("_"):
+                object.__setattr__(self, name, value)
+            elif type(self).__name__ in _declared and all(
+                m["name"] != _member_name(name) for m in described(type(self))["members"]
+            ):
+                raise NoSuchMember(
+                    f"{type(self).__name__} has no member '{name}': declare it by etendue.member, or let the name of an attribute "
+                    f"that is no member begin with an underscore: self._{name}"
+                )
+            else:
+                _core.set(self, _member_name(name), value)
+
+        def __getattr__(self, name: str) -> Any:
+            # Reached for names that are neither members nor methods.
+            if name.startswith("_"):
+                raise AttributeError(name)
+            try:
+                return _core.get(self, _member_name(name))
+            except Error as e:
+                raise NoSuchMember(str(e), e.faults) from None
 
     def __delattr__(self, name: str) -> None:
         if name.startswith("_"):
@@ -157,10 +159,10 @@ class Part(_core.Component):
     def __copy__(self) -> "Part":
         return _core.copy(self)
 
-    def __deepcopy__(self, memo: dict) -> "Part":
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Part":
         return _core.copy(self)
 
-    def __reduce__(self) -> tuple:
+    def __reduce__(self) -> tuple[Any, ...]:
         return (_read_part, (_core.class_name(self), _core.write_description(self, False, ""), _core.name_of(self)))
 
     def __repr__(self) -> str:
@@ -223,7 +225,7 @@ def _read_part(class_name: str, text: str, name: str) -> Part:
     return part
 
 
-def _initialize(self: Part, literal: tuple, members: dict) -> None:
+def _initialize(self: Part, literal: tuple[Any, ...], members: dict[str, Any]) -> None:
     description = described(type(self))
     if literal:
         member = description.get("literal")
@@ -239,12 +241,12 @@ def _initialize(self: Part, literal: tuple, members: dict) -> None:
     _core.init(self, description["name"], {_member_name(name): value for name, value in members.items()})
 
 
-def described(cls: type) -> dict:
+def described(cls: type) -> dict[str, Any]:
     """The description of a class: a dict of name, parent, summary, source, members, subclasses."""
     return cls.__dict__.get("_description") or cls._description  # type: ignore[attr-defined]
 
 
-def _property(member: dict) -> property:
+def _property(member: dict[str, Any]) -> property:
     name = member["name"]
     parts = member["type"] == "component" and member.get("list")
 
@@ -257,7 +259,7 @@ def _property(member: dict) -> property:
     return property(read, write, doc=_member_text(member))
 
 
-def type_text(member: dict) -> str:
+def type_text(member: dict[str, Any]) -> str:
     """What may be given for a member, in words: "number [m], at least 0"."""
     text = member.get("class") or member["type"]
     if member.get("list"):
@@ -269,8 +271,8 @@ def type_text(member: dict) -> str:
         text += ": " + ", ".join(map(str, member["choices"]))
     limits = member.get("range")
     if limits:
-        low = limits.get("more_than", limits.get("from", limits.get("at_least")))
-        high = limits.get("to", limits.get("at_most"))
+        low = limits.get("more_than", limits.get("low"))
+        high = limits.get("high")
         words = []
         if low is not None:
             words.append(("more than " if "more_than" in limits else "at least ") + f"{low:g}")
@@ -281,12 +283,12 @@ def type_text(member: dict) -> str:
     return text
 
 
-def _member_text(member: dict) -> str:
+def _member_text(member: dict[str, Any]) -> str:
     default = "required" if member.get("required") else f"default {member.get('default')}"
     return f"{member['text']} ({type_text(member)}; {default})"
 
 
-def _class_text(description: dict) -> str:
+def _class_text(description: dict[str, Any]) -> str:
     text = description["summary"]
     if description.get("source"):
         text += f"\n\nSource: {description['source']}"
@@ -297,11 +299,11 @@ def _class_text(description: dict) -> str:
     return text
 
 
-def _names(entries: Iterable) -> list[str]:
+def _names(entries: Iterable[Any]) -> list[str]:
     return [e if isinstance(e, str) else e["name"] for e in entries]
 
 
-def _signature(description: dict) -> inspect.Signature:
+def _signature(description: dict[str, Any]) -> inspect.Signature:
     literal = description.get("literal")
     parameters = []
     for member in sorted(description["members"], key=lambda m: m["name"] != literal):

@@ -13,8 +13,8 @@
 #include "kept_lists.h"
 #include "live_render.h"
 #include "parts.h"
-#include "trees.h"
 #include "snapshots.h"
+#include "trees.h"
 
 namespace etendue::python {
 
@@ -53,11 +53,20 @@ void note_origin(Component& c, const std::string& member, Location at) {
   c.origin->members.emplace_back(member, at);
 }
 
+/// to_value, with the member's name in the messages of what cannot be a value at all.
+Value value_for(const Component& c, const std::string& name, const Member* member, nb::handle value, Location at) {
+  try {
+    return to_value(value, member, at);
+  } catch (const Error& e) {
+    throw Error(c.class_info().name + "." + name + " " + e.what(), e.location.known() ? e.location : at);
+  }
+}
+
 void set_member(nb::handle self, const std::string& name, nb::handle value) {
   const Ref<Component> c = component_of(self);
   const Location at = calling_line();
   const Member* member = c->class_info().find(name);
-  const Value given = to_value(value, member, at);
+  const Value given = value_for(*c, name, member, value, at);
   forget_snapshots(*c);
   LiveRender* const live = render_of(*c);
   if (member && member->kind == Kind::component) refuse_cycle(*c, live ? Value() : member->get(*c, *member), given);

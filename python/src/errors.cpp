@@ -24,8 +24,8 @@ nb::dict location_dict(const Error& e) {
   return d;
 }
 
-/// Raises etendue.Error: its text is what the program prints, and its attributes are made by etendue/_errors.py. An exception of
-/// a method that is written in Python is its cause; what is no failure, such as KeyboardInterrupt, is raised itself again.
+/// Raises etendue.Error: its text is what the program prints, and its attributes are made by etendue/_errors.py. An exception
+/// of a method that is written in Python is its cause; what is no failure, such as KeyboardInterrupt, is raised itself again.
 void raise(const std::vector<Error>& errors) {
   std::string text;
   nb::list all;

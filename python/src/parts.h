@@ -128,6 +128,5 @@ void bind_declarations(nb::module_&);
 void bind_part_values(nb::module_&);
 void bind_rays(nb::module_&);
 void bind_importing(nb::module_&);
-void bind_part_checks(nb::module_&);
 
 }  // namespace etendue::python

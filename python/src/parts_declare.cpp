@@ -310,7 +310,6 @@ void bind_parts(nb::module_& m) {
   bind_part_values(m);
   bind_rays(m);
   bind_importing(m);
-  bind_part_checks(m);
   bind_declarations(m);
 }
 

@@ -12,7 +12,7 @@
 #include <cmath>
 
 #include "etendue/language/language.h"
-#include "language/evaluator.h"
+#include "language/calls.h"
 
 namespace etendue::python {
 
@@ -121,7 +121,13 @@ Value to_value(nb::handle object, const Member* member, Location at) {
   if (const nb::object array = as_array(object); array.is_valid()) return from_array(array, member, at);
   if (nb::hasattr(object, "__float__") || nb::hasattr(object, "__index__"))
     return Value(Number{nb::cast<double>(nb::float_(object))}, at);
-  if (nb::isinstance<nb::sequence>(object) || nb::hasattr(object, "__iter__")) return from_sequence(object, member, at);
+  if (nb::isinstance<nb::dict>(object) && nb::borrow<nb::dict>(object).contains("class"))
+    return to_value(nb::module_::import_("etendue._files").attr("from_dict")(object), member, at);
+  // What can be iterated over, but has no order, or is text: its entries would be numbers by accident.
+  const bool no_list = nb::isinstance<nb::dict>(object) || PyAnySet_Check(object.ptr()) || nb::isinstance<nb::bytes>(object) ||
+                       nb::isinstance<nb::bytearray>(object);
+  if (!no_list && (nb::isinstance<nb::sequence>(object) || nb::hasattr(object, "__iter__")))
+    return from_sequence(object, member, at);
   throw Error("cannot be an object of Python's class " + class_of(object), at);
 }
 
@@ -234,6 +240,16 @@ void bind_values(nb::module_& m) {
       },
       "Calls a function of the language.");
   m.def("is_function", &language::is_function);
+  m.def("functions", [] {
+    nb::list all;  // (name, usage, what it makes)
+    const auto add = [&](std::span<const language::Function> functions, const char* makes) {
+      for (const language::Function& f : functions) all.append(nb::make_tuple(f.name, f.usage, makes));
+    };
+    add(language::color_functions(), "color");
+    add(language::transform_functions(), "transform");
+    add(language::math_functions(), "number");
+    return all;
+  });
   m.def("parse_value", [](const std::string& text) { return to_python(parse_value(text), nullptr); });
   m.def("write_value", [](nb::handle value) { return write_value(to_value(value, nullptr)); });
 }

@@ -34,7 +34,11 @@ class Worker {
           done_ = true;
           ended_.notify_one();
         }) {}
-  ~Worker() { thread_.join(); }
+  /// Without the interpreter's lock: a thread that has called Python takes it once more when it ends.
+  ~Worker() {
+    const nb::gil_scoped_release without;
+    thread_.join();
+  }
 
   /// Waits without the interpreter's lock; whether the work has ended.
   bool ended_within(std::chrono::milliseconds time) {

@@ -339,6 +339,10 @@ void Registry::load_plugin(const std::string& path) {
     state_->plugins[file] = nullptr;
     return;
   }
+  if (file.ends_with(".py"))
+    throw Error("plugin '" + file +
+                "' is written in Python, and only Python can read it: etendue.load_plugin, or `plugin` in a description that "
+                "etendue.load reads");
   try {
     // Without the lock, since the child process could not lock it again.
     check_plugin(file, [&] {

@@ -46,10 +46,10 @@ Job::Job()
 
 Job::~Job() = default;
 
-void Job::set_rendering_origin(const DoublePoint3& origin) {
-  rendering_origin_ = origin;
-  camera->rendering_origin = origin;
-  etendue::set_rendering_origin(*scene, origin, camera->shutter_open);
+void Job::set_rendering_origin(const DoublePoint3& new_origin) {
+  rendering_origin_ = new_origin;
+  camera->rendering_origin = new_origin;
+  etendue::set_rendering_origin(*scene, new_origin, camera->shutter_open);
 }
 
 /// The camera's position, rounded to multiples of 16 times its viewing distance (the distance rounded up to a power of two).

@@ -54,7 +54,7 @@ struct BeamEvents final : SegmentEvents {
     beam.least_extinction = least;
     beam.length = std::min(there.length(), (PhotonBeam::certain_depth - std::log1p(-end)) / least);
     beam.volume = medium.volume;
-    beam.vertices = std::uint32_t(walk.size());
+    beam.vertices = std::uint32_t(walk.size()) & vertices_mask;
     beam.hero_only = wavelengths.single();
     beam.caustic = caustic;
     beam.luminaire = walk[0].point.object->luminaire_index();

@@ -113,7 +113,7 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
       p.out = v.out;
       for (int axis = 0; axis < 3; ++axis) p.normal[size_t(axis)] = std::int16_t(32767 * v.point.normal[axis]);
       p.throughput = v.throughput;
-      p.vertices = std::uint32_t(i);
+      p.vertices = std::uint32_t(i) & vertices_mask;
       p.hero_only = v.hero_only;
       p.in_medium = v.in_medium();
       p.caustic = caustic;

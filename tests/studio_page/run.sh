@@ -16,7 +16,6 @@ command -v node >/dev/null || skip "there is no Node"
 [[ -d $here/node_modules/playwright-core && -d $here/node_modules/axe-core ]] || skip "the packages of the tests are not installed"
 [[ -d $here/../../studio/node_modules/typescript ]] || skip "the packages of the page are not installed"
 (cd "$here/../../studio" && node node_modules/typescript/bin/tsc && node build.mjs --tests --out "$build/studio")
+# One after another: each has a browser and a render.
 node --test "$build"/studio/tests/*.mjs
-# Two at a time, the longest first: each has a browser and a render, and waits for most of its time. xargs fails if one does.
-# shellcheck disable=SC2012  # names without blanks
-ls -S "$here"/*.test.mjs | xargs -n 1 -P 2 node --test
+for file in "$here"/*.test.mjs; do node --test "$file"; done

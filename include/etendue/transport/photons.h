@@ -20,6 +20,9 @@
 
 namespace etendue {
 
+/// Photons and beams store the number of their subpath's vertices in 29 bits, beside flags.
+inline constexpr std::uint32_t vertices_mask = (1u << 29) - 1;
+
 struct Photon {
   Point3 position;
   Vector3 out;                              ///< unit, to the vertex before
