@@ -137,13 +137,13 @@ def to_json(part: Part, **options: Any) -> str:
 
 def walk(part: Part) -> Iterator[tuple[str, Part]]:
     """All parts within a part, each once, with its path: ("scene.objects[2].shader", …). The part itself has the path ""."""
-    seen: set[int] = set()
+    seen: dict[int, Part] = {}  # they are kept, as another object may get the id of one that is gone
     left: list[tuple[str, Part]] = [("", part)]
     while left:
         path, at = left.pop()
         if id(at) in seen:
             continue
-        seen.add(id(at))
+        seen[id(at)] = at
         yield path, at
         inner: list[tuple[str, Part]] = []
         for member in described(type(at))["members"]:

@@ -121,7 +121,7 @@ def test_numbers_that_are_not_finite_are_refused():
 
 def test_rays_are_refused_after_their_call():
     Told._result = lambda n: np.zeros((n, 8))
-    assert not picture(renderer=Told(samples=2)).any()
+    assert not np.array(picture(renderer=Told(samples=2))).any()
     context, rays, samples = Told._kept
     for use in (lambda: context.intersect(rays), lambda: samples.uniform(1), lambda: context.scene):
         with pytest.raises(etendue.Error, match="only within the call"):

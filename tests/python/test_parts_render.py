@@ -36,7 +36,7 @@ def test_a_renderer_on_arrays_is_the_one_on_paths():
     # The same steps with the same numbers, so the same sums but for their order.
     paths = picture(box())
     arrays = picture(box(renderer=ArrayTracer(samples=8, max_depth=5)))
-    assert paths.max() > 1
+    assert paths.max() > 0.5
     np.testing.assert_allclose(arrays, paths, rtol=1e-5, atol=1e-6)
 
 
@@ -77,18 +77,19 @@ def furnace(shader):
     return etendue.Job(
         camera=etendue.loads("PerspectiveCamera { from: [0.3, 0.1, 0.2] m, to: [0, 0, 1] m, fov: 90 }"),
         image=etendue.ImageBuffer(width=8, height=8),
-        renderer=etendue.PathTracer(samples=4, max_depth=40),
+        renderer=etendue.PathTracer(samples=32, max_depth=40),
         scene=etendue.BruteForceScene(
             objects=[etendue.Sphere(shader=shader, emission=etendue.DiffuseEmission(radiance=1, sides="back"))]
         ),
     )
 
 
-def test_a_shader_in_a_furnace():
-    y = picture(furnace(Matte()))[..., 1]
-    assert y.mean() == pytest.approx(2, rel=2e-3)
-    y = picture(furnace(Matte(color=Waves(contrast=0))))[..., 1]
-    assert y.mean() == pytest.approx(2, rel=2e-3)
+def test_a_shader_is_the_librarys():
+    # The same formulas with the same numbers; the mean is the known value, with a standard error of 0.3 %.
+    made = picture(furnace(Matte()))
+    np.testing.assert_allclose(made, picture(furnace(etendue.Lambertian(color=0.5))), rtol=1e-4)
+    assert made[..., 1].mean() == pytest.approx(2, rel=0.02)
+    np.testing.assert_allclose(picture(furnace(Matte(color=Waves(contrast=0)))), made, rtol=1e-4)
 
 
 def test_an_emission_of_a_constant_is_the_librarys():
@@ -119,7 +120,7 @@ def test_a_filter_is_the_librarys():
 def test_a_tone_map_gets_the_whole_picture():
     made = etendue.render(box(), samples=1)
     shown = made.to_uint8(Soft())
-    y = made.xyz[..., 1]
+    y = made.xyz()[..., 1]
     bright = np.unravel_index(np.argmax(y), y.shape)
     assert shown.shape == (24, 40, 3) and shown.max() <= 255
     expected = y[bright] / (1 + y[bright])
