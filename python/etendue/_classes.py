@@ -156,10 +156,10 @@ class Part(_core.Component):
             raise Error(f"'{path}': set the whole list instead of a number in it")
         return owner, name, changed
 
-    def __copy__(self) -> "Part":
+    def __copy__(self) -> Any:
         return _core.copy(self)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> "Part":
+    def __deepcopy__(self, memo: dict[int, Any]) -> Any:
         return _core.copy(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -219,7 +219,7 @@ def _short(value: Any) -> str:
 
 
 def _read_part(class_name: str, text: str, name: str) -> Part:
-    part = _core.loads(text, "pickle", "", {}, True, 0, 0) if class_name == "Job" else _core.parse_component(text, "pickle", "")
+    part: Part = _core.loads(text, "pickle", "", {}, True, 0, 0) if class_name == "Job" else _core.parse_component(text, "pickle", "")
     if name:
         _core.set_name(part, name)
     return part
@@ -243,7 +243,8 @@ def _initialize(self: Part, literal: tuple[Any, ...], members: dict[str, Any]) -
 
 def described(cls: type) -> dict[str, Any]:
     """The description of a class: a dict of name, parent, summary, source, members, subclasses."""
-    return cls.__dict__.get("_description") or cls._description  # type: ignore[attr-defined]
+    found: dict[str, Any] = getattr(cls, "_description")
+    return found
 
 
 def _property(member: dict[str, Any]) -> property:
@@ -261,7 +262,7 @@ def _property(member: dict[str, Any]) -> property:
 
 def type_text(member: dict[str, Any]) -> str:
     """What may be given for a member, in words: "number [m], at least 0"."""
-    text = member.get("class") or member["type"]
+    text: str = member.get("class") or member["type"]
     if member.get("list"):
         text = f"list of {text}"
     unit = member.get("unit")
@@ -289,7 +290,7 @@ def _member_text(member: dict[str, Any]) -> str:
 
 
 def _class_text(description: dict[str, Any]) -> str:
-    text = description["summary"]
+    text: str = description["summary"]
     if description.get("source"):
         text += f"\n\nSource: {description['source']}"
     if description["members"]:

@@ -78,7 +78,7 @@ class Condition(NamedTuple):
     """When a member has an effect: see `when` and `unless`."""
 
     member: str
-    values: tuple
+    values: tuple[Any, ...]
     unless: bool
 
 
@@ -265,6 +265,7 @@ def _summary_of(cls: type) -> tuple[str, str]:
 def _interface(cls: type) -> dict[str, Any]:
     """What classes of the interface of this class are made of."""
     for base in cls.__mro__:
+        known: dict[str, Any]
         for known in _core.part_interfaces():
             if base.__module__ == "etendue" and known["name"] == base.__name__:
                 return known

@@ -674,7 +674,7 @@ def _named(renderers: Optional[Renderers]) -> list[tuple[str, Union[str, Part]]]
 
 def _renderer(given: Union[str, Part, type], keep: bool = False) -> Union[str, Part]:
     if isinstance(given, type) and issubclass(given, Part):
-        return given()  # type: ignore[no-any-return]
+        return given()
     if isinstance(given, Part) or (isinstance(given, str) and keep):
         return given
     if isinstance(given, str):  # under another name than its own

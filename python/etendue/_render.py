@@ -70,7 +70,7 @@ class Render:
         if threads < 0:
             _fail(f"threads is a number of threads, or 0 for all cores, not {threads}")
         file = None if checkpoint is None else os.fspath(checkpoint)
-        self._job = job
+        self._job: Any = job
         self._threads = threads
         self._core = _core.Render(job, threads, file, checkpoint_interval, passes)
         self._bad_samples_told = 0
@@ -321,7 +321,7 @@ class Render:
 # ---- functions ------------------------------------------------------------------------------------------------------------------
 
 
-def _stem(job: Part, stem: Optional[FileName]) -> str:
+def _stem(job: Any, stem: Optional[FileName]) -> str:
     """Where outputs without a file go, without their endings."""
     own = os.path.splitext(os.path.basename(_core.file_of(job)))[0]
     given = "" if stem is None else os.fspath(stem)

@@ -120,7 +120,8 @@ def _class_stub(cls: type) -> str:
     if questions := _questions_class(name):
         bases.append(f"_questions.{questions}")
     lines = [f"class {name}({', '.join(bases)}):", _quoted(inspect.cleandoc(cls.__doc__ or ""), "    ")]
-    parameters, literal = [], description.get("literal")
+    parameters: list[str] = []
+    literal = description.get("literal")
     for member in description["members"]:
         parameter = f"{python_name(member['name'])}: {given_type(member)}{'' if member.get('required') else ' = ...'}"
         if member["name"] == literal:

@@ -29,8 +29,7 @@ class Table(list[Row], Generic[Row]):
     @overload
     def __getitem__(self, place: slice) -> Table[Row]: ...
     def __getitem__(self, place: Union[SupportsIndex, slice]) -> Any:
-        found = super().__getitem__(place)
-        return Table(found) if isinstance(place, slice) else found
+        return Table(super().__getitem__(place)) if isinstance(place, slice) else super().__getitem__(place)
 
     def __str__(self) -> str:
         columns = [[name, *map(_cell, values)] for name, values in self.columns().items()]
