@@ -202,7 +202,8 @@ def verify(
         job's own and all other classes that find all light of the scene.
     samples: per pixel of each renderer, in all passes together; None: those of the job's renderer.
     passes: independent passes of each renderer. time: instead as many passes as fit into this time [s], at least 8.
-    lengths: path lengths from 1 to this are compared separately, all longer ones together.
+    lengths: path lengths from 1 to this are compared separately, all longer ones together; 0: all lengths together only, as always where
+        a renderer is written in Python, which does not report its light by path length.
     tile: side of the tiles [pixels]; 0: 32, less in small pictures.
     significance: the probability of reporting any disagreement where there is none.
     force: compare named renderers even if they miss light that the scene has.

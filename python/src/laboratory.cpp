@@ -8,6 +8,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <atomic>
 
 #include "binding.h"
@@ -21,6 +22,7 @@
 #include "files/input_files.h"
 #include "files/output_files.h"
 #include "files/whole_file.h"
+#include "parts.h"
 #include "watched_work.h"
 
 namespace etendue::python {
@@ -92,6 +94,13 @@ struct Texts {
   std::string text, json;
 };
 
+/// Whether any of the renderers is written in Python. These do not report their light by path length, and refuse such layers.
+bool written_in_python(const verify::Choice& choice) {
+  return std::any_of(choice.candidates.begin(), choice.candidates.end(), [](const verify::Candidate& candidate) {
+    return dynamic_cast<const PythonPart*>(candidate.renderer.get()) != nullptr;
+  });
+}
+
 Texts verified(const VerifyRequest& request, Abortable& abortable, WorkProgress& progress) {
   if (!request.report.empty()) note_inputs_of(*request.job);
   refuse_output(request.report);
@@ -99,6 +108,7 @@ Texts verified(const VerifyRequest& request, Abortable& abortable, WorkProgress&
   Render render(request.job, {.threads = request.threads});
   verify::Choice choice = verify::choose_renderers(*request.job, named(*request.job, request.renderers), request.force);
   verify::require_two(choice);
+  if (request.lengths == 0 || written_in_python(choice)) render.edit(*render.job().image, "path_lengths", Value(Number{0}));
   verify::CollectOptions collecting = request.collecting;
   collecting.leave_out_refusing = request.renderers.empty();
   collecting.go_on = [&](size_t renderer, size_t passes) {

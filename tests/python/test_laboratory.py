@@ -54,6 +54,22 @@ def test_verify_finds_what_is_injected():
     assert whole and abs(whole[0].ratio - 1.5) < 0.05
 
 
+def test_verify_of_renderers_written_in_python():
+    """These do not report light by path length, so all lengths together are compared."""
+    from parts_examples import ArrayTracer, DarkTracer
+
+    job = small_job()
+    right = etendue.verify(job, ["PathTracer", ArrayTracer(max_depth=64)], samples=64, seed=2)
+    assert right.agree and not right[0].by_length and {layer.name[:11] for layer in right[0].layers} == {"all lengths"}
+    wrong = etendue.verify(job, ["PathTracer", DarkTracer(max_depth=64)], samples=64, seed=2)
+    assert not wrong.agree and wrong[0].verdict == "DISAGREE"
+
+
+def test_verify_of_all_lengths_together():
+    result = etendue.verify(small_job(), ["PathTracer", etendue.PathTracer(next_event=False)], samples=16, lengths=0)
+    assert {layer.name[:11] for layer in result[0].layers} == {"all lengths"}
+
+
 @pytest.mark.skipif("ETENDUE_PROGRAM" not in os.environ, reason="needs the program")
 def test_verify_equals_the_program():
     arguments = ["--renderers", "PathTracer,PathTracer{next_event: false}", "--size", "16x16", "--samples", "16", "--json", "--seed", "5"]
