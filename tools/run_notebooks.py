@@ -21,7 +21,7 @@ def file_of(name):
 
 
 def execute(notebook, seconds=3600):
-    """Runs all cells in a new kernel, as a reader does who opens the notebook in its folder. Raises CellExecutionError if one fails."""
+    """Runs all cells in a new kernel, in the notebook's folder. Raises CellExecutionError if one fails."""
     import nbclient
 
     with tempfile.TemporaryDirectory() as profile:

@@ -4,6 +4,9 @@ import pytest
 from notebooks import run
 
 
-@pytest.mark.parametrize("name", ["a-bsdf-under-the-microscope", "a-path-tracer-of-ones-own", "an-animation", "which-algorithm"])
+LONG = ["a-bsdf-under-the-microscope", "a-path-tracer-of-ones-own", "an-animation", "which-algorithm"]
+
+
+@pytest.mark.parametrize("name", LONG)
 def test_notebook(name):
     run(name)
