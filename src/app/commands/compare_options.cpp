@@ -97,8 +97,8 @@ std::vector<PixelArea> CompareOptions::insets() const {
 
 std::string CompareOptions::state_folder() const {
   if (!state.empty()) return state;
-  for (const std::string* file : {&report, &json, &csv})
-    if (!file->empty()) return *file + ".runs";
+  for (const std::string* output : {&report, &json, &csv})
+    if (!output->empty()) return *output + ".runs";
   return {};
 }
 
