@@ -116,15 +116,7 @@ class Part(_core.Component):
 
     def __getitem__(self, path: str) -> Any:
         """A part or a value by its path: job["scene.objects[2].shader"]."""
-        at: Any = self
-        for name, places in _steps(path):
-            at = getattr(_as_part(at, path), name)
-            for place in places:
-                try:
-                    at = at[place]
-                except (IndexError, TypeError):
-                    raise Error(f"'{path}': {name} has no entry [{place}]{_length(at)}") from None
-        return at
+        return _follow(self, _steps(path), path)
 
     def __setitem__(self, path: str, value: Any) -> None:
         owner, name, changed = self._target(path, value)
@@ -132,16 +124,8 @@ class Part(_core.Component):
 
     def _target(self, path: str, value: Any) -> tuple["Part", str, Any]:
         """The part whose member has to be set, the member, and its new value, for a value at a path."""
-        steps = list(_steps(path))
-        at: Any = self
-        for name, places in steps[:-1]:
-            at = getattr(_as_part(at, path), name)
-            for place in places:
-                try:
-                    at = at[place]
-                except (IndexError, TypeError):
-                    raise Error(f"'{path}': {name} has no entry [{place}]{_length(at)}") from None
-        name, places = steps[-1]
+        *way, (name, places) = _steps(path)
+        at = _follow(self, way, path)
         owner = _as_part(at, path)
         if not places:
             return owner, name, value
@@ -185,6 +169,18 @@ def _member_name(name: str) -> str:
 def _as_part(at: Any, path: str) -> Part:
     if not isinstance(at, Part):
         raise Error(f"'{path}': {at!r} is no part and has no members")
+    return at
+
+
+def _follow(at: Any, steps: Iterable[tuple[str, list[int]]], path: str) -> Any:
+    """What stands at the end of some steps of a path."""
+    for name, places in steps:
+        at = getattr(_as_part(at, path), name)
+        for place in places:
+            try:
+                at = at[place]
+            except (IndexError, TypeError):
+                raise Error(f"'{path}': {name} has no entry [{place}]{_length(at)}") from None
     return at
 
 
@@ -295,9 +291,21 @@ def _class_text(description: dict[str, Any]) -> str:
         text += f"\n\nSource: {description['source']}"
     if description["members"]:
         text += "\n\nMembers:\n" + "\n".join(f"    {m['name']}: {_member_text(m)}" for m in description["members"])
+    for interface in _core.part_interfaces():
+        if interface["name"] == description["name"]:
+            text += "\n\nMethods of a class written in Python (see etendue.member):\n" + _method_texts(interface)
     if description.get("subclasses"):
         text += "\n\nClasses: " + ", ".join(_names(description["subclasses"]))
     return text
+
+
+def _method_texts(interface: dict[str, Any]) -> str:
+    lines = []
+    for name, arguments in interface["methods"].items():
+        needed = next((names for names in interface["required"] if name in names), [])
+        mark = " (needed)" if len(needed) == 1 else " (one of these is needed)" if needed else ""
+        lines.append(f"    {name}({arguments}): {interface['texts'][name]}{mark}")
+    return "\n".join(lines)
 
 
 def _names(entries: Iterable[Any]) -> list[str]:

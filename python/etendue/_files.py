@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from typing import Any, Iterator, Mapping, Optional, Sequence, Union
 
@@ -128,11 +127,6 @@ def _from_plain(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [_from_plain(v) for v in value]
     return value
-
-
-def to_json(part: Part, **options: Any) -> str:
-    """to_dict as a text."""
-    return json.dumps(to_dict(part, **options))
 
 
 def walk(part: Part) -> Iterator[tuple[str, Part]]:

@@ -14,6 +14,7 @@
 #include "etendue/describe/reflection.h"
 #include "kept_lists.h"
 #include "snapshots.h"
+#include "worker.h"
 
 namespace etendue::python {
 
@@ -191,47 +192,6 @@ std::optional<Progress> LiveRender::take_progress() {
 
 namespace {
 
-/// A function that runs on a thread of its own.
-class Worker {
- public:
-  explicit Worker(std::function<void()> work)
-      : thread_([this, work = std::move(work)] {
-          try {
-            work();
-          } catch (...) {
-            thrown_ = std::current_exception();
-          }
-          const std::lock_guard lock(mutex_);
-          done_ = true;
-          ended_.notify_all();
-        }) {}
-  ~Worker() { join(); }
-  Worker(const Worker&) = delete;
-  Worker& operator=(const Worker&) = delete;
-
-  /// Waits without the interpreter's lock. Returns whether the work has ended.
-  bool wait() {
-    constexpr std::chrono::milliseconds interval{50};
-    const nb::gil_scoped_release without;
-    std::unique_lock lock(mutex_);
-    return ended_.wait_for(lock, interval, [&] { return done_; });
-  }
-  void join() {
-    if (!thread_.joinable()) return;
-    const nb::gil_scoped_release without;
-    thread_.join();
-  }
-  /// The exception that the work threw; after `join`.
-  const std::exception_ptr& thrown() const { return thrown_; }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  bool done_ = false;
-  std::exception_ptr thrown_;
-  std::thread thread_;  // the last member: it uses the others
-};
-
 /// The thread that runs a render, while it does.
 class Running {
  public:
@@ -248,10 +208,6 @@ class Running {
  private:
   std::optional<std::thread::id>& runner_;
 };
-
-void check_signals() {
-  if (PyErr_CheckSignals() != 0) throw nb::python_error();
-}
 
 }  // namespace
 

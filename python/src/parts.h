@@ -79,10 +79,13 @@ class PartOf : public Interface, public PythonPart {
   void prepare() override { prepare_part(*this); }
 };
 
-/// A method that a Python class of an interface may define. `arguments` as in the definition: "self, point".
+/// A method that a Python class of an interface may define. `arguments` as in the definition: "self, point"; `text` says what
+/// it returns. With "self" alone a plain attribute of the class will do.
 struct PartMethod {
-  const char *name, *arguments;
+  const char *name, *arguments, *text;
 };
+inline constexpr PartMethod prepare_method{"prepare", "self",
+                                           "called once all members are set, to check them with self.fail and to precompute"};
 
 /// What the classes of an interface are made of.
 struct PartInterface {

@@ -126,19 +126,23 @@ class PythonCamera final : public PartOf<Camera> {
 }  // namespace
 
 PartInterface camera_interface() {
-  return {"Camera",
-          make_part<PythonCamera>,
-          {{"set_film", "self, width, height"},
-           {"ray", "self, film, lens, time"},
-           {"film_point", "self, origin, direction"},
-           {"sample_lens", "self, point, time, u"},
-           {"importance", "self, origin, direction"},
-           {"pdf", "self, origin, direction"},
-           {"place", "self"},
-           {"has_lens", "self"},
-           {"parallel", "self"},
-           {"prepare", "self"}},
-          {{"set_film"}, {"ray"}, {"film_point"}, {"sample_lens"}, {"importance"}, {"pdf"}}};
+  return {
+      "Camera",
+      make_part<PythonCamera>,
+      {{"set_film", "self, width, height", "called with the size of the whole picture [pixels]"},
+       {"ray", "self, film, lens, time",
+        "origin [m], unit direction, and the growth of the width of a pixel's cone per distance (optional)"},
+       {"film_point", "self, origin, direction", "the film point of a ray away from the lens, None if it misses the film"},
+       {"sample_lens", "self, point, time, u",
+        "a point of the lens [m], its pdf [1/sr] at the point of the scene, the importance and the film point; None: unseen"},
+       {"importance", "self, origin, direction", "W_e of a ray [1/(m^2 sr)], of a pinhole [1/sr]; 0 outside of the film"},
+       {"pdf", "self, origin, direction",
+        "the pdfs of a ray's lens point [1/m^2] (1 for a pinhole) and of its direction [1/sr]"},
+       {"place", "self", "position [m] and approximate distance of what is in view [m], for precision far from the origin"},
+       {"has_lens", "self", "False for a pinhole; True by default"},
+       {"parallel", "self", "whether all rays are parallel; False by default"},
+       prepare_method},
+      {{"set_film"}, {"ray"}, {"film_point"}, {"sample_lens"}, {"importance"}, {"pdf"}}};
 }
 
 }  // namespace etendue::python

@@ -242,11 +242,15 @@ void declare(nb::handle type, const nb::dict& from) {
 nb::list interfaces() {
   nb::list all;
   for (const PartInterface& known : part_interfaces()) {
-    nb::dict methods;
-    for (const PartMethod& m : known.methods) methods[m.name] = m.arguments;
+    nb::dict methods, texts;
+    for (const PartMethod& m : known.methods) {
+      methods[m.name] = m.arguments;
+      texts[m.name] = m.text;
+    }
     nb::dict entry;
     entry["name"] = known.name;
     entry["methods"] = methods;
+    entry["texts"] = texts;
     entry["required"] = known.required;
     entry["together"] = known.together;
     all.append(entry);

@@ -119,16 +119,20 @@ class PythonEmission final : public PartOf<EmissionShader> {
 }  // namespace
 
 PartInterface emission_interface() {
-  return {"EmissionShader",
-          make_part<PythonEmission>,
-          {{"radiance", "self, point, direction, wavelengths"},
-           {"sample", "self, point, u"},
-           {"pdf", "self, point, direction"},
-           {"power", "self, area, wavelengths"},
-           {"only_at_infinity", "self"},
-           {"prepare", "self"}},
-          {{"radiance"}},
-          {"sample", "pdf"}};
+  return {
+      "EmissionShader",
+      make_part<PythonEmission>,
+      {{"radiance", "self, point, direction, wavelengths",
+        "emitted radiance [W m^-2 sr^-1 nm^-1] in a unit direction away from the surface; from infinity, against the direction "
+        "that light comes from. Asked on the sides that emit only"},
+       {"sample", "self, point, u", "a direction of emission and its pdf [1/sr]; by default in proportion to the cosine"},
+       {"pdf", "self, point, direction", "the pdf [1/sr] of `sample`"},
+       {"power", "self, area, wavelengths",
+        "the power [W/nm] of an object of an area [m^2]; by default integrated numerically"},
+       {"only_at_infinity", "self", "whether only objects at infinity may have it; False by default"},
+       prepare_method},
+      {{"radiance"}},
+      {"sample", "pdf"}};
 }
 
 }  // namespace etendue::python

@@ -143,14 +143,21 @@ void bind_importing(nb::module_& m) {
 PartInterface output_interface() {
   return {"Output",
           make_part<PythonOutput>,
-          {{"extension", "self"}, {"for_display", "self"}, {"encode", "self, pixels, channels, metadata"}, {"prepare", "self"}},
+          {{"extension", "self", "the usual ending, with its dot"},
+           {"for_display", "self", "whether it takes R G B for a display; False (X Y Z) by default"},
+           {"encode", "self, pixels, channels, metadata",
+            "the bytes of the file, from an array of shape (height, width, channels), the channels' names and a dict of texts"},
+           prepare_method},
           {{"extension"}, {"encode"}}};
 }
 
 PartInterface importer_interface() {
   return {"Importer",
           make_part<PythonImporter>,
-          {{"extensions", "self"}, {"read", "self, importing"}, {"prepare", "self"}},
+          {{"extensions", "self", "the endings that it reads, without dots"},
+           {"read", "self, importing",
+            "a Job or a Scene; importing.contents, .file, .parameter, .inexact, .error are what reading needs"},
+           prepare_method},
           {{"extensions"}, {"read"}}};
 }
 

@@ -75,11 +75,14 @@ class PythonMap final : public PartOf<ObjectMap> {
 PartInterface map_interface() {
   return {"ObjectMap",
           make_part<PythonMap>,
-          {{"scalar", "self, point"},
-           {"rgb", "self, point"},
-           {"color", "self, point, wavelengths, use"},
-           {"largest", "self"},
-           {"prepare", "self"}},
+          {{"scalar", "self, point", "one number; a colour's mean over wavelengths or channels"},
+           {"rgb", "self, point", "three numbers: linear sRGB"},
+           {"color", "self, point, wavelengths, use",
+            "a number for all wavelengths, or one for each of them [nm]; use is 'reflectance' (a fraction in [0, 1]), "
+            "'radiance' or "
+            "'coefficient'"},
+           {"largest", "self", "the largest number in the map, if any is above 1"},
+           prepare_method},
           {{"scalar", "rgb", "color"}}};
 }
 

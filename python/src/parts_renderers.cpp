@@ -158,7 +158,12 @@ class PythonRenderer final : public PartOf<Renderer> {
 PartInterface renderer_interface() {
   return {"Renderer",
           make_part<PythonRenderer>,
-          {{"radiance", "self, context, rays, samples"}, {"not_found", "self"}, {"expectation", "self"}, {"prepare", "self"}},
+          {{"radiance", "self, context, rays, samples",
+            "estimates of the radiance along N camera rays [W m^-2 sr^-1 nm^-1], shape (N, 8); context.intersect, .occluded; "
+            "samples.uniform; the surfaces' emitted, direct, scatter, evaluate, albedo, leave"},
+           {"not_found", "self", "names of the kinds of light that it finds in no scene, such as 'delta_caustics'"},
+           {"expectation", "self", "'unbiased', 'consistent' or 'biased'; 'unbiased' by default"},
+           prepare_method},
           {{"radiance"}}};
 }
 

@@ -176,17 +176,21 @@ bool PythonScatter::reciprocal() const { return shader_.reciprocal(); }
 PartInterface shader_interface() {
   return {"Shader",
           make_part<PythonShader>,
-          {{"lobes", "self"},
-           {"evaluate", "self, point, wavelengths, out, incident, lobes"},
-           {"pdf", "self, point, wavelengths, out, incident, lobes"},
-           {"sample", "self, point, wavelengths, out, choice, u, lobes"},
-           {"albedo", "self, point, wavelengths, out, lobes"},
-           {"interior_index", "self, wavelengths"},
-           {"relative_index", "self, point, wavelengths, out, incident"},
-           {"reciprocal", "self"},
-           {"lossless", "self"},
-           {"albedo_error", "self"},
-           {"prepare", "self"}},
+          {{"lobes", "self", "the kinds of scattering that it may have, bits of etendue.Lobe"},
+           {"evaluate", "self, point, wavelengths, out, incident, lobes",
+            "f [1/sr] without the cosine, of the lobes asked for that are not specular: a number or one for each wavelength. "
+            "Directions are local: z is along the shading normal"},
+           {"pdf", "self, point, wavelengths, out, incident, lobes", "the pdf [1/sr] with which `sample` samples `incident`"},
+           {"sample", "self, point, wavelengths, out, choice, u, lobes",
+            "an etendue.ScatterSample, or None: absorbed. choice and u = (u0, u1) are uniform in [0, 1)"},
+           {"albedo", "self, point, wavelengths, out, lobes", "the fraction of uniform light that is scattered towards `out`"},
+           {"interior_index", "self, wavelengths", "the refractive index inside the object, 1 by default"},
+           {"relative_index", "self, point, wavelengths, out, incident",
+            "for rough refraction: the index on the side of `incident` over that on the side of `out`"},
+           {"reciprocal", "self", "whether f(out, incident) = f(incident, out); True by default"},
+           {"lossless", "self", "whether nothing is absorbed; False by default"},
+           {"albedo_error", "self", "a bound of the relative error of `albedo`; 0 by default"},
+           prepare_method},
           {{"lobes"}, {"evaluate"}, {"pdf"}, {"sample"}, {"albedo"}}};
 }
 

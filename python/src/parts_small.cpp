@@ -38,14 +38,18 @@ class PythonPhaseFunction final : public PartOf<PhaseFunction> {
 PartInterface filter_interface() {
   return {"Filter",
           make_part<PythonFilter>,
-          {{"weight", "self, x, y"}, {"radius", "self"}, {"prepare", "self"}},
+          {{"weight", "self, x, y", "the weight of a sample at an offset from the pixel's centre [pixels]"},
+           {"radius", "self", "half the width of the support [pixels]"},
+           prepare_method},
           {{"weight"}, {"radius"}}};
 }
 
 PartInterface phase_function_interface() {
   return {"PhaseFunction",
           make_part<PythonPhaseFunction>,
-          {{"value", "self, h"}, {"sample", "self, u"}, {"prepare", "self"}},
+          {{"value", "self, h", "the pdf of the direction [1/sr] at h = 1 - cos(scattering angle)"},
+           {"sample", "self, u", "h for a uniform number, in proportion to `value`"},
+           prepare_method},
           {{"value"}, {"sample"}}};
 }
 

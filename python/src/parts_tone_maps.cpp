@@ -64,7 +64,10 @@ class PythonToneMap final : public PartOf<ToneMap> {
 PartInterface tone_map_interface() {
   return {"ToneMap",
           make_part<PythonToneMap>,
-          {{"map", "self, xyz"}, {"clips", "self"}, {"local", "self"}, {"prepare", "self"}},
+          {{"map", "self, xyz", "X Y Z of all pixels as they are shown, from X Y Z: arrays of shape (height, width, 3)"},
+           {"clips", "self", "whether the result is clipped to [0, 1]; True by default"},
+           {"local", "self", "whether the result of a pixel depends on its neighbours; False by default"},
+           prepare_method},
           {{"map"}}};
 }
 

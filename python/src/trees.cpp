@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "describe/expansion.h"
+#include "language/evaluator.h"
 
 namespace etendue::python {
 
@@ -37,7 +38,7 @@ void refuse_cycle(const Component& self, const Value& old, const Value& given) {
 }
 
 void require_shallow(const Component& root) {
-  constexpr int deepest = 1000;  // as the language's (src/language/evaluator.h)
+  constexpr int deepest = language::Evaluator::height_limit;
   struct Step {
     const Component* component;
     std::vector<Component*> rest;

@@ -49,6 +49,9 @@ void check_range(double x, const Member& m, Location at) {
 double checked(double value, Dimension dimension, const Member& m, Location at) {
   const double x = in_member_unit(value, dimension, m, at);
   check_range(x, m, at);
+  // A range's ends are compared as floats, too, which large integers need not be.
+  if (m.kind == Kind::integer && m.range && (x < m.range->low || x > m.range->high))
+    throw Error(fmt::format("must be {}, not {:.17g}", m.range->text(), x), at);
   return x;
 }
 

@@ -59,6 +59,9 @@ struct Moment {
 /// was reported.
 class Evaluator {
  public:
+  /// The greatest height of a component tree: limits the recursion here, and later wherever trees are traversed or destroyed.
+  static constexpr int height_limit = 1000;
+
   /// A namespace: one for all files together, and one for each file that was included under a name.
   struct Space;
 
@@ -122,8 +125,6 @@ class Evaluator {
     int height = 0;          // of the component tree in its value; 0 if the value has no components
     Value value;
   };
-  // Limits the recursion here, and later wherever component trees are traversed or destroyed.
-  static constexpr int height_limit = 1000;
   // Limits the size of nested lists, since each use of a name copies its list.
   static constexpr size_t nested_limit = 1'000'000;
   // Limits the iterations of one comprehension, and the components made by all comprehensions and functions.

@@ -171,6 +171,13 @@ def test_init_may_be_the_classes_own():
                 return 1
 
 
+def test_help_says_which_methods_a_class_needs():
+    assert "(needed)" in etendue.Shader.__doc__ and "(one of these is needed)" in etendue.ObjectMap.__doc__
+    for interface in etendue._core.part_interfaces():
+        doc = getattr(etendue, interface["name"]).__doc__
+        assert all(f"{name}({arguments}): " in doc for name, arguments in interface["methods"].items())
+
+
 def scalar(self, point):
     return 1
 
@@ -194,7 +201,8 @@ def test_faults_of_a_definition_are_told():
     refused(r"Refused.x: cannot be dict", x=member(1, text="x"), __annotations__={"x": dict})
     refused(r"Refused.x: members are declared by", x=3, __annotations__={"x": float})
     refused(r"Refused._x: the name of a member", _x=member(1, text="x"), __annotations__={"_x": float})
-    refused(r"Refused.fail: a member cannot have the name", fail=member(1, text="x"), __annotations__={"fail": float})
+    for name in ("fail", "color"):
+        refused(rf"Refused.{name}: a member cannot have the name", **{name: member(1, text="x"), "__annotations__": {name: float}})
     refused(r"Refused: a class of ObjectMap defines scalar\(self, point\) or rgb", scalar=None)
     refused(r"is 'scaler' meant to be 'scalar'", scalar=None, scaler=lambda self, point: 1)
     refused(r"Refused.scalar\(self\): is called with the arguments \(self, point\)", scalar=lambda self: 1)

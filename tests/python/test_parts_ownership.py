@@ -136,6 +136,20 @@ def test_an_owner_that_is_gone_while_the_part_is_held_by_python():
     assert leaf.level == 0.5 and etendue.dumps(leaf) == "Leaf {}\n"
 
 
+def test_a_part_below_a_component_that_python_holds():
+    shader = etendue.Lambertian(color=Leaf())
+    shader.color._note = "mine"
+    holder = [job_of(shader)]
+    holder.append(holder)
+    del holder  # the job is garbage, and its shader is not
+    for _ in range(3):
+        gc.collect()
+    assert shader.color._note == "mine"
+    seen = weakref.ref(shader.color)
+    del shader
+    assert collected(seen)
+
+
 def test_redefined_classes_and_their_objects():
     def define():
         class Passing(etendue.ObjectMap):

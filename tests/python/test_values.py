@@ -33,6 +33,7 @@ def test_numbers_units_and_shortest_text():
         ({"radius": float("nan")}, "finite"),
         ({"radius": "3 s"}, "length"),
         ({"radius": "3 kg"}, "unknown unit"),
+        ({"priority": 0.5}, "whole number"),
         ({"radius": [1, 2]}, "expects a number"),
         ({"radius": object()}, "Python's class object"),
         ({"radius": numpy.array([1j])}, "complex"),
@@ -51,6 +52,13 @@ def test_what_is_wrong_is_an_error_with_the_line(members, words):
     assert words in str(caught.value)
     fault = caught.value.faults[0]
     assert fault.file == __file__ and fault.line > 0
+
+
+def test_limits_of_integers_are_exact():
+    limit = 1 << 30
+    assert etendue.PathTracer(samples=limit).samples == limit
+    with pytest.raises(etendue.Error, match="1073741825"):
+        etendue.PathTracer(samples=limit + 1)
 
 
 def test_a_number_that_raises_keeps_its_exception():
