@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from typing import Any, Iterator, Mapping, Optional, Sequence, Union
 
 from . import _core
@@ -49,16 +50,14 @@ def loads(
 
     name stands for the file in messages (a name that ends in .json: the text is JSON); paths are relative to folder.
     """
-    if not name.endswith(".json") and not _is_job(text):
+    if not _is_job(text):
         return _core.parse_component(text, name, os.fspath(folder))
     return _core.loads(text, name, os.fspath(folder), _texts(defines), allow_files, frame, time)
 
 
 def _is_job(text: str) -> bool:
-    """Whether a text describes a whole render: a word `Job` or `render` at its outermost level, or definitions alone."""
-    import re
-
-    return re.search(r"(?m)^\s*(Job|render)\b", text) is not None
+    """Whether a text describes a whole render: `Job` begins a line of it, or is the class of a JSON object."""
+    return re.search(r'(?m)^\s*Job\b|"class"\s*:\s*"Job"', text) is not None
 
 
 def _texts(defines: Optional[Mapping[str, Any]]) -> dict[str, str]:

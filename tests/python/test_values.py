@@ -140,6 +140,13 @@ def test_identity_of_parts():
     assert again.shader is again.shader and etendue.equal(s, again)
 
 
+def test_json_of_a_part_keeps_what_is_shared():
+    shader = etendue.Lambertian(color=etendue.rgb(0.1, 0.2, 0.3))
+    scene = etendue.BvhScene(objects=[etendue.Sphere(shader=shader), etendue.Sphere(radius=2, shader=shader)])
+    again = etendue.loads(etendue.dumps(scene, format="json"), name="scene.json")
+    assert etendue.equal(scene, again) and again.objects[0].shader is again.objects[1].shader
+
+
 def test_lists_of_parts_are_alive():
     scene = etendue.BvhScene()
     scene.objects.append(etendue.Sphere())
