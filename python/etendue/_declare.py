@@ -225,8 +225,8 @@ def _described_members(cls: type, frame: Optional[types.FrameType]) -> list[dict
                 raise Error(f"{where}: a member needs an annotation, as in {name}: float = etendue.member(…)")
             if name.startswith("_") or not re.fullmatch(r"[a-z][a-z0-9_]*", name):
                 raise Error(f"{where}: the name of a member has small letters, digits and underscores, and begins with a letter")
-            if hasattr(Part, name) or name in getattr(cls, "_question_names", ()):
-                raise Error(f"{where}: a member cannot have the name of a method of the library's class")
+            if hasattr(Part, name):
+                raise Error(f"{where}: a member cannot have the name of a method of all parts")
             if name in getattr(cls, "_question_names", ()):
                 raise Error(f"{where}: a member cannot have the name of a question: see help(etendue.{_interface(cls)['name']}.{name})")
             found.append(_described_member(name, value, _evaluated(annotations[name], frame, cls, where), where))
