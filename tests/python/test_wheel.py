@@ -98,16 +98,22 @@ def test_libraries_are_found_in_it_and_nowhere_else(installed):
             assert bundling.EVERYWHERE.match(name) or any((place / name).is_file() for place in places), (file, name)
 
 
-def test_the_package_is_imported_quickly_and_takes_nothing_of_the_build(run, installed):
+def test_the_package_is_imported_quickly(run, installed):
+    command = "import time; begin = time.process_time(); import etendue; print(time.process_time() - begin)"
+    # The least of some runs: the first one reads the libraries from the disk, and any of them may share its core with another
+    # program, which costs it processor time as well (0.06 s where nothing else runs).
+    assert min(float(run(sys.executable, "-c", command)) for _ in range(5)) < 0.3
+
+
+def test_the_package_takes_nothing_of_the_build(run, installed):
     said = run(
         sys.executable,
         "-c",
-        "import time; begin = time.process_time(); import etendue; took = time.process_time() - begin\n"
-        "print(took, etendue.build_info()['architecture'], etendue.__file__)\n"
+        "import etendue\n"
+        "print(etendue.build_info()['architecture'], etendue.__file__)\n"
         "print(open('/proc/self/maps').read())",
     )
-    took, architecture, file = said.splitlines()[0].split()
-    assert float(took) < 0.3
+    architecture, file = said.splitlines()[0].split()
     assert architecture == "native"
     assert file.startswith(str(installed))
     assert str(BUILD) not in said.replace(str(BUILD / "python-tools"), "")
