@@ -205,6 +205,31 @@ Picture denoise_guided(LiveRender& live, const Picture& picture, nb::handle part
   }));
 }
 
+/// A checkpoint of a job that holds no samples, and names no size of a step: what determines its samples, with the contents of
+/// its files.
+Checkpoint bare_checkpoint(const Job& job) {
+  if (!job.renderer || !job.image) throw Error("the job has no renderer or no image");
+  return empty_checkpoint(job, identity_of(job), 1);
+}
+
+nb::bytes identity_bytes(nb::handle object) {
+  const Ref<Job> job = component_as<Job>(object, "a Job");
+  const std::string bytes = reading(*job, [&] {
+    std::ostringstream to;
+    write_checkpoint(bare_checkpoint(*job), to);
+    return std::move(to).str();
+  });
+  return nb::bytes(bytes.data(), bytes.size());
+}
+
+/// Why samples of a job must not be added to those of the job that `identity_bytes` was taken of; empty: they may.
+std::string identity_mismatch(nb::handle object, const std::string& whose, const nb::bytes& identity,
+                              const std::string& other) {
+  const Ref<Job> job = component_as<Job>(object, "a Job");
+  std::istringstream from(std::string(identity.c_str(), identity.size()));
+  return reading(*job, [&] { return mismatch(bare_checkpoint(*job), whose, read_checkpoint(from), other); });
+}
+
 /// A job of the same parts, whose members can be set without changing the other.
 nb::object shallow_copy(nb::handle object) {
   const Ref<Component> from = component_of(object);
@@ -248,6 +273,12 @@ void bind_live_render(nb::module_& m) {
       .def("load_file",
            [](LiveRender& live, const std::string& file) { live.unedited([&](Render& render) { render.load(file); }); })
       .def("add_bytes", &add_bytes)
+      .def("select_steps",
+           [](LiveRender& live, std::uint32_t begin, std::uint32_t end) {
+             with(live, [&](Render& render) { render.select_steps(IndexRange{begin, end}); });
+           })
+      .def("steps_depend",
+           [](LiveRender& live) { return with(live, [](Render& r) { return r.job().renderer->steps_depend(); }); })
       .def("replay", &replay)
       .def("samples_done", &samples_done)
       .def("samples_per_step", [](LiveRender& live) { return with(live, [](Render& r) { return r.samples_per_step(); }); })
@@ -268,6 +299,8 @@ void bind_render(nb::module_& m) {
   bind_live_render(m);
   m.def("require_outputs", &require_outputs);
   m.def("denoise", &denoise, "picture"_a, "denoiser"_a.none(), "threads"_a);
+  m.def("identity_bytes", &identity_bytes);
+  m.def("identity_mismatch", &identity_mismatch, "job"_a, "whose"_a, "identity"_a, "other"_a);
   m.def("shallow_copy", &shallow_copy);
   m.def("has_member",
         [](nb::handle part, const std::string& name) { return component_of(part)->class_info().find(name) != nullptr; });

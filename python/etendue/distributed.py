@@ -1,0 +1,463 @@
+"""Renders over many machines, by Dask: `pip install etendue[distributed]`.
+
+    import etendue.distributed
+    from dask.distributed import Client
+
+    client = Client("tcp://scheduler:8786")             # or LocalCluster, SLURMCluster, KubeCluster, SSHCluster, …
+    picture = etendue.distributed.render("box.etd", client, samples=4096)
+
+A part of a render is a task of Dask: some steps of the picture. Machines may come and go: a part whose machine is lost is rendered
+again by another. Parts are added in the order in which they arrive, and the picture has, byte for byte, the pixels that one process
+renders. The job travels as a description; its files do not, but are read by each machine at the same path (docs/cluster.md).
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+import os
+import queue
+import time as clock
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal, Optional, Union
+
+from . import _core
+from ._classes import Part
+from ._errors import Error, _warn
+from ._files import load
+from ._images import Image
+from ._parts import RenderedPart, SentJob, render_part, render_whole
+from ._progress import Progress, Shown, display_for
+from ._render import FileName, Render, _find_denoising_library, _overridden, _stem
+
+__all__ = ["frames", "render", "run"]
+
+#: How often a part may lose its machine: more often, and the part is probably the reason.
+_MOST_LOSSES = 10
+_PARTS_PER_WORKER = 2  # one is rendered, and the next one is there when it ends
+_CHECKPOINT_INTERVAL = 60.0  # [s]
+
+
+# ---- tasks of Dask --------------------------------------------------------------------------------------------------------------
+
+
+def _dask(client: Any) -> Any:
+    """The package distributed. Raises Error if it is missing, or if this is no client of it that can be used here."""
+    try:
+        package = importlib.import_module("distributed")
+    except ImportError as e:
+        raise Error(f"renders over many machines need Dask: pip install etendue[distributed] ({e})") from None
+    if not isinstance(client, package.Client):
+        raise Error(f"client is a dask.distributed.Client, not {client!r}")
+    if client.asynchronous:
+        raise Error("client is asynchronous: make it by Client(…) without asynchronous=True, outside of a coroutine")
+    if client.status != "running":
+        raise Error(f"the client is not connected to a scheduler: it is {client.status}")
+    return package
+
+
+@dataclass
+class _Task:
+    what: Any  # what the caller calls it by
+    submit: Callable[[], Any]
+    losses: int = 0
+
+
+class _Sent:
+    """A job as the result of a task of its own, which each worker fetches once."""
+
+    def __init__(self, client: Any, job: SentJob) -> None:
+        self._client = client
+        self._job = job
+        self._future: Any = None
+
+    def future(self) -> Any:
+        # Workers that are lost while they have the job may take its task along.
+        if self._future is None or self._future.status in ("error", "lost", "cancelled"):
+            job = self._job
+            self._future = self._client.submit(SentJob, job.text, job.folder, job.plugins, job.identity, pure=False)
+        return self._future
+
+
+class _Tasks:
+    """Tasks under way. There are few for each worker, so that results do not pile up, and each result is released once it is here."""
+
+    def __init__(self, client: Any) -> None:
+        self._package = _dask(client)
+        self._client = client
+        self._under_way: dict[Any, _Task] = {}
+        self._done: queue.SimpleQueue[Any] = queue.SimpleQueue()
+
+    @property
+    def workers(self) -> int:
+        """Processes, at least 1: without any the tasks wait for the first one to come."""
+        return max(1, len(self._client.scheduler_info(n_workers=-1)["workers"]))
+
+    @property
+    def wanted(self) -> bool:
+        """Whether the workers could do with one more."""
+        return len(self._under_way) < _PARTS_PER_WORKER * self.workers
+
+    def __len__(self) -> int:
+        return len(self._under_way)
+
+    def submit(self, what: Any, function: Callable[..., Any], sent: _Sent, *arguments: Any) -> None:
+        """Submits function(job, …)."""
+        self._begin(_Task(what, lambda: self._client.submit(function, sent.future(), *arguments, pure=False)))
+
+    def _begin(self, task: _Task) -> None:
+        future = task.submit()
+        self._under_way[future] = task
+        future.add_done_callback(self._done.put)
+
+    def next(self, seconds: float) -> Optional[tuple[Any, Any]]:
+        """What was submitted, and its result; None: nothing has arrived for this time. Raises the task's exception."""
+        try:
+            future = self._done.get(timeout=seconds)
+        except queue.Empty:
+            return None
+        task = self._under_way.pop(future)
+        try:
+            result = future.result()
+        except self._package.KilledWorker:
+            task.losses += 1
+            if task.losses >= _MOST_LOSSES:
+                raise Error(
+                    f"{task.what}: every worker that began it was lost, {task.losses} times in a row: "
+                    "their logs say why (memory is the usual reason)"
+                ) from None
+            self._begin(task)
+            return None
+        except ModuleNotFoundError as e:
+            raise Error(f"a worker has no module {e.name}: install the package there, in the version of the client") from None
+        except Exception as e:
+            if type(e).__name__ in ("FutureCancelledError", "CancelledError"):
+                raise Error("the parts under way were cancelled, or the scheduler was lost; what has arrived is kept") from None
+            raise
+        finally:
+            future.release()
+        return task.what, result
+
+    def cancel(self) -> None:
+        """Withdraws all that is under way; the workers abort it."""
+        if self._under_way and self._client.status == "running":
+            self._client.cancel(list(self._under_way))
+        self._under_way.clear()
+
+
+# ---- parts of one render --------------------------------------------------------------------------------------------------------
+
+
+class _Steps:
+    """The steps that are left, divided into parts of some seconds each."""
+
+    def __init__(self, render: Render, steps: Optional[tuple[int, int]], part_seconds: float) -> None:
+        size = render.samples_per_step
+        samples = render.job.renderer.samples
+        begin, end = (0, math.ceil(samples / size)) if steps is None else steps
+        if not 0 <= begin < end <= math.ceil(samples / size):
+            raise Error(f"there are no steps {begin} to {end}: {samples} samples per pixel are {math.ceil(samples / size)} steps")
+        done = render.samples_done
+        self.left = [k for k in range(begin, end) if not any(a < min((k + 1) * size, samples) and k * size < b for a, b in done)]
+        for k in range(begin, end):
+            whole = any(a <= k * size and min((k + 1) * size, samples) <= b for a, b in done)
+            if k not in self.left and not whole:
+                raise Error(
+                    f"only some of the samples {k * size} to {(k + 1) * size - 1}, a step, are in the picture, and machines render "
+                    f"whole steps: start over, with a multiple of {size} samples"
+                )
+        self.left.reverse()
+        self.total = end - begin
+        self._part_seconds = part_seconds
+        self._step_seconds: Optional[float] = None
+
+    def measure(self, steps: int, seconds: float) -> None:
+        self._step_seconds = seconds / steps
+
+    def take(self, workers: int) -> tuple[int, int]:
+        """The next part, as a range. Parts are small at first, while their time is unknown, and at the end, when machines would wait
+        for each other."""
+        wanted = 1
+        if self._step_seconds is not None:
+            wanted = int(min(self._part_seconds / max(self._step_seconds, 1e-6), len(self.left) / (2 * workers)))
+        begin = end = self.left.pop()
+        while self.left and self.left[-1] == end + 1 and end + 1 - begin < wanted:
+            end = self.left.pop()
+        return begin, end + 1
+
+
+def _require_independent_steps(render: Render) -> None:
+    if render._core.steps_depend():
+        raise Error(
+            f"{type(render.job.renderer).__name__} learns from one step to the next, so its steps cannot be rendered on several "
+            "machines; etendue.distributed.frames renders whole pictures, each on one machine"
+        )
+
+
+class _Clock:
+    """The progress of the whole picture, over wall-clock time."""
+
+    def __init__(self, render: Render) -> None:
+        self._render = render
+        self._began = clock.monotonic()
+        self._had = render.progress.samples
+
+    @property
+    def seconds(self) -> float:
+        return clock.monotonic() - self._began
+
+    def progress(self, finished: bool) -> Progress:
+        now = self._render.progress
+        seconds = max(self.seconds, 1e-6)
+        new = now.samples - self._had
+        pixels = now.samples_per_second * now.seconds / max(now.samples, 1)
+        left = None if new <= 0 else (now.samples_wanted - now.samples) * seconds / new
+        return replace(
+            now,
+            fraction=now.samples / max(now.samples_wanted, 1),
+            seconds=seconds,
+            seconds_left=left,
+            samples_per_second=new * pixels / seconds,
+            finished=finished,
+        )
+
+
+class _Checkpoint:
+    """Saves what has arrived. A file that cannot be written is warned of: it is no reason to lose the render."""
+
+    def __init__(self, render: Render, file: Optional[FileName]) -> None:
+        self._render = render
+        self._file = file
+        self._saved = clock.monotonic()
+
+    def save_now_and_then(self) -> None:
+        if clock.monotonic() - self._saved >= _CHECKPOINT_INTERVAL:
+            self.save()
+
+    def save(self) -> None:
+        if self._file is None or self._render.closed:
+            return
+        try:
+            self._render.save(self._file)
+        except Error as e:
+            _warn(str(e))
+        self._saved = clock.monotonic()
+
+
+def run(
+    render: Render,
+    client: Any,
+    *,
+    samples: Optional[int] = None,
+    steps: Optional[tuple[int, int]] = None,
+    seconds: Optional[float] = None,
+    error: Optional[float] = None,
+    checkpoint: Optional[FileName] = None,
+    part_seconds: float = 30,
+    threads: int = 0,
+    folder: Optional[FileName] = None,
+    plugins: Sequence[FileName] = (),
+    progress: Shown = None,
+) -> Literal["samples", "time", "error"]:
+    """Renders what a Render lacks on the machines of a client, and adds it. Returns what ended it.
+
+    render: what has arrived is in it at any time, for snapshots, for Render.save, and to go on with here or by Render.run.
+    client: a dask.distributed.Client of any cluster. Its workers may come, go and be killed meanwhile.
+    samples: until each pixel has this many; by default the job's. steps: only the steps (passes) from the first number up to, but
+        without the second. seconds: for this long [s]. error: until the mean relative standard error of pixels is below this. Which
+        samples a picture has that these two end depends on the machines; all other pictures are the same on any.
+    checkpoint: a file to which what has arrived is saved every minute, and at the end, whatever it is; Render.load and
+        `etendue render --continue` go on from it.
+    part_seconds: how long a machine is to render between two results [s]. A result is as large as a saved state.
+    threads: of each worker; 0: as many as Dask gives it.
+    folder: where the folder of the job's file is on the workers; by default at the same path.
+    plugins: files that the workers open first, at these paths: those whose classes the job has.
+    progress: as of Render.run, called as parts arrive.
+
+    Ctrl-C, and an exception of a progress function, withdraw what is under way and leave what has arrived. Raises Error if the
+    algorithm's steps depend on each other; if a machine would render another picture, as one of its files differs or its version
+    of Étendue is another: with the machine's name; and if a part has lost its machine ten times.
+    """
+    tasks = _Tasks(client)
+    _require_independent_steps(render)
+    if not part_seconds > 0:
+        raise Error(f"part_seconds is a time, more than 0, not {part_seconds}")
+    limits = render._limits(samples, seconds, error)
+    before = {(part, name): getattr(part, name) for part, name in limits}
+    display = display_for(render, progress)
+    try:
+        if limits:
+            render.edit([(part, name, value) for (part, name), value in limits.items()])
+        left = _Steps(render, steps, part_seconds)
+        sent = _Sent(client, SentJob.of(render.job, None if folder is None else os.fspath(folder), _paths(plugins)))
+        return _collect(render, tasks, left, sent, threads, seconds, _Checkpoint(render, checkpoint), display)
+    finally:
+        tasks.cancel()
+        display.close()
+        _Checkpoint(render, checkpoint).save()
+        render._warn_of_bad_samples()
+        if limits:
+            render._put_back(before, limits)
+
+
+def _collect(
+    render: Render,
+    tasks: _Tasks,
+    left: _Steps,
+    sent: _Sent,
+    threads: int,
+    seconds: Optional[float],
+    checkpoint: _Checkpoint,
+    display: Any,
+) -> Literal["samples", "time", "error"]:
+    """Submits parts and adds their results, until nothing is left or a limit is reached."""
+    time = _Clock(render)
+    job = render.job
+    while True:
+        if seconds is not None and time.seconds >= seconds:
+            return "time"
+        if seconds is None and job.time_limit > 0 and render.progress.seconds >= job.time_limit:
+            return "time"
+        while left.left and tasks.wanted:
+            begin, end = left.take(tasks.workers)
+            tasks.submit((begin, end), render_part, sent, begin, end, threads)
+        if not len(tasks):
+            display.show(time.progress(True))
+            return "samples"
+        arrived = tasks.next(0.25)
+        if arrived is not None:
+            (begin, end), part = arrived
+            _add(render, part)
+            left.measure(end - begin, part.seconds)
+            checkpoint.save_now_and_then()
+            if job.error_limit > 0 and render.relative_error <= job.error_limit:
+                return "error"
+        display.show(time.progress(False))
+
+
+def _add(render: Render, part: RenderedPart) -> None:
+    try:
+        render.add(part.state)
+    except Error as e:
+        raise Error(f"a part of host '{part.host}': {e}") from None
+
+
+def _paths(files: Sequence[FileName]) -> tuple[str, ...]:
+    if isinstance(files, (str, os.PathLike)):
+        raise Error("plugins is a list of files")
+    return tuple(os.fspath(f) for f in files)
+
+
+def _job(given: Union[Part, FileName]) -> Any:
+    if isinstance(given, Part):
+        return given
+    if not isinstance(given, (str, os.PathLike)):
+        raise Error(f"expects a Job or the name of a file, not {type(given).__name__}")
+    return load(given)
+
+
+def render(
+    job: Union[Part, FileName],
+    client: Any,
+    *,
+    samples: Optional[int] = None,
+    steps: Optional[tuple[int, int]] = None,
+    time: Optional[float] = None,
+    error: Optional[float] = None,
+    seed: Optional[int] = None,
+    renderer: Union[None, str, Part] = None,
+    size: Optional[tuple[int, int]] = None,
+    layers: Optional[Sequence[str]] = None,
+    changes: Optional[Mapping[str, Any]] = None,
+    checkpoint: Optional[FileName] = None,
+    outputs: Union[bool, FileName] = False,
+    part_seconds: float = 30,
+    threads: int = 0,
+    folder: Optional[FileName] = None,
+    plugins: Sequence[FileName] = (),
+    progress: Shown = None,
+) -> Image:
+    """Renders a job on the machines of a client, and returns its picture: etendue.render, over many machines.
+
+    job, samples, error, seed, renderer, size, layers, changes, outputs, progress: as of etendue.render; time is wall-clock time [s].
+    client, steps, part_seconds, threads, folder, plugins: as of `run`.
+    checkpoint: as of `run`; the render continues from it if the file exists.
+
+    The picture is, byte for byte, that of one process, unless a limit of time or error ends it. Ctrl-C raises KeyboardInterrupt;
+    `run` with a Render of one's own keeps what has arrived in memory. Raises Error as `run` does.
+    """
+    _dask(client)
+    rendered = _overridden(_job(job), samples, None, error, seed, renderer, size, layers, changes)
+    stem = ""
+    writes = outputs is not False and outputs is not None
+    if writes:
+        if not len(rendered.outputs):
+            raise Error("the job has no outputs that could be written; Image.save writes a picture")
+        stem = _stem(rendered, None if isinstance(outputs, bool) else outputs)
+        _find_denoising_library()
+        _core.require_outputs(rendered, stem)
+    with Render(rendered) as made:
+        if checkpoint is not None and os.path.exists(checkpoint):
+            made.load(checkpoint)
+        run(
+            made,
+            client,
+            steps=steps,
+            seconds=time,
+            error=error,
+            checkpoint=checkpoint,
+            part_seconds=part_seconds,
+            threads=threads,
+            folder=folder,
+            plugins=plugins,
+            progress=progress,
+        )
+        if writes:
+            made.write_outputs(stem)
+        return made.snapshot()
+
+
+def frames(
+    jobs: Iterable[Union[Part, FileName]],
+    client: Any,
+    *,
+    threads: int = 0,
+    folder: Optional[FileName] = None,
+    plugins: Sequence[FileName] = (),
+) -> Iterator[tuple[int, Image]]:
+    """Renders whole pictures, each on one machine, and yields them as they are done: (number from 0, Image).
+
+    jobs: of the frames of an animation, or any others; of any algorithm. An iterator is advanced only as far as machines are free.
+    client, threads, folder, plugins: as of `run`.
+
+        jobs = (etendue.load("film.etd", frame=n, time=n / 24) for n in range(240))
+        for number, picture in etendue.distributed.frames(jobs, client):
+            picture.save(f"film.{number:04}.png")
+
+    Each job's own limits end its picture. Leaving the loop withdraws all that is under way. Raises Error as `run` does.
+    """
+    tasks = _Tasks(client)
+    there = None if folder is None else os.fspath(folder)
+    files = _paths(plugins)
+    waiting = enumerate(jobs)
+    tone_maps: dict[int, Optional[Part]] = {}
+    exhausted = False
+    try:
+        while True:
+            while not exhausted and tasks.wanted:
+                number, given = next(waiting, (-1, None))
+                if given is None:
+                    exhausted = True
+                    break
+                job = _job(given)
+                tone_maps[number] = None if job.tone_map is None else _core.copy(job.tone_map)
+                tasks.submit(number, render_whole, _Sent(client, SentJob.of(job, there, files)), threads)
+            if not len(tasks):
+                return
+            arrived = tasks.next(0.25)
+            if arrived is not None:
+                number, (pixels, channels, metadata) = arrived
+                yield number, Image(_core.picture_from(pixels, channels, metadata), tone_maps.pop(number))
+    finally:
+        tasks.cancel()
