@@ -4,12 +4,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/advice.h"
+#include "check/warnings/advice.h"
 #include "app/fireflies.h"
 #include "app/interruption.h"
 #include "app/progress_display.h"
 #include "app/render_options.h"
-#include "app/scene_warnings.h"
+#include "check/warnings/scene_warnings.h"
 #include "app/tev.h"
 #include "app/text.h"
 #include "check/replay/replay.h"
