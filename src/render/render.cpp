@@ -100,6 +100,11 @@ void Render::restart(std::optional<std::uint64_t> seed) {
   members_->empty();
 }
 
+void Render::select_steps(std::optional<IndexRange> steps) {
+  const BetweenSteps alone(*members_, true);
+  members_->settings.steps = steps;
+}
+
 // ---- one step --------------------------------------------------------------------------------------------------------------
 
 std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {

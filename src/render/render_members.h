@@ -23,7 +23,7 @@ struct Render::Members {
   Members(Ref<Job> j, RenderSettings s) : job(std::move(j)), settings(std::move(s)) {}
 
   const Ref<Job> job;
-  const RenderSettings settings;
+  RenderSettings settings;  // only `steps` changes, by select_steps
   std::unique_ptr<Film> film;
 
   mutable std::shared_mutex description;

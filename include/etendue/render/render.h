@@ -84,6 +84,8 @@ class Render {
   void abort();
   /// Starts over, with other random numbers if a seed is given.
   void restart(std::optional<std::uint64_t> seed = {});
+  /// Replaces RenderSettings::steps, between two steps: a prepared render can so make one part after another.
+  void select_steps(std::optional<IndexRange>);
 
   // ---- progress and results ------------------------------------------------------------------------------------------------
 
