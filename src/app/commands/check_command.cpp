@@ -4,8 +4,8 @@
 
 #include <unordered_map>
 
-#include "check/warnings/advice.h"
 #include "app/scene_options.h"
+#include "check/warnings/advice.h"
 #include "check/warnings/scene_warnings.h"
 #include "core/number_text.h"
 #include "etendue/mesh_facts.h"
