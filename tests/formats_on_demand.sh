@@ -36,7 +36,9 @@ done
 # Without that library a misspelt class of the program is told, and what might be a class of the library is told as such.
 mkdir "$folder/alone"
 cp "$1" "$folder/alone/etendue"
-cp -L "$(ldd "$1" | awk '/libetendue\.so/ { print $3 }')" "$folder/alone/$(ldd "$1" | awk '/libetendue\.so/ { print $1 }')"
+for library in 'libetendue\.so' 'libetendue_app\.so'; do
+  ldd "$1" | awk "/$library/ { print \$3, \"$folder/alone/\" \$1 }" | xargs cp -L
+done
 tells() {  # a class, and what is told of it
   printf 'ball = %s {}\n' "$1" >"$folder/misspelt.etd"
   LD_LIBRARY_PATH="$folder/alone" "$folder/alone/etendue" check "$folder/misspelt.etd" >"$folder/output" 2>&1 || true

@@ -99,8 +99,14 @@ def _program(folder: str) -> str:
     return os.path.join(folder, "etendue") if prefix() else os.path.normpath(os.path.join(folder, "..", "..", "etendue"))
 
 
+def program_library() -> str:
+    """The shared library that holds the program, beside it."""
+    return os.path.join(os.path.dirname(_program(folder_of_build())), "libetendue_app.so")
+
+
 def run_program(arguments: list[str]) -> None:
-    """Replaces this process by the program. Files of USD are then read by this Python, if no other was chosen."""
+    """Replaces this process by the program. Files of USD, and plugins that are written in Python, are then read by this Python, if no
+    other was chosen."""
     path = _program(folder_of_build())
     os.environ.setdefault("ETENDUE_PYTHON", sys.executable)
     os.execv(path, ["etendue", *arguments])

@@ -79,6 +79,9 @@ void bind_errors(nb::module_& m) {
       raise({e});
     }
   });
+  m.def(
+      "print_warnings", [] { handle_warnings(nullptr); },
+      "From now on warnings are printed on standard error, as the program does.");
   handle_warnings([](const std::string& message, Location at) {
     const std::lock_guard lock(waiting_mutex);
     waiting.push_back({message, at});

@@ -1,59 +1,9 @@
-// The command line program.
+// The executable: the program, which starts again within Python when a plugin is written in Python.
 
-#include "commands.h"
-#include "streams.h"
-
-using namespace etendue;
-
-namespace {
-
-constexpr const char* introduction = "Étendue: physically based, spectral Monte Carlo image synthesis.";
-
-constexpr const char* closing = R"(
-First steps
-  etendue render scenes/cornell_box.etd                  renders a scene; the file says to which pictures
-  etendue render box.etd -o box.png --samples 16         a quick look
-  etendue render box.etd -o box.exr --time 5m            as good as five minutes make it
-  etendue check box.etd                                  says what is wrong with a file, without rendering
-  etendue format box.etd                                 gives a file the usual layout
-  etendue classes                                        everything a file can contain
-  etendue classes PathTracer                             one class: its members, units, defaults and ranges
-  etendue image diff a.exr b.exr                         how much two pictures differ
-  etendue verify box.etd                                 whether all algorithms agree on a scene
-  etendue compare box.etd --renderers A,B --time 1m      which algorithm is better on a scene, and by how much
-  etendue conform Shader                                 whether parts do what their interfaces promise
-  etendue studio box.etd                                 describes, shows and controls a render in the browser
-
-Help on one command: etendue render --help
-Exit status: 0 done, 1 failed, 2 bad input or usage, 130 interrupted.
-)";
-
-int run_program(int argument_count, char** arguments) {
-  CommandLine command_line("etendue", introduction, "etendue " ETENDUE_VERSION);
-  Command program = command_line.program();
-  program.footer(closing);
-  program.require_command();
-
-  add_render_command(program);
-  add_check_command(program);
-  add_save_command(program);
-  add_convert_command(program);
-  add_export_command(program);
-  add_format_command(program);
-  add_classes_command(program);
-  add_schema_command(program);
-  add_manual_command(program);
-  add_image_command(program);
-  add_verify_command(program);
-  add_compare_command(program);
-  add_conform_command(program);
-  add_studio_command(program);
-  return command_line.run(argument_count, arguments);
-}
-
-}  // namespace
+#include "program.h"
+#include "python_plugins.h"
 
 int main(int argument_count, char** arguments) {
-  open_standard_streams();
-  return close_standard_streams(run_program(argument_count, arguments));
+  etendue::restart_for_python_plugins(argument_count, arguments);
+  return etendue_main(argument_count, arguments);
 }

@@ -8,18 +8,16 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <span>
 
 #include "common_options.h"
-#include "core/hash.h"
 #include "describe/guard.h"
 #include "etendue/denoised_output.h"
 #include "etendue/language/language.h"
-#include "files/file_content.h"
 #include "files/input_files.h"
 #include "language/set_path.h"
 #include "render/checkpoint.h"
 #include "render/denoising.h"
+#include "render/file_hash.h"
 #include "text.h"
 
 namespace etendue {
@@ -215,23 +213,14 @@ std::string RenderOptions::resume_command() const {
 std::string RenderOptions::stem() const { return stem_of(file) + (frame ? fmt::format(".{:04}", *frame) : std::string()); }
 
 std::string RenderOptions::hash_of(const Job& job, std::set<std::string> read) const {
-  Hash hash;
-  const auto add = [&](const std::string& text) {
-    hash.add(std::as_bytes(std::span(text)));
-    hash.add(std::as_bytes(std::span("\xff", 1)));  // no UTF-8 text has this byte: "ab" + "c" is not "a" + "bc"
-  };
-  const auto full = [](const std::string& path) { return std::filesystem::absolute(path).string(); };
-  for (const std::string& path : files_named_by(job)) read.insert(full(path));
-  read.insert(full(file));  // a file of another format may be read by a separate process, which InputsRead does not see
-  for (const std::string& path : read) {
-    const FileContent content = content_of(path);
-    hash.add(std::as_bytes(std::span(&content, 1)));
-  }
-  for (const std::string& define : defines) add("-D" + define);
-  for (const std::string& set : sets) add("--set" + set);
-  if (frame) add(fmt::format("--frame{} of {}", *frame, frames_per_second()));
-  for (const Override& override : overrides()) add(override.path + "=" + override.expression);
-  return fmt::format("{:016x}", hash.value());
+  // A file of another format may be read by a separate process, which InputsRead does not see.
+  read.insert(std::filesystem::absolute(file).string());
+  std::vector<std::string> texts;
+  for (const std::string& define : defines) texts.push_back("-D" + define);
+  for (const std::string& set : sets) texts.push_back("--set" + set);
+  if (frame) texts.push_back(fmt::format("--frame{} of {}", *frame, frames_per_second()));
+  for (const Override& override : overrides()) texts.push_back(override.path + "=" + override.expression);
+  return file_hash(job, std::move(read), texts);
 }
 
 namespace {

@@ -51,8 +51,7 @@ struct RenderOptions : SceneOptions {
   bool open_ended() const { return samples.empty() && (!time.empty() || !error.empty()); }
 
  private:
-  /// 16 hexadecimal digits of a hash of all overrides and of the contents of all files that were read for the job or are named
-  /// by it.
+  /// The file_hash of a job, with all overrides.
   std::string hash_of(const Job&, std::set<std::string> read) const;
   /// The path of a member, the expression it is set to, and the option this comes from.
   struct Override {

@@ -14,6 +14,7 @@
 #include "etendue/render/job.h"
 #include "files/gzip.h"
 #include "formats/permissions.h"
+#include "python_plugins.h"
 
 namespace etendue {
 
@@ -76,6 +77,7 @@ LoadOptions SceneOptions::load_options() const {
 
 Ref<Job> SceneOptions::load() const {
   Ref<Job> job = load_job(file, load_options());
+  refuse_restarts();  // a second file may be read when the picture of the first was written
   apply_sets(*job);
   return job;
 }

@@ -155,11 +155,6 @@ std::unique_ptr<RgbTable::Divided> RgbTable::divide(const Node* nodes, const Pla
 }
 
 RgbCoefficients RgbTable::find(const RgbSpace& space, float r, float g, float b) {
-  const Node* nodes = nodes_.load(std::memory_order_acquire);
-  if (!nodes) {
-    std::call_once(once_, [&] { compute(space); });
-    nodes = nodes_.load(std::memory_order_acquire);
-  }
   if (std::isnan(r + g + b)) return {0, 0, std::numeric_limits<float>::quiet_NaN()};
   float rgb[3] = {clamp(r, 0, 1), clamp(g, 0, 1), clamp(b, 0, 1)};
   const float largest = std::max({rgb[0], rgb[1], rgb[2]}), smallest = std::min({rgb[0], rgb[1], rgb[2]});
@@ -169,6 +164,12 @@ RgbCoefficients RgbTable::find(const RgbSpace& space, float r, float g, float b)
     for (float& x : rgb) x = 1 - x;
   // Black, and values without a finite reciprocal. (Bright colours have 1 - rgb well above this.)
   if (!bright && largest < std::numeric_limits<float>::min()) return {0, 0, -1e9f};
+  // Computed only here: greys do without the table, which takes longer to compute than many a small scene to render.
+  const Node* nodes = nodes_.load(std::memory_order_acquire);
+  if (!nodes) {
+    std::call_once(once_, [&] { compute(space); });
+    nodes = nodes_.load(std::memory_order_acquire);
+  }
   const RgbCoefficients found = look_up(nodes, rgb);
   if (bright) return {-found.c0, -found.c1, -found.c2};
   return found;

@@ -237,8 +237,10 @@ class Guide::Fit {
   double share_before_ = 0;
 };
 
-void Guide::learn(std::uint32_t region, std::span<const GuideSample* const> samples) {
-  Fit(regions_[region], samples, settings_).run();
+Guide::Region Guide::fitted(std::uint32_t region, std::span<const GuideSample* const> samples) const {
+  Region fitted = regions_[region];
+  Fit(fitted, samples, settings_).run();
+  return fitted;
 }
 
 }  // namespace etendue

@@ -38,11 +38,14 @@ void LearnedGuide::learn(Schedule& schedule, const std::vector<GuideSample>& sam
   std::vector<const GuideSample*> sorted(samples.size());
   for (const GuideSample& s : samples) sorted[end[s.region]++] = &s;
   // Now end[r] is the index where the samples of region r end and those of region r + 1 begin.
-  schedule.collect<char>(guide_.regions(), [&](std::uint64_t item, auto&, Arena&) {
-    const auto r = std::uint32_t(item);
-    const size_t begin = r > 0 ? end[r - 1] : 0;
-    guide_.learn(r, std::span(sorted).subspan(begin, end[r] - begin));
-  });
+  const std::vector<Guide::Region> fitted =
+      schedule.collect<Guide::Region>(guide_.regions(), [&](std::uint64_t item, std::vector<Guide::Region>& regions, Arena&) {
+        const auto r = std::uint32_t(item);
+        const size_t begin = r > 0 ? end[r - 1] : 0;
+        regions.push_back(guide_.fitted(r, std::span(sorted).subspan(begin, end[r] - begin)));
+      });
+  if (schedule.aborted()) return;
+  for (size_t r = 0; r < fitted.size(); ++r) guide_.replace(std::uint32_t(r), fitted[r]);
   guide_.divide();
 }
 

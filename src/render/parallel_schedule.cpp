@@ -125,37 +125,35 @@ void in_order(tbb::task_arena& tasks, int threads, std::uint64_t count, const st
 
 }  // namespace
 
-void ParallelSchedule::film_items(std::uint64_t count, FilmWork work, void* self) {
+void ParallelSchedule::run(const Items& items, Work& work) {
   State& s = *state_;
   std::uint64_t done = 0;
   const size_t largest = s.film.largest_kept();
-  in_order<ImageTile>(
-      *s.tasks, s.threads, count, [&] { return aborted(); },
+  struct Made {
+    ImageTile* tile = nullptr;
+    std::shared_ptr<void> results;
+  };
+  in_order<Made>(
+      *s.tasks, s.threads, items.count, [&] { return aborted(); },
       [&](std::uint64_t item) {
-        std::unique_ptr<ImageTile> tile(s.take());
-        tile->keep_largest(largest);
-        work(self, item, *tile, s.arenas.local());
-        return tile.release();
-      },
-      [&](ImageTile* tile) {
-        s.film.merge(*tile);
-        s.give(tile);
-        if (s.tick) s.tick(++done, count);
-      });
-}
-
-void ParallelSchedule::items(std::uint64_t count, Results& results) {
-  State& s = *state_;
-  in_order<void>(
-      *s.tasks, s.threads, count, [&] { return aborted(); },
-      [&](std::uint64_t item) {
-        void* some = results.make();
+        auto made = std::make_unique<Made>();
+        std::unique_ptr<ImageTile> tile(items.film ? s.take() : nullptr);
+        if (tile) tile->keep_largest(largest);
+        made->results = work.make();
         Arena& arena = s.arenas.local();
-        results.fill(item, some, arena);
-        arena.reset();
-        return some;
+        work.fill(item, tile.get(), made->results.get(), arena);
+        if (!items.film) arena.reset();
+        made->tile = tile.release();
+        return made.release();
       },
-      [&](void* some) { results.take(some); });
+      [&](Made* made) {
+        const std::unique_ptr<Made> owned(made);
+        if (items.results) work.take(made->results.get());
+        if (!made->tile) return;
+        s.film.merge(*made->tile);
+        s.give(made->tile);
+        if (s.tick) s.tick(++done, items.count);
+      });
 }
 
 }  // namespace etendue

@@ -24,8 +24,7 @@ class ParallelSchedule final : public Schedule {
   ~ParallelSchedule() override;
 
  private:
-  void film_items(std::uint64_t count, FilmWork work, void* self) override;
-  void items(std::uint64_t count, Results&) override;
+  void run(const Items&, Work&) override;
 
   struct State;
   std::unique_ptr<State> state_;

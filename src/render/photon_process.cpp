@@ -87,12 +87,12 @@ PhotonProcess::Beams PhotonProcess::make_beams(Schedule& schedule, const Step& s
   BeamWalks of{walks(schedule, step, request)};
   of.walks.kept = chance_to_keep(of.walks, request.most, [&](const PhotonWalks& some) {
     const BeamWalks few{some};
-    return schedule.collect<PhotonBeam>(few.items(), few).size();
+    return schedule.collect_everywhere<PhotonBeam>(few.items(), few).size();
   });
   Beams beams;
   beams.walks = double(of.walks.walks) * of.walks.kept;
   beams.radius = float(request.radius * shrunk_area(step.number, request.shrinking));
-  beams.map.build(schedule.collect<PhotonBeam>(of.items(), of), beams.radius);
+  beams.map.build(schedule.collect_everywhere<PhotonBeam>(of.items(), of), beams.radius);
   return beams;
 }
 

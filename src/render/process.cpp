@@ -61,16 +61,19 @@ CameraSample RenderProcess::sample(int x, int y, std::uint32_t number, Arena& ar
   return path({x, y, x + 1, y + 1}, *renderer.sampler, SampleKey(context.seed, x, y, number), arena, sink);
 }
 
-void RenderProcess::step(Schedule& schedule, const Step& step) { film_paths(schedule, step, nullptr); }
+void RenderProcess::step(Schedule& schedule, const Step& step) {
+  const PathWork work = path_work(schedule, step);
+  schedule.film(path_items(step), [&](std::uint64_t item, ImageTile& tile, Arena& arena) { work(item, tile, {}, arena); });
+}
 
-size_t RenderProcess::path_items(const Step& step) const { return size_t(Division(context.image, step.samples).count()); }
+std::uint64_t RenderProcess::path_items(const Step& step) const { return Division(context.image, step.samples).count(); }
 
-void RenderProcess::film_paths(Schedule& schedule, const Step& step,
-                               const std::function<RecordList(std::uint64_t item)>& records_of) {
+RenderProcess::PathWork RenderProcess::path_work(const Schedule& schedule, const Step& step) const {
   const Division division(context.image, step.samples);
   const bool wants_features = context.image.wants_features();
   const LightGroups groups(context.scene, context.image);
-  schedule.film(division.count(), [&](std::uint64_t item, ImageTile& tile, Arena& arena) {
+  return [this, &schedule, division, wants_features, groups](std::uint64_t item, ImageTile& tile, RecordList records,
+                                                             Arena& arena) {
     const auto [area, first, last, block] = division.item(item);
     tile.begin(context.image, area, block);
     std::vector<Splat> splats;
@@ -79,7 +82,7 @@ void RenderProcess::film_paths(Schedule& schedule, const Step& step,
     const PathSink sink{.features = wants_features ? &features : nullptr,
                         .lengths = parts.lengths(),
                         .splats = &splats,
-                        .records = records_of ? records_of(item) : RecordList(),
+                        .records = records,
                         .abort = schedule.abort};
     for (int y = area.y0; y < area.y1; ++y)
       for (int x = area.x0; x < area.x1; ++x)
@@ -95,7 +98,7 @@ void RenderProcess::film_paths(Schedule& schedule, const Step& step,
             tile.splat(splat.film, x, y, key.sample, splat.value, splat.wavelengths, splat.length);
           if (wants_features) tile.features(x, y, key.sample, features);
         }
-  });
+  };
 }
 
 }  // namespace etendue

@@ -12,19 +12,20 @@ VirtualLights VirtualLightProcess::make_lights(Schedule& schedule, const Step& s
   made.walks = double(walks);
   if (limits.longest < 1) return made;
   for (std::uint64_t i = 0; i < items; ++i) made.memory.push_back(std::make_unique<Arena>());
-  made.lights = schedule.collect<VirtualLight>(items, [&](std::uint64_t item, std::vector<VirtualLight>& lights, Arena&) {
-    Arena& arena = *made.memory[size_t(item)];
-    std::vector<SubpathVertex> walk;
-    EmittedLight light;
-    for (std::uint64_t n = item * item_size; n < std::min(walks, (item + 1) * item_size) && !schedule.aborted(); ++n) {
-      Wavelengths& w = *arena.make<Wavelengths>(wavelengths({}, 0));
-      const NumberStream numbers(*renderer.sampler, SampleKey(context.seed, -6, int(step.number), std::uint32_t(n)));
-      SampleContext sample{w, numbers, arena, {.abort = schedule.abort}};
-      if (!generate_light_subpath(context.scene, *renderer.light_sampler, time(0), limits, sample, walk, light)) continue;
-      for (size_t i = 1; i < walk.size(); ++i)
-        if (walk[i].connectable()) lights.push_back({walk[i], int(i) + 1, walk[0].point.object});
-    }
-  });
+  made.lights =
+      schedule.collect_everywhere<VirtualLight>(items, [&](std::uint64_t item, std::vector<VirtualLight>& lights, Arena&) {
+        Arena& arena = *made.memory[size_t(item)];
+        std::vector<SubpathVertex> walk;
+        EmittedLight light;
+        for (std::uint64_t n = item * item_size; n < std::min(walks, (item + 1) * item_size) && !schedule.aborted(); ++n) {
+          Wavelengths& w = *arena.make<Wavelengths>(wavelengths({}, 0));
+          const NumberStream numbers(*renderer.sampler, SampleKey(context.seed, -6, int(step.number), std::uint32_t(n)));
+          SampleContext sample{w, numbers, arena, {.abort = schedule.abort}};
+          if (!generate_light_subpath(context.scene, *renderer.light_sampler, time(0), limits, sample, walk, light)) continue;
+          for (size_t i = 1; i < walk.size(); ++i)
+            if (walk[i].connectable()) lights.push_back({walk[i], int(i) + 1, walk[0].point.object});
+        }
+      });
   return made;
 }
 

@@ -105,13 +105,29 @@ def verdict(status, said, memory, seed, data, limit):
     return None
 
 
+def thread_folder(arguments):
+    if not hasattr(THREAD, "folder"):
+        THREAD.folder = pathlib.Path(tempfile.mkdtemp(dir=arguments.folder))
+    return THREAD.folder
+
+
+def refusals(arguments, seed):
+    """What is wrong with the answers to a file that is right."""
+    folder, found = thread_folder(arguments), []
+    for name, content in (*seed.beside.items(), (seed.name, seed.data)):
+        (folder / name).write_bytes(content)
+    for command in seed.commands:
+        status, said, _, _ = run(arguments, command, folder)
+        if status != 0 and "found" not in seed.format and not seed.format.startswith("etd "):
+            found.append(f"a right file is refused: {seed.format}: {' '.join(command)}: status {status}\n    {said.strip()}\n")
+    return found
+
+
 def attack(arguments, all_seeds, number):
     generator = random.Random(arguments.seed * 1000003 + number)
     seed = all_seeds[number % len(all_seeds)]
     data = mutations.damaged(seed, generator, all_seeds)
-    if not hasattr(THREAD, "folder"):
-        THREAD.folder = pathlib.Path(tempfile.mkdtemp(dir=arguments.folder))
-    folder = THREAD.folder
+    folder = thread_folder(arguments)
     for name, content in seed.beside.items():
         (folder / name).write_bytes(content)
     (folder / seed.name).write_bytes(data)
@@ -159,14 +175,10 @@ def main():
         arguments.folder = folder
         all_seeds = seeds.seeds(arguments.program, arguments.plugin, pathlib.Path(folder))
         wrong = 0
-        for seed in all_seeds if arguments.only is None else []:  # what is not damaged must be read
-            for name, content in (*seed.beside.items(), (seed.name, seed.data)):
-                (pathlib.Path(folder) / name).write_bytes(content)
-            for command in seed.commands:
-                status, said, _, _ = run(arguments, command, pathlib.Path(folder))
-                if status != 0 and "found" not in seed.format and not seed.format.startswith("etd "):
-                    wrong += 1
-                    print(f"a right file is refused: {seed.format}: {' '.join(command)}: status {status}\n    {said.strip()}")
+        with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:  # what is not damaged must be read
+            for refused in pool.map(lambda seed: refusals(arguments, seed), all_seeds if arguments.only is None else []):
+                wrong += len(refused)
+                print("".join(refused), end="")
         if arguments.format:
             all_seeds = [s for s in all_seeds if s.format.startswith(tuple(arguments.format.split(",")))]
         numbers = [arguments.only] if arguments.only is not None else range(arguments.first, arguments.first + arguments.count)

@@ -42,8 +42,8 @@ SLOW = ["BuiltIn/*", "Conform*", "Faulty*", "Conform.*", "Checkpoint*", "Verify*
         "SubdivisionSurface*", "DisplacedMesh*", "Subsurface*", "SceneStructures*", "Measured*"]
 
 
-# What is made: the library, what it loads for image files from the folder it lies in itself, and the tests.
-LIBRARY, IMAGES = "libetendue.so", "libetendue_openimageio.so"
+# What is made: the library, what it loads for image files from the folder it lies in itself, the program's library, and the tests.
+LIBRARY, IMAGES, PROGRAM = "libetendue.so", "libetendue_openimageio.so", "libetendue_app.so"
 
 
 class Mutant:
@@ -119,7 +119,7 @@ class Build:
             made = words[words.index("-o") + 1]
             self.compile[made] = (entry["file"], words)
         self.includes = self.dependencies()
-        self.links = {name: self.link_command(name) for name in (LIBRARY, IMAGES, "tests/etendue_tests")}
+        self.links = {name: self.link_command(name) for name in (LIBRARY, IMAGES, PROGRAM, "tests/etendue_tests")}
 
     def ninja(self, *words):
         return subprocess.run(["ninja", "-C", str(self.folder), *words], check=True, capture_output=True, text=True).stdout
@@ -175,7 +175,7 @@ class Build:
                 objects[made] = None
         wanted = {name: [o for o in objects if o in words] for name, words in self.links.items()}
         if not any(wanted.values()):
-            raise RuntimeError("neither the library nor the tests are made of " + ", ".join(texts))
+            raise RuntimeError("neither the libraries nor the tests are made of " + ", ".join(texts))
         public = any(file.startswith("include/") for file in texts)
         commands = []
         for made in sorted(set(sum(wanted.values(), []))):

@@ -24,6 +24,17 @@ double irradiance_at_corner(double a, double b) {
   return 0.5 * (a / p * std::atan(b / p) + b / q * std::atan(a / q));
 }
 
+/// The mean of the irradiance by a square of radiance 1 and half width 1 at height 1, divided by pi, over the square of half
+/// width 0.5 under its middle.
+double square_under_a_rectangle() {
+  return mean_over_square(0.5, [](double x, double y) {
+    double e = 0;
+    for (const double sx : {-1.0, 1.0})
+      for (const double sy : {-1.0, 1.0}) e += irradiance_at_corner(1 + sx * x, 1 + sy * y);
+    return e / exact_pi;
+  });
+}
+
 /// Irradiance of the plane through the centre of a sphere of radius 1 and radiance 1, at the distance r: row 9.
 double irradiance_beside_sphere(double r) { return std::atan(1 / std::sqrt(r * r - 1)) - std::sqrt(r * r - 1) / (r * r); }
 
@@ -116,14 +127,7 @@ std::vector<Row> surface_rows() {
   rows.push_back({"R07_Rectangle", pinhole("[0, 0, 0.5]", "[0, 0, 0]"), plate(9, 0, diffuse) + plate(1, 1, "emission: " + glow),
                   1.740840 / exact_pi, all({8, 32, 8, 8, 0, 4, 8, 0})});
   rows.push_back({"R07_RectangleOverASquare", square("[0, 0, 0.5]", "[0, 0, 0]", 1),
-                  plate(0.5, 0, diffuse) + plate(1, 1, "emission: " + glow),
-                  mean_over_square(0.5,
-                                   [](double x, double y) {
-                                     double e = 0;
-                                     for (const double sx : {-1.0, 1.0})
-                                       for (const double sy : {-1.0, 1.0}) e += irradiance_at_corner(1 + sx * x, 1 + sy * y);
-                                     return e / exact_pi;
-                                   }),
+                  plate(0.5, 0, diffuse) + plate(1, 1, "emission: " + glow), square_under_a_rectangle,
                   all({8, 48, 8, 8, 768, 4, 8, 0})});
 
   rows.push_back({"R08_Sphere", pinhole("[0, 0.2, 0.5]", "[0, 0, 0]"),
@@ -137,7 +141,7 @@ std::vector<Row> surface_rows() {
                   "Disc { radius: 0.1, " + diffuse + " }\nSphere { centre: [3, 0, 0], radius: 1, emission: " + glow + " }",
                   irradiance_beside_sphere(3) / exact_pi, all({32, 0, 32, 32, 0, 24, 32, 0})});
   rows.push_back({"R09_HalfASphereOverASquare", square("[0, 0, 5]", "[0, 0, 0]", 6),
-                  plate(3, 0, diffuse) + "Sphere { radius: 1, emission: DiffuseEmission { radiance: 1 } }", sphere_on_a_floor(),
+                  plate(3, 0, diffuse) + "Sphere { radius: 1, emission: DiffuseEmission { radiance: 1 } }", sphere_on_a_floor,
                   all({24, 128, 32, 32, 64, 16, 24, 0})});
 
   // Inclined by 60 degrees, so that an irradiance of 2 perpendicular to the light is 1 on the plane.

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "support/closed_form_rows.h"
 #include "support/render_support.h"
 
 namespace etendue::test {
@@ -13,8 +14,8 @@ namespace {
 
 struct LengthCase {
   const char* name;
-  int segments;     ///< length of the paths with the light
-  double expected;  ///< radiance
+  int segments;                    ///< length of the paths with the light
+  closed_form::Expected expected;  ///< radiance
   std::string camera, objects;
   std::vector<std::string> renderers;
 };
@@ -65,6 +66,8 @@ double floor_seen_from_wall() {
   return sum / (steps * steps);
 }
 
+double wall_lit_by_the_floor() { return 0.5 * 0.5 * floor_seen_from_wall(); }
+
 const double r = 0.04, through_pane = (1 - r) / (1 + r);
 
 std::vector<LengthCase> length_cases() {
@@ -108,7 +111,7 @@ std::vector<LengthCase> length_cases() {
            "Box { centre: [0, 0, 2], size: [9, 9, 1], shader: PassThrough {}, interior: HomogeneousVolume { absorption: 1 } "
            "}\n",
        {"PathTracer { samples: 16", "BidirectionalPathTracer { samples: 64", "LightTracer { samples: 65536"}},
-      {"LitByTheFloor", 3, 0.5 * 0.5 * floor_seen_from_wall(), along, floor_and_wall + sun, with_media},
+      {"LitByTheFloor", 3, wall_lit_by_the_floor, along, floor_and_wall + sun, with_media},
       // Single scattering by a thin layer of albedo 1 and optical depth t: (1 - exp(-2 t)) / (8 pi) of the sun's irradiance pi.
       {"ScatteredInAMedium", 2, (1 - std::exp(-0.2)) / 8,
        "OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], width: 2 }",
@@ -121,6 +124,7 @@ class PathLength : public testing::TestWithParam<LengthCase> {};
 
 TEST_P(PathLength, IsCountedInScatterings) {
   const LengthCase& c = GetParam();
+  const double expected = c.expected.value();
   for (const std::string& renderer : c.renderers)
     for (const bool enough : {true, false}) {
       const int depth = enough ? c.segments : c.segments - 1;
@@ -128,8 +132,8 @@ TEST_P(PathLength, IsCountedInScatterings) {
       const Measured m =
           measure(job_text(fmt::format("{}, max_depth: {} }}", renderer, depth), c.camera, 4, c.objects, "EmbreeScene"));
       if (enough) {
-        EXPECT_NEAR(m.mean.y, c.expected, 4.5 * m.error + 1e-3 * c.expected) << renderer;
-        EXPECT_LT(m.error, 0.02 * c.expected) << renderer;
+        EXPECT_NEAR(m.mean.y, expected, 4.5 * m.error + 1e-3 * expected) << renderer;
+        EXPECT_LT(m.error, 0.02 * expected) << renderer;
       } else {
         EXPECT_EQ(m.mean.y, 0) << renderer << " at max_depth " << depth;
       }

@@ -26,6 +26,9 @@ double mean_by_disc(double half, double radius, double h) {
   return sum / (steps * steps);
 }
 
+/// The radiance of a plate of reflectance 0.5 under such a disc.
+double plate_under_the_disc() { return 0.5 / exact_pi * mean_by_disc(0.5, 1, 1); }
+
 std::vector<Row> rows() {
   const std::string unseen = "visible_to_camera: false";
   const std::string disc = "Disc { radius: 1, transform: translate(0, 0, 1), emission: " + glow + ", " + unseen + " }";
@@ -36,7 +39,7 @@ std::vector<Row> rows() {
   all.push_back({"DiscBefore",
                  square("[0, 0, 5]", "[0, 0, 0]", 1),
                  plate(4, 0, "shader: Lambertian { color: 0.5 }") + disc,
-                 0.5 / exact_pi * mean_by_disc(0.5, 1, 1),
+                 plate_under_the_disc,
                  {{"PathTracer", two, 64},
                   {"PathTracer", two + ", next_event: false", 256},
                   {"GuidedPathTracer", two, 256},
@@ -52,13 +55,13 @@ std::vector<Row> rows() {
   all.push_back({"DiscBeforeAPinhole",
                  "PerspectiveCamera { from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], focal_length: 5, sensor_size: 1 }",
                  plate(4, 0, "shader: Lambertian { color: 0.5 }") + disc,
-                 0.5 / exact_pi * mean_by_disc(0.5, 1, 1),
+                 plate_under_the_disc,
                  {{"BidirectionalPathTracer", two, 32}, {"PathSpaceMetropolis", two, 1024}}});
   // A null-scattering pane in front of the disc does not make it visible.
   all.push_back({"DiscBehindAPane",
                  square("[0, 0, 5]", "[0, 0, 0]", 1),
                  plate(4, 0, "shader: Lambertian { color: 0.5 }") + plate(4, 3, "shader: PassThrough {}") + disc,
-                 0.5 / exact_pi * mean_by_disc(0.5, 1, 1),
+                 plate_under_the_disc,
                  {{"PathTracer", two, 64}, {"BidirectionalPathTracer", two, 32}, {"LightTracer", two, 1024}}});
   // A plate on a quarter of the image, in uniform light from all directions: the rest is black.
   all.push_back({"Environment",

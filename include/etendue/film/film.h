@@ -59,6 +59,9 @@ class Film {
 
   /// Adds a tile to the current step. Throws Error, with the pixel, if a sum exceeds 1e288: the step should then be dropped.
   void merge(const ImageTile&);
+  /// Fills a tile from what ImageTile::pack of another process wrote, and removes it from the front of the bytes. Throws Error
+  /// if the bytes are no tile of this picture.
+  void unpack(std::span<const std::byte>&, ImageTile&) const;
   /// Ends the current step: adds it to the sums. Throws Error after too many (2^24) steps.
   void end_step();
   /// Discards the current step: the film is as at the end of the last step.

@@ -74,6 +74,9 @@ class ImageTile {
   /// Counts a sample path for splats. Must be called once for each path, including those without contribution.
   void count_path() { ++paths_; }
 
+  /// Appends what it holds to the bytes, for the film of another process (Film::unpack).
+  void pack(std::vector<std::byte>&) const;
+
  private:
   friend class Film;
   static constexpr size_t feature_values = 7;  // sums of albedo (3), normal (3), depth

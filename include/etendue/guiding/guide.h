@@ -78,9 +78,11 @@ class Guide {
   size_t regions() const { return regions_.size(); }
   const Region& at(const Point3& position, const Normal3& normal) const { return regions_[region_of(position, normal)]; }
 
-  /// Fits a region to samples that all lie in it, in their order. Different regions may learn at the same time.
-  void learn(std::uint32_t region, std::span<const GuideSample* const>);
-  /// Splits the regions that have enough effective samples. `learn` and this function change the distributions of the guide.
+  /// A copy of a region, fitted to samples that all lie in it, in their order.
+  Region fitted(std::uint32_t region, std::span<const GuideSample* const>) const;
+  void replace(std::uint32_t region, const Region& by) { regions_[region] = by; }
+  void learn(std::uint32_t region, std::span<const GuideSample* const> samples) { replace(region, fitted(region, samples)); }
+  /// Splits the regions that have enough effective samples. `replace` and this function change the distributions of the guide.
   void divide();
 
   /// The memory of all members that grow.

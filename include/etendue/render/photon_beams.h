@@ -59,7 +59,7 @@ struct PhotonBeam {
   Spectrum light(float s, float t, const VolumeCoefficients&) const;
 };
 
-/// The beams of a step: work for Schedule::collect<PhotonBeam>(beams.items(), beams).
+/// The beams of a step: work for Schedule::collect_everywhere<PhotonBeam>(beams.items(), beams).
 struct BeamWalks {
   PhotonWalks walks;
 

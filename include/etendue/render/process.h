@@ -86,18 +86,16 @@ class RenderProcess {
   /// learn from the paths they display.
   template <class T>
   std::vector<T> film_paths(Schedule& schedule, const Step& step) {
-    std::vector<std::vector<T>> some(path_items(step));
-    film_paths(schedule, step, [&](std::uint64_t item) { return RecordList(some[size_t(item)]); });
-    std::vector<T> all;
-    for (std::vector<T>& one : some)
-      all.insert(all.end(), std::make_move_iterator(one.begin()), std::make_move_iterator(one.end()));
-    return all;
+    const PathWork work = path_work(schedule, step);
+    return schedule.film_and_collect<T>(path_items(step), [&](std::uint64_t item, ImageTile& tile, std::vector<T>& records,
+                                                              Arena& arena) { work(item, tile, RecordList(records), arena); });
   }
 
  private:
-  size_t path_items(const Step&) const;
-  /// `records_of(item)`: the list to which paths of an item of work append; empty: they append nothing.
-  void film_paths(Schedule&, const Step&, const std::function<RecordList(std::uint64_t item)>& records_of);
+  std::uint64_t path_items(const Step&) const;
+  /// Renders the camera paths of one item of a step, which append to the records.
+  using PathWork = std::function<void(std::uint64_t item, ImageTile&, RecordList records, Arena&)>;
+  PathWork path_work(const Schedule&, const Step&) const;
 };
 
 }  // namespace etendue

@@ -4,9 +4,9 @@
 
 #include <unordered_map>
 
-#include "app/advice.h"
 #include "app/scene_options.h"
-#include "app/scene_warnings.h"
+#include "check/warnings/advice.h"
+#include "check/warnings/scene_warnings.h"
 #include "core/number_text.h"
 #include "etendue/mesh_facts.h"
 

@@ -4,15 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/advice.h"
 #include "app/fireflies.h"
 #include "app/interruption.h"
 #include "app/progress_display.h"
 #include "app/render_options.h"
-#include "app/scene_warnings.h"
 #include "app/tev.h"
 #include "app/text.h"
 #include "check/replay/replay.h"
+#include "check/warnings/advice.h"
+#include "check/warnings/scene_warnings.h"
 #include "core/number_text.h"
 #include "etendue/language/language.h"
 #include "files/input_files.h"

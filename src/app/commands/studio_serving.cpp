@@ -14,9 +14,10 @@
 #include <sstream>
 #include <thread>
 
-#include "app/advice.h"
 #include "app/commands.h"
-#include "app/scene_warnings.h"
+#include "app/python_plugins.h"
+#include "check/warnings/advice.h"
+#include "check/warnings/scene_warnings.h"
 
 namespace etendue {
 
@@ -33,8 +34,8 @@ constexpr int to_itself = SIGUSR1;
 /// The page's path: next to the program in the build folder, or as installed.
 std::string page_file() {
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const char* place : {"studio/index.html", "../share/etendue/studio/index.html"})
+  const fs::path program = program_folder();
+  for (const char* place : {"studio/index.html", "../share/etendue/studio/index.html", "../../share/etendue/studio/index.html"})
     if (fs::is_regular_file(program / place, error)) return (program / place).lexically_normal().string();
   return (program / "studio/index.html").string();
 }
@@ -100,6 +101,7 @@ std::string take_over(studio::ServerSettings& settings) {
 int serve(studio::StudioSettings settings, studio::ServerSettings server_settings, bool browser,
           const std::function<void(studio::Studio&)>& begin) {
   if (server_settings.page.empty()) server_settings.page = page_file();
+  refuse_restarts();
   const std::string file = take_over(server_settings);
   const bool again = !server_settings.token.empty();
   settings.warnings = [](const Job& job) {

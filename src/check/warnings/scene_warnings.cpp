@@ -1,9 +1,12 @@
+// Collects the warnings about a scene, and prints them.
+
 #include "scene_warnings.h"
-#include "core/number_text.h"
 
 #include <fmt/format.h>
 
 #include <map>
+
+#include "core/number_text.h"
 
 namespace etendue {
 

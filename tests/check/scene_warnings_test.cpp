@@ -1,6 +1,6 @@
 // Warnings about scenes whose picture will be black and about parts that have no effect; sound scenes give no warnings.
 
-#include "app/scene_warnings.h"
+#include "check/warnings/scene_warnings.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

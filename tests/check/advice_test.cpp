@@ -1,6 +1,6 @@
 // Advice: the light in a scene that a renderer cannot find, and the renderers that can.
 
-#include "app/advice.h"
+#include "check/warnings/advice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,80 @@
+// Tiles as bytes, in which they travel to the film of another process.
+
+#include <algorithm>
+#include <mutex>
+
+#include "etendue/core/packing.h"
+#include "etendue/film/film.h"
+#include "film_members.h"
+
+namespace etendue {
+namespace {
+
+size_t pixels(const PixelArea& a) { return size_t(std::max(a.width(), 0)) * size_t(std::max(a.height(), 0)); }
+
+bool lies_within(const PixelArea& part, const PixelArea& whole) {
+  return pixels(part) == 0 || (part.x0 >= whole.x0 && part.y0 >= whole.y0 && part.x1 <= whole.x1 && part.y1 <= whole.y1);
+}
+
+}  // namespace
+
+// Light that is zero everywhere is left out: tiles of splats have no light, and dark parts of a picture none either.
+void ImageTile::pack(std::vector<std::byte>& to) const {
+  Packing::pack(to, format_ != nullptr);
+  if (!format_) return;
+  Packing::pack(to, block_);
+  for (const PixelArea& area : {sampled_, area_, extent_}) Packing::pack(to, area);
+  Packing::pack(to, lit_);
+  if (lit_) {
+    Packing::pack(to, light_);
+    Packing::pack(to, parts_);
+  }
+  Packing::pack(to, samples_);
+  Packing::pack(to, weights_);
+  Packing::pack(to, features_);
+  Packing::pack(to, feature_counts_);
+  Packing::pack(to, largest_);
+  Packing::pack(to, splats_);
+  Packing::pack(to, bad_);
+  Packing::pack(to, bad_count_);
+  Packing::pack(to, paths_);
+}
+
+void Film::unpack(std::span<const std::byte>& from, ImageTile& tile) const {
+  const std::shared_ptr<const PictureFormat> format = [&] {
+    const std::lock_guard lock(members_->mutex);
+    return members_->format;
+  }();
+  bool begun = false;
+  Packing::unpack(from, begun);
+  tile.format_ = begun ? format : nullptr;
+  if (!begun) return;
+  Packing::unpack(from, tile.block_);
+  for (PixelArea* area : {&tile.sampled_, &tile.area_, &tile.extent_}) Packing::unpack(from, *area);
+  const size_t own = pixels(tile.area_), reached = pixels(tile.extent_);
+  Packing::unpack(from, tile.lit_);
+  if (tile.lit_) {
+    Packing::unpack(from, tile.light_);
+    Packing::unpack(from, tile.parts_);
+  } else {
+    tile.light_.assign(4 * reached, 0);
+    tile.parts_.assign(3 * format->parts() * reached, 0);
+  }
+  Packing::unpack(from, tile.samples_);
+  Packing::unpack(from, tile.weights_);
+  Packing::unpack(from, tile.features_);
+  Packing::unpack(from, tile.feature_counts_);
+  Packing::unpack(from, tile.largest_);
+  Packing::unpack(from, tile.splats_);
+  Packing::unpack(from, tile.bad_);
+  Packing::unpack(from, tile.bad_count_);
+  Packing::unpack(from, tile.paths_);
+  const size_t features = format->wants_features ? own : 0;
+  const bool sound = lies_within(tile.area_, format->area) && lies_within(tile.extent_, format->area) &&
+                     tile.light_.size() == 4 * reached && tile.parts_.size() == 3 * format->parts() * reached &&
+                     tile.samples_.size() == own && (tile.weights_.empty() || tile.weights_.size() == own) &&
+                     tile.features_.size() == ImageTile::feature_values * features && tile.feature_counts_.size() == features;
+  if (!sound) throw Error("the packed tile is of another picture");
+}
+
+}  // namespace etendue
