@@ -32,17 +32,12 @@ void RenderOptions::add_to(Command& command) {
       .excludes({"--frame"});
   command.flag("--skip-existing", skip_existing,
                "Skip renders whose pictures exist already, complete and of the same file and options");
-  command.option("-o,--output FILE", outputs,
-                 "Write to this file instead of those the file names; its ending chooses the format; may be repeated");
-  command.option("--samples N", samples, "Samples per pixel");
+  add_picture_options(command);
   command.option("--time TIME", time,
                  "Stop after this time, such as 90s, 5m or 1h30m; without --samples, no number of samples stops it earlier");
   command.option("--error E", error,
                  "Stop when the mean relative standard error of pixels is below this; without --samples, no number of samples "
                  "stops it earlier");
-  command.option("--seed N", seed, "Seed of the random numbers");
-  command.option("--size WxH", size, "Size of the picture in pixels");
-  command.option("--crop X0,Y0,X1,Y1", crop, "Render these pixels only; X1 and Y1 are excluded");
   command.flag("--denoise", denoise,
                "Write a second, denoised picture beside each, NAME.denoised.ENDING, by Open Image Denoise (pip install "
                "pyoidn) unless the file chooses another denoiser");
@@ -66,6 +61,15 @@ void RenderOptions::add_to(Command& command) {
       .excludes({"--pixel"});
   command.option("--tev HOST[:PORT]", tev, "Show the picture in the viewer tev while it is rendered; default PORT: 14158")
       .excludes({"--pixel"});
+}
+
+void RenderOptions::add_picture_options(Command& command) {
+  command.option("-o,--output FILE", outputs,
+                 "Write to this file instead of those the file names; its ending chooses the format; may be repeated");
+  command.option("--samples N", samples, "Samples per pixel");
+  command.option("--seed N", seed, "Seed of the random numbers");
+  command.option("--size WxH", size, "Size of the picture in pixels");
+  command.option("--crop X0,Y0,X1,Y1", crop, "Render these pixels only; X1 and Y1 are excluded");
 }
 
 void RenderOptions::add_checkpoint_options(Command& command) {

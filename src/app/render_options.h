@@ -32,6 +32,8 @@ struct RenderOptions : SceneOptions {
   std::string tev;     ///< address of the tev that shows the image, as written; empty: none
 
   void add_to(Command& command);
+  /// Adds the options that choose the picture and its files, which are a part of those above.
+  void add_picture_options(Command& command);
 
   /// Loads the file, applies all overrides except the outputs, and checks the settings. Throws Errors.
   Ref<Job> load() const;
