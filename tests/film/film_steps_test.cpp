@@ -28,7 +28,8 @@ Ref<ImageBuffer> picture(int width, int height, const std::string& filter = "Gau
 }
 
 /// Samples of all kinds for one pass, with values that differ by orders of magnitude; they depend on the pass only.
-void add_pass(const ImageBuffer& image, Film& film, unsigned pass, std::uint32_t block = 0, int rows = 1 << 20) {
+void add_pass(const ImageBuffer& image, Film& film, unsigned pass, std::uint32_t block = 0, int rows = 1 << 20,
+              bool packed = false) {
   std::mt19937 random(pass);
   std::uniform_real_distribution<float> uniform(0, 1);
   const PixelArea& all = image.area();
@@ -50,6 +51,13 @@ void add_pass(const ImageBuffer& image, Film& film, unsigned pass, std::uint32_t
           tile.splat({float(all.x1) * uniform(random), float(all.y1) * uniform(random)}, x, y, pass, value, wavelengths,
                      int(1 + i));
       }
+    if (packed) {
+      std::vector<std::byte> bytes;
+      tile.pack(bytes);
+      std::span<const std::byte> rest(bytes);
+      film.unpack(rest, tile);
+      EXPECT_TRUE(rest.empty());
+    }
     film.merge(tile);
   }
 }
@@ -74,6 +82,35 @@ void expect_same(const Film& a, const Film& b) {
 }
 
 // Steps added in three orders, all to one film or to parts that are merged in different orders.
+TEST(FilmSteps, PackedTilesGiveTheSameBytes) {
+  const Ref<ImageBuffer> image = picture(19, 13);
+  Film direct(*image), packed(*image);
+  for (Film* film : {&direct, &packed}) film->keep_largest(5);
+  for (unsigned pass = 0; pass < 3; ++pass) {
+    add_pass(*image, direct, pass);
+    add_pass(*image, packed, pass, 0, 1 << 20, true);
+    direct.end_step();
+    packed.end_step();
+  }
+  expect_same(packed, direct);
+}
+
+TEST(FilmSteps, PackedTilesOfAnotherPictureOrCutOffAreRefused) {
+  const Ref<ImageBuffer> image = picture(19, 13), smaller = picture(8, 8);
+  Film film(*image), other(*smaller);
+  ImageTile tile, read;
+  tile.begin(*image, {0, 0, 16, 13});
+  tile.contribute({3, 4}, 3, 4, 0, Spectrum(1.0f), wavelengths, 1, std::array{Spectrum(0.5f), Spectrum(0.5f)});
+  std::vector<std::byte> bytes;
+  tile.pack(bytes);
+  for (size_t size = 0; size < bytes.size(); size += 97) {
+    std::span<const std::byte> some(bytes.data(), size);
+    EXPECT_THROW(film.unpack(some, read), Error) << size;
+  }
+  std::span<const std::byte> all(bytes);
+  EXPECT_THROW(other.unpack(all, read), Error);
+}
+
 TEST(FilmSteps, any_order_and_division_gives_the_same_bits) {
   for (const Estimator estimator : {Estimator::independent, Estimator::correlated}) {
     const Ref<ImageBuffer> image = picture(13, 10);
