@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import atexit
 import importlib.util
 import os
 import warnings
@@ -23,7 +22,6 @@ Ended = Literal["samples", "time", "error", "interrupted", "aborted"]
 #: The samples per pixel of a render that a limit of time or error ends: a number that is never reached, as in the program.
 _OPEN_ENDED = 1000000
 
-atexit.register(_core.close_all_renders)
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_core.leave_all_renders)
 
@@ -58,12 +56,15 @@ class Render:
         checkpoint: Optional[FileName] = None,
         checkpoint_interval: Optional[float] = None,
         passes: Optional[tuple[int, int]] = None,
+        warn: bool = True,
     ) -> None:
         """Prepares the job.
 
         threads: 0 for all cores; the picture does not depend on it.
         checkpoint: a file to which `run` saves its state, every checkpoint_interval seconds (by default 60; 0: after every step).
         passes: only the steps from the first number up to, but without the second.
+        warn: of what is no error but hardly meant, as the program does: parts that have no effect, a camera that sees nothing, light
+            that the renderer cannot find. Python's `warnings` filter it, too: its category is etendue.Warning.
 
         Raises Error if the job cannot be rendered, or a part of it is being rendered already.
         """
@@ -74,6 +75,12 @@ class Render:
         self._threads = threads
         self._core = _core.Render(job, threads, file, checkpoint_interval, passes)
         self._bad_samples_told = 0
+        if warn:
+            try:
+                self._core.warn_of_scene()
+            except BaseException:
+                self._core.close()
+                raise
 
     @property
     def job(self) -> Any:
@@ -403,6 +410,7 @@ def render(
     checkpoint: Optional[FileName] = None,
     outputs: Union[bool, FileName] = False,
     progress: Shown = None,
+    warn: bool = True,
 ) -> Image:
     """Renders a job, and returns its picture. Nothing is written unless `outputs` or `checkpoint` say so.
 
@@ -414,7 +422,7 @@ def render(
     threads: 0 for all cores; the picture does not depend on it.
     checkpoint: a file to which the state is saved every minute, and from which the render continues if the file exists.
     outputs: True: writes the job's outputs as the program would; a folder, or a folder and a name without ending, does so there.
-    progress: see Render.run.
+    progress: see Render.run. warn: see Render; also of a picture that is black.
 
     These values are for this render alone: the caller's job does not change. The picture is, byte for byte, that of the program.
     Raises Error if the scene cannot be rendered. Ctrl-C raises KeyboardInterrupt at once.
@@ -432,12 +440,14 @@ def render(
         stem = _stem(rendered, None if isinstance(outputs, bool) else outputs)
         _find_denoising_library()
         _core.require_outputs(rendered, stem)
-    with Render(rendered, threads=threads, checkpoint=checkpoint) as made:
+    with Render(rendered, threads=threads, checkpoint=checkpoint, warn=warn) as made:
         if checkpoint is not None and os.path.exists(checkpoint):
             made.load(checkpoint)
         made.run(progress=progress)
         if writes:
             made.write_outputs(stem)
+        if warn:
+            made._core.warn_of_picture(writes)
         return made.snapshot()
 
 
@@ -459,5 +469,5 @@ def denoise(image: Image, job: Union[None, Part, Render] = None, *, denoiser: Op
     sized: Any = job
     if not len(sized.image.crop):
         sized = _overridden(job, None, None, None, None, None, (image.width, image.height), None, None)
-    with Render(sized, threads=threads) as prepared:
+    with Render(sized, threads=threads, warn=False) as prepared:
         return Image(prepared._core.denoise(image._picture, denoiser, threads), image.tone_map)

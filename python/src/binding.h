@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "etendue/describe/registry.h"
+#include "interpreter.h"
 
 namespace etendue::python {
 
@@ -86,13 +87,13 @@ template <class F>
 auto released(F&& work) {
   if constexpr (std::is_void_v<decltype(work())>) {
     {
-      const nb::gil_scoped_release without;
+      const WithoutLock without;
       work();
     }
     tell_warnings();
   } else {
     auto result = [&] {
-      const nb::gil_scoped_release without;
+      const WithoutLock without;
       return work();
     }();
     tell_warnings();

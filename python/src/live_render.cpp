@@ -95,6 +95,7 @@ nb::object value_before_edit(const Component& part, const std::string& member) {
 // ---- one render ------------------------------------------------------------------------------------------------------------
 
 LiveRender::LiveRender(Ref<Job> job, RenderSettings settings) : job_(std::move(job)), process_(getpid()) {
+  Interpreter::require_future();
   use_threads();
   require_outside_step();
   require_shallow(*job_);
@@ -164,7 +165,7 @@ void LiveRender::close() {
     throw Error("a render cannot be closed from its own progress function; stop() or abort() end it");
   while (uses_ > 0) {
     render_->abort();
-    const nb::gil_scoped_release without;
+    const WithoutLock without;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   if (closed()) return;  // by another thread, which waited as well
@@ -173,6 +174,7 @@ void LiveRender::close() {
 }
 
 void leave_all_renders() {
+  Interpreter::forget_threads();
   owners().clear();
   living().clear();
 }
@@ -268,7 +270,7 @@ void LiveRender::edit(std::span<const Change> changes) {
   const Use use(*this);
   std::unique_lock lock(editing_, std::defer_lock);
   {
-    const nb::gil_scoped_release without;
+    const WithoutLock without;
     lock.lock();
   }
   std::vector<Edit> edits;

@@ -5,81 +5,10 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <deque>
-#include <thread>
 
 namespace etendue::python {
-
-// ---- the interpreter's lock -------------------------------------------------------------------------------------------------
-
-namespace {
-
-std::atomic<bool> is_closed = false;
-/// The number of calls that hold the interpreter's lock or wait for it.
-std::atomic<int> inside = 0;
-
-/// Counts a call; throws if Python may not be called any more.
-void enter() {
-  ++inside;
-  if (!is_closed) return;
-  --inside;
-  throw Error("the Python interpreter is about to end, and parts that are written in Python with it");
-}
-void leave() { --inside; }
-
-/// The Python state of a thread that Python did not start.
-class KeptState {
- public:
-  /// Makes the state, without the lock.
-  void keep() {
-    if (kept_ || PyGILState_GetThisThreadState()) return;
-    PyGILState_Ensure();
-    PyEval_SaveThread();
-    kept_ = true;
-  }
-  ~KeptState() {
-    if (!kept_) return;
-    try {
-      enter();
-    } catch (const Error&) {
-      return;  // the interpreter deletes the state
-    }
-    PyGILState_Ensure();
-    PyGILState_Release(PyGILState_LOCKED);    // the count of this function's Ensure
-    PyGILState_Release(PyGILState_UNLOCKED);  // that of keep(): deletes the state
-    leave();
-  }
-
- private:
-  bool kept_ = false;
-};
-
-}  // namespace
-
-Interpreter::Interpreter() {
-  enter();
-  thread_local KeptState state;
-  state.keep();
-  state_ = PyGILState_Ensure();
-}
-
-Interpreter::~Interpreter() {
-  PyGILState_Release(state_);
-  leave();
-}
-
-bool Interpreter::closed() { return is_closed; }
-
-void Interpreter::close() {
-  is_closed = true;
-  const nb::gil_scoped_release without;
-  // Long enough for any method that is not stuck; without a limit one that waits forever would keep the process alive.
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-  while (inside > 0 && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-}
 
 PyObject* MethodName::object() const {
   if (!object_) object_ = PyUnicode_InternFromString(text);

@@ -1,5 +1,5 @@
 #pragma once
-// Calls from the library into Python: the interpreter's lock in any thread, arguments, checked results, and exceptions as
+// Calls from the library into Python: arguments, checked results, and exceptions as
 // Error.
 //
 // The library calls parts that are written in Python from its own threads. `Interpreter` takes the lock for such a call; no
@@ -15,28 +15,11 @@
 #include "etendue/core/error.h"
 #include "etendue/core/spectrum.h"
 #include "etendue/core/vector.h"
+#include "interpreter.h"
 
 namespace etendue::python {
 
 namespace nb = nanobind;
-
-/// Holds the interpreter's lock, in a thread of whatever origin. A thread that Python does not know keeps its Python state
-/// until it ends: making a new one for each call would take longer than most calls. Throws Error when the interpreter is about
-/// to end.
-class Interpreter {
- public:
-  Interpreter();
-  ~Interpreter();
-  Interpreter(const Interpreter&) = delete;
-  Interpreter& operator=(const Interpreter&) = delete;
-  /// Whether Python may no longer be called, as it is about to end or has ended.
-  static bool closed();
-  /// Lets all later calls fail, and waits for those that run now. Called by Python's atexit, with the lock.
-  static void close();
-
- private:
-  PyGILState_STATE state_;
-};
 
 /// The name of a method with its text as a Python string, made at the first call.
 class MethodName {

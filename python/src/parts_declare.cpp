@@ -13,6 +13,7 @@
 #include "describe/guard.h"
 #include "etendue/describe/reflection.h"
 #include "language/evaluator.h"
+#include "live_render.h"
 #include "parts.h"
 
 namespace etendue::python {
@@ -307,7 +308,7 @@ void bind_declarations(nb::module_& m) {
       }
     });
   });
-  nb::module_::import_("atexit").attr("register")(nb::cpp_function([] { Interpreter::close(); }));
+  nb::module_::import_("atexit").attr("register")(nb::cpp_function([] { Interpreter::close(close_all_renders); }));
 }
 
 void bind_parts(nb::module_& m) {

@@ -8,16 +8,21 @@
 #include <nanobind/stl/vector.h>
 
 #include <filesystem>
+#include <set>
 #include <sstream>
 
+#include "check/warnings/advice.h"
+#include "check/warnings/scene_warnings.h"
 #include "etendue/denoised_output.h"
 #include "etendue/describe/reflection.h"
+#include "etendue/language/language.h"
 #include "files/output_files.h"
 #include "live_render.h"
 #include "paths.h"
 #include "picture.h"
 #include "render/checkpoint.h"
 #include "render/denoising.h"
+#include "render/file_hash.h"
 
 namespace etendue::python {
 
@@ -92,6 +97,36 @@ nb::tuple snapshot(LiveRender& live) {
     progress = now.progress;
   });
   return nb::make_tuple(Picture(std::move(*image)), progress_dict(progress));
+}
+
+/// Warns of what the program warns of before it renders, and of light that the renderer cannot find.
+void warn_of_scene(LiveRender& live) {
+  live.unedited([](Render& render) {
+    show_warnings(scene_warnings(render.job()));
+    advise(render.job());
+  });
+}
+
+/// Warns of a picture that is black, and, with the job's outputs, of one that they show as black or white.
+void warn_of_picture(LiveRender& live, bool with_outputs) {
+  live.unedited([&](Render& render) {
+    const std::vector<Ref<Output>> none;
+    show_warnings(picture_warnings(render.job(), with_outputs ? render.job().outputs : none, render.picture()));
+  });
+}
+
+/// The files name, in their metadata, the files that the picture was made of, and the description of the job as it is.
+std::vector<std::string> write_outputs(LiveRender& live, const std::string& stem) {
+  const Ref<Job>& job = live.job();
+  return live.unedited([&](Render& render) {
+    const std::string file = job->location_of().file;
+    std::error_code ignored;
+    std::set<std::string> read;
+    if (std::filesystem::is_regular_file(file, ignored)) read.insert(std::filesystem::absolute(file).string());
+    const std::string description = write_description(*job, false, "");
+    job->metadata["file_hash"] = file_hash(*job, read, {&description, 1});
+    return render.write_outputs(stem);
+  });
 }
 
 // ---- editing, state --------------------------------------------------------------------------------------------------------
@@ -285,10 +320,9 @@ void bind_live_render(nb::module_& m) {
       .def("relative_error", [](LiveRender& live) { return with(live, [](Render& r) { return r.film().relative_error(); }); })
       .def("bad_samples", &bad_samples)
       .def("checkpoint_failure", [](LiveRender& live) { return LiveRender::Use(live)->checkpoint_failure(); })
-      .def("write_outputs",
-           [](LiveRender& live, const std::string& stem) {
-             return with(live, [&](Render& render) { return render.write_outputs(stem); });
-           })
+      .def("write_outputs", &write_outputs)
+      .def("warn_of_scene", &warn_of_scene)
+      .def("warn_of_picture", &warn_of_picture)
       .def("denoise", &denoise_guided, "picture"_a, "denoiser"_a.none(), "threads"_a);
 }
 
@@ -305,7 +339,6 @@ void bind_render(nb::module_& m) {
   m.def("has_member",
         [](nb::handle part, const std::string& name) { return component_of(part)->class_info().find(name) != nullptr; });
   m.def("file_of", [](nb::handle part) { return std::string(component_of(part)->location_of().file); });
-  m.def("close_all_renders", &close_all_renders);
   m.def("leave_all_renders", &leave_all_renders);
   m.def(
       "fail", [](const std::string& message) { throw Error(message, calling_line()); },

@@ -10,6 +10,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 #include "etendue/language/language.h"
 #include "language/calls.h"
@@ -200,6 +201,28 @@ Location calling_line() {
   return {};
 }
 
+namespace {
+
+/// A value for a function of the language. A text that is a number with a unit, "20 deg", is that quantity; others are names.
+Value function_argument(nb::handle object, const Location& at) {
+  Value value = to_value(object, nullptr, at);
+  const auto* const text = value.as<std::string>();
+  if (!text) return value;
+  char* unit = nullptr;
+  std::strtod(text->c_str(), &unit);
+  if (unit == text->c_str() || !*unit || text->find_first_of(".\"", size_t(unit - text->c_str())) != std::string::npos)
+    return value;
+  try {
+    Value quantity = parse_value(*text);
+    quantity.location = at;
+    return quantity;
+  } catch (const Error&) {
+    return value;  // a name that begins with a digit
+  }
+}
+
+}  // namespace
+
 void bind_values(nb::module_& m) {
   nb::class_<Opaque>(m, "Value", "A colour or a transform of the language.")
       .def("__repr__", [](const Opaque& o) { return write_value(o.value); })
@@ -235,7 +258,7 @@ void bind_values(nb::module_& m) {
       [](const std::string& function, const nb::args& arguments) {
         const Location at = calling_line();
         std::vector<Value> values;
-        for (const nb::handle a : arguments) values.push_back(to_value(a, nullptr, at));
+        for (const nb::handle a : arguments) values.push_back(function_argument(a, at));
         return to_python(released([&] { return language::call(function, values, at, true); }), nullptr);
       },
       "Calls a function of the language.");

@@ -2,6 +2,7 @@
 
 #include <nanobind/stl/string.h>
 
+#include "interpreter.h"
 #include "worker.h"
 
 namespace etendue::python {
@@ -26,11 +27,13 @@ void tell(WorkProgress& progress, const nb::object& told) {
 }  // namespace
 
 void do_watched(const std::function<void()>& work, const std::function<void()>& stop, WorkProgress& progress, nb::object told) {
+  const WatchedWork counted;
   std::exception_ptr raised;
   Worker worker(work);
   while (!worker.wait()) {
     if (raised) continue;
     try {
+      Interpreter::require_future();
       check_signals();
       tell(progress, told);
     } catch (...) {

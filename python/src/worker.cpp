@@ -1,8 +1,8 @@
 #include "worker.h"
 
-#include <nanobind/nanobind.h>
-
 #include <chrono>
+
+#include "interpreter.h"
 
 namespace etendue::python {
 
@@ -20,14 +20,14 @@ Worker::Worker(std::function<void()> work)
 
 bool Worker::wait() {
   constexpr std::chrono::milliseconds interval{50};
-  const nanobind::gil_scoped_release without;
+  const WithoutLock without;
   std::unique_lock lock(mutex_);
   return ended_.wait_for(lock, interval, [&] { return done_; });
 }
 
 void Worker::join() {
   if (!thread_.joinable()) return;
-  const nanobind::gil_scoped_release without;
+  const WithoutLock without;
   thread_.join();
 }
 

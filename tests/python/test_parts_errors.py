@@ -156,6 +156,37 @@ def run(code):
     return subprocess.run([sys.executable, "-X", "faulthandler", "-c", textwrap.dedent(code)], capture_output=True, text=True, timeout=100)
 
 
+@pytest.mark.parametrize("work", ["etendue.render(job, samples=1)", "etendue.conform('Slow')", "etendue.loads(text)"])
+def test_the_interpreter_ends_while_a_thread_comes_back(work):
+    """A daemon thread that takes the interpreter's lock too late would be unwound through frames of C++."""
+    done = run(
+        f'''
+        import etendue, threading, time
+        class Slow(etendue.ObjectMap):
+            """A map."""
+            def prepare(self):
+                time.sleep(0.2)
+            def scalar(self, point):
+                return 0.5
+        text = ("Job {{ camera: PerspectiveCamera {{ from: [0,0,-4] m, to: [0,0,0] m }}, image: ImageBuffer {{ width: 8, height: 8 }},"
+            "renderer: SimplePathTracer {{ samples: 4 }}, scene: BruteForceScene {{ objects: ["
+            "Sphere {{ shader: Lambertian {{ color: Slow {{}} }} }}, Environment {{ emission: EnvironmentEmission {{}} }} ] }} }}")
+        def loop():
+            while True:
+                try:
+                    job = etendue.loads(text)
+                    {work}
+                except etendue.Error:
+                    pass
+        for _ in range(3):
+            threading.Thread(target=loop, daemon=True).start()
+        time.sleep(0.5)
+        '''
+    )
+    assert done.returncode == 0, (done.returncode, done.stderr)
+    assert "terminate" not in done.stderr
+
+
 def test_the_interpreter_ends_while_parts_live():
     done = run(
         '''

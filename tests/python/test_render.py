@@ -9,13 +9,24 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 
 import numpy as np
 import pytest
 
 import etendue
 
-SCENES = pathlib.Path(__file__).parents[2] / "scenes"
+ROOT = pathlib.Path(__file__).parents[2]
+SCENES = ROOT / "scenes"
+# Twenty small ones: algorithms, media, lenses, meshes, constructive solids, textures, measured metals.
+SAME_SCENES = [
+    *(
+        f"scenes/{name}"
+        for name in "cloister cornell_box csg depth_of_field forest glass_caustic glass_of_water gold_figure metals misty_meadow"
+        " shader_ball small_vcm teapot window_room".split()
+    ),
+    *(f"tests/references/exports/{name}" for name in "glass textures shapes emitters media metals".split()),
+]
 
 SMALL = """
 grey = Lambertian { color: 0.5 }
@@ -77,10 +88,10 @@ def run_python(text, **environment):
 
 
 @pytest.mark.skipif(program() is None, reason="needs the program beside the library")
-@pytest.mark.parametrize("scene", ["cornell_box", "csg", "depth_of_field", "glass_caustic", "metals", "small_vcm"])
+@pytest.mark.parametrize("scene", SAME_SCENES)
 def test_bytes_of_the_program(scene, tmp_path):
-    file = SCENES / f"{scene}.etd"
-    image = etendue.render(file, samples=2, size=(20, 14), seed=5)
+    file = ROOT / f"{scene}.etd"
+    image = etendue.render(file, samples=2, size=(20, 14), seed=5, warn=False)
     npy = tmp_path / "picture.npy"
     options = ["--samples", "2", "--size", "20x14", "--seed", "5", "--quiet"]
     subprocess.run([program(), "render", file, *options, "-o", npy], check=True)
@@ -130,6 +141,34 @@ def test_limits_without_samples_are_open_ended():
         etendue.render(job, error=0)
     with pytest.raises(etendue.Error, match="samples"):
         etendue.render(job, samples=0)
+
+
+def test_what_the_program_warns_of_is_a_warning():
+    dark = "\n".join(line for line in SMALL.splitlines() if line.strip().split(" ")[0] not in ("key", "fill"))
+    with pytest.warns(etendue.Warning, match="nothing emits light"):
+        etendue.render(etendue.loads(dark), samples=1)
+    with pytest.warns(etendue.Warning, match="the picture is black"):
+        etendue.render(etendue.loads(dark), samples=1)
+    with pytest.warns(etendue.Warning, match="sees none of the objects"):
+        etendue.Render(small_job(camera__from=(0, 0, -50), camera__to=(0, 0, -90))).close()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        etendue.render(etendue.loads(dark), samples=1, warn=False)
+        etendue.render(small_job(), samples=1)
+        job = etendue.loads(dark)
+        with pytest.raises(etendue.Warning):
+            etendue.render(job, samples=1)
+        etendue.render(job, samples=1, warn=False)  # the failed render has left the job free
+
+
+def test_written_pictures_name_their_files_by_a_hash(tmp_path):
+    def hash_of(job, name):
+        job.outputs = [etendue.PngOutput()]
+        etendue.render(job, samples=1, outputs=tmp_path / name)
+        return etendue.read_image(tmp_path / f"{name}.png").metadata["file_hash"]
+
+    first = hash_of(small_job(), "a")
+    assert len(first) == 16 and first == hash_of(small_job(), "b") != hash_of(small_job(camera__fov=41), "c")
 
 
 def test_a_size_does_not_move_a_crop():

@@ -207,3 +207,10 @@ def test_functions_of_the_language():
     with pytest.raises(etendue.Error, match="rgb"):
         etendue.rgb(1)
     assert etendue.sqrt(2) == pytest.approx(2**0.5)
+
+
+def test_functions_take_quantities_as_texts():
+    assert repr(etendue.rotate("20 deg", "x")) == repr(etendue.rotate(20, "x"))
+    assert repr(etendue.translate("10 cm", 0, 0)) == repr(etendue.translate(0.1, 0, 0))
+    with pytest.raises(etendue.Error):
+        etendue.rotate("20 m", "x")

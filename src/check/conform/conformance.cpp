@@ -11,6 +11,7 @@
 
 #include "check/conform/fixtures/fixtures.h"
 #include "describe/guard.h"
+#include "describe/words.h"
 #include "draw.h"
 
 namespace etendue::conform {
@@ -45,10 +46,8 @@ std::vector<InterfaceCheck> interface_checks() {
 std::vector<const ClassInfo*> chosen(const std::vector<std::string>& names) {
   const Registry& registry = Registry::instance();
   std::vector<const ClassInfo*> classes;
-  std::vector<std::string> known;
-  for (const ClassInfo* info : registry.all()) known.push_back(info->name);
   for (const std::string& name : names)
-    if (!registry.find(name)) throw Error("there is no class '" + name + "'" + suggestion(name, known));
+    if (!registry.find(name)) throw Error("there is no class '" + name + "'" + meant_class(name));
   for (const ClassInfo* info : registry.all()) {
     bool asked = names.empty();
     for (const std::string& name : names) asked = asked || info->is_a(*registry.find(name));

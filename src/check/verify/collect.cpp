@@ -301,6 +301,7 @@ bool measure(Render& render, size_t number, const Candidate& candidate, const Co
   for (double& value : run.picture.values) value /= double(measured.passes.size());
   for (double& value : measured.systematic) value = std::abs(value) / double(measured.passes.size());
   if (limit) run.marks = limit->marks(), run.limit_noise = limit->noise();
+  run.lengths_asked = all.layout.lengths > 0;
   run.length_share = share_with_length(all.layout, measured);
   measured.tells_lengths = run.length_share > 0;
   all.measured.push_back(std::move(measured));

@@ -78,7 +78,8 @@ struct RendererRun {
   double seconds = 0;
   std::uint64_t samples = 0;  ///< over the whole image, in all passes
   std::uint64_t bad_samples = 0;
-  double length_share = 0;  ///< fraction of its light whose path length it reports
+  bool lengths_asked = true;  ///< false: the picture has no layers of path lengths
+  double length_share = 0;    ///< fraction of its light whose path length it reports
   /// For a consistent renderer whose limit was estimated (limit.h): the marks (numbers of samples) of its passes, the means of
   /// Y over the tiles at these, [pass][mark][tile], and the factor by which the limit is noisier than the end of a pass. Empty
   /// for others.

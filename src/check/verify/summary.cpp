@@ -107,9 +107,11 @@ std::string remark(const Measured& measured, const RendererRun& run, const Candi
         run.limit_noise));
   else if (const std::string bias = candidate.renderer->bias(); !bias.empty())
     add("biased: " + bias);
-  if (!measured.tells_lengths)
+  // Where one renderer refuses layers of path lengths, none is asked for them: the remark is about that one.
+  const bool blamed = run.lengths_asked || candidate.renderer->class_info().declared;
+  if (!measured.tells_lengths && blamed)
     add("does not tell path lengths apart, so only all lengths together are compared");
-  else if (std::abs(run.length_share - 1) > 1e-3)
+  else if (measured.tells_lengths && std::abs(run.length_share - 1) > 1e-3)
     add(fmt::format("tells the path length of {:.2f} % of its light only", 100 * run.length_share));
   if (run.bad_samples > 0)
     add(fmt::format("{} of {} samples were negative or not finite and count as black", run.bad_samples, run.samples));
