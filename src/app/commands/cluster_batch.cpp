@@ -56,7 +56,8 @@ while [ -n "$signalled" ] && [ $status -gt 128 ]; do
   wait $render # the shell's wait ends at a signal, before the render does
   status=$?
 done
-if [ -n "$time_is_up" ] && [ $status = {5} ]; then
+# {5}: interrupted, with its part saved; 143: before it had begun.
+if [ -n "$time_is_up" ] && {{ [ $status = {5} ] || [ $status = 143 ]; }}; then
   exec scontrol requeue "${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID"
 fi
 exit $status

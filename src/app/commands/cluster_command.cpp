@@ -89,7 +89,8 @@ int submit(const SubmitOptions& options) {
   files.raise();
   write_whole_file(array, array_script(batch));
   write_whole_file(merge, merge_script(batch));
-  fmt::print("{}\n{}\n{} passes in {} part{}\n", array, merge, batch.passes, batch.parts, batch.parts == 1 ? "" : "s");
+  fmt::print("{}\n{}\n{} pass{} in {} part{}\n", array, merge, batch.passes, batch.passes == 1 ? "" : "es", batch.parts,
+             batch.parts == 1 ? "" : "s");
   std::uint32_t kept = 0;
   for (std::uint32_t i = 0; i < batch.parts; ++i) kept += std::filesystem::exists(part_file(batch, std::to_string(i)));
   if (kept > 0) fmt::print("{} of the parts are there already, and will be continued\n", kept);
