@@ -1,9 +1,8 @@
 // The window in which a file is chosen, from the folders the program was given.
-import { signal, useSignal } from "@preact/signals";
+import { signal, useSignal, useSignalEffect } from "@preact/signals";
 import type { JSX } from "preact";
-import { useEffect } from "preact/hooks";
 import { Refused } from "../model/protocol.ts";
-import { document_, folders } from "../model/state.ts";
+import { document_, folders, line } from "../model/state.ts";
 import { demand } from "../model/studio.ts";
 import { Icon } from "../parts/icons.tsx";
 import { Button, Dialog } from "../parts/parts.tsx";
@@ -78,10 +77,14 @@ function Browser({ what, done }: { what: Wish; done: (file: string | null) => vo
       problem.value = error instanceof Refused ? error.message : texts.notices.offline;
     }
   };
-  useEffect(() => {
-    const own = document_.value?.file;
-    void go(lastFolder ?? (own ? folderOf(own) : (folders.value[0] ?? null)));
-  }, []);
+  // At first, and again when the line to the program is back, if it was lost before the folder was read.
+  useSignalEffect(() => {
+    problem.value = line.value === "open" ? "" : texts.notices.offline;
+    if (line.value === "open" && !listing.peek()) {
+      const own = document_.peek()?.file;
+      void go(lastFolder ?? (own ? folderOf(own) : (folders.peek()[0] ?? null)));
+    }
+  });
   const full = (name: string): string => (name.startsWith("/") ? name : `${listing.value?.folder ?? ""}/${name}`);
   const take = (entry: Entry): void => {
     if (entry.folder) void go(full(entry.name));
