@@ -302,7 +302,7 @@ def _class_text(description: dict[str, Any]) -> str:
 def _method_texts(interface: dict[str, Any]) -> str:
     lines = []
     for name, arguments in interface["methods"].items():
-        needed = next((names for names in interface["required"] if name in names), [])
+        needed: list[str] = next((names for names in interface["required"] if name in names), [])
         mark = " (needed)" if len(needed) == 1 else " (one of these is needed)" if needed else ""
         lines.append(f"    {name}({arguments}): {interface['texts'][name]}{mark}")
     return "\n".join(lines)
