@@ -91,7 +91,7 @@ def render_part(sent: SentJob, begin: int, end: int, threads: int) -> RenderedPa
             _renders.clear()  # another job's, which may be waiting for more parts, but memory holds one
             job = sent.job()
             job.time_limit = job.error_limit = 0  # the client observes the limits of the whole picture
-            render = _renders[sent] = _prepared(job, threads)
+            render = _renders[sent] = _prepared(job, threads, warn=False)  # the client warns of the scene
         try:
             render.restart()
             render._core.select_steps(begin, end)
@@ -109,7 +109,7 @@ def render_whole(sent: SentJob, threads: int) -> tuple[Any, list[str], dict[str,
         _renders.clear()
         job = sent.job()
         try:
-            with _prepared(job, threads) as render:
+            with _prepared(job, threads, warn=True) as render:
                 render.run(progress=_ends_when_unwanted())
                 picture = render.snapshot()
         except Error as e:
@@ -117,10 +117,10 @@ def render_whole(sent: SentJob, threads: int) -> tuple[Any, list[str], dict[str,
         return picture.pixels, picture.channels, picture.metadata
 
 
-def _prepared(job: Any, threads: int) -> Render:
+def _prepared(job: Any, threads: int, warn: bool) -> Render:
     worker, _ = _worker_and_task()
     try:
-        return Render(job, threads=threads or (worker.state.nthreads if worker is not None else 0))
+        return Render(job, threads=threads or (worker.state.nthreads if worker is not None else 0), warn=warn)
     except Error as e:
         raise located(e) from None
 

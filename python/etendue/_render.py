@@ -395,6 +395,36 @@ def _overridden(
     return job
 
 
+def _loaded(job: Union[Part, FileName]) -> Any:
+    """The job itself, or that of a file."""
+    if isinstance(job, Part):
+        return job
+    if not isinstance(job, (str, os.PathLike)):
+        _fail(f"expects a Job or the name of a file, not {type(job).__name__}")
+    return load(job)
+
+
+def _prepared_outputs(job: Any, outputs: Union[bool, FileName]) -> Optional[str]:
+    """What the names of a job's pictures begin with; None: none are written. Raises Error, before a long render, if they cannot be."""
+    if outputs is False or outputs is None:
+        return None
+    if not len(job.outputs):
+        _fail("the job has no outputs that could be written; Image.save writes a picture")
+    stem = _stem(job, None if isinstance(outputs, bool) else outputs)
+    _find_denoising_library()
+    _core.require_outputs(job, stem)
+    return stem
+
+
+def _result(made: Render, stem: Optional[str], warn: bool) -> Image:
+    """The picture of a render that has ended, whose outputs are written if there is a stem."""
+    if stem is not None:
+        made.write_outputs(stem)
+    if warn:
+        made._core.warn_of_picture(stem is not None)
+    return made.snapshot()
+
+
 def render(
     job: Union[Part, FileName],
     *,
@@ -427,28 +457,13 @@ def render(
     These values are for this render alone: the caller's job does not change. The picture is, byte for byte, that of the program.
     Raises Error if the scene cannot be rendered. Ctrl-C raises KeyboardInterrupt at once.
     """
-    if not isinstance(job, Part):
-        if not isinstance(job, (str, os.PathLike)):
-            _fail(f"expects a Job or the name of a file, not {type(job).__name__}")
-        job = load(job)
-    rendered = _overridden(job, samples, time, error, seed, renderer, size, layers, changes)
-    writes = outputs is not False and outputs is not None
-    stem = ""
-    if writes:
-        if not len(rendered.outputs):
-            _fail("the job has no outputs that could be written; Image.save writes a picture")
-        stem = _stem(rendered, None if isinstance(outputs, bool) else outputs)
-        _find_denoising_library()
-        _core.require_outputs(rendered, stem)
+    rendered = _overridden(_loaded(job), samples, time, error, seed, renderer, size, layers, changes)
+    stem = _prepared_outputs(rendered, outputs)
     with Render(rendered, threads=threads, checkpoint=checkpoint, warn=warn) as made:
         if checkpoint is not None and os.path.exists(checkpoint):
             made.load(checkpoint)
         made.run(progress=progress)
-        if writes:
-            made.write_outputs(stem)
-        if warn:
-            made._core.warn_of_picture(writes)
-        return made.snapshot()
+        return _result(made, stem, warn)
 
 
 def denoise(image: Image, job: Union[None, Part, Render] = None, *, denoiser: Optional[Part] = None, threads: int = 0) -> Image:

@@ -25,11 +25,10 @@ from typing import Any, Literal, Optional, Union
 from . import _core
 from ._classes import Part
 from ._errors import Error, _warn
-from ._files import load
 from ._images import Image
 from ._parts import RenderedPart, SentJob, render_part, render_whole
 from ._progress import Progress, Shown, display_for
-from ._render import FileName, Render, _find_denoising_library, _overridden, _stem
+from ._render import FileName, Render, _loaded, _overridden, _prepared_outputs, _result
 
 __all__ = ["frames", "render", "run"]
 
@@ -349,14 +348,6 @@ def _paths(files: Sequence[FileName]) -> tuple[str, ...]:
     return tuple(os.fspath(f) for f in files)
 
 
-def _job(given: Union[Part, FileName]) -> Any:
-    if isinstance(given, Part):
-        return given
-    if not isinstance(given, (str, os.PathLike)):
-        raise Error(f"expects a Job or the name of a file, not {type(given).__name__}")
-    return load(given)
-
-
 def render(
     job: Union[Part, FileName],
     client: Any,
@@ -377,10 +368,11 @@ def render(
     folder: Optional[FileName] = None,
     plugins: Sequence[FileName] = (),
     progress: Shown = None,
+    warn: bool = True,
 ) -> Image:
     """Renders a job on the machines of a client, and returns its picture: etendue.render, over many machines.
 
-    job, samples, error, seed, renderer, size, layers, changes, outputs, progress: as of etendue.render; time is wall-clock time [s].
+    job, samples, error, seed, renderer, size, layers, changes, outputs, progress, warn: as of etendue.render; time is wall-clock time [s].
     client, steps, part_seconds, threads, folder, plugins: as of `run`.
     checkpoint: as of `run`; the render continues from it if the file exists.
 
@@ -388,16 +380,9 @@ def render(
     `run` with a Render of one's own keeps what has arrived in memory. Raises Error as `run` does.
     """
     _dask(client)
-    rendered = _overridden(_job(job), samples, None, error, seed, renderer, size, layers, changes)
-    stem = ""
-    writes = outputs is not False and outputs is not None
-    if writes:
-        if not len(rendered.outputs):
-            raise Error("the job has no outputs that could be written; Image.save writes a picture")
-        stem = _stem(rendered, None if isinstance(outputs, bool) else outputs)
-        _find_denoising_library()
-        _core.require_outputs(rendered, stem)
-    with Render(rendered) as made:
+    rendered = _overridden(_loaded(job), samples, None, error, seed, renderer, size, layers, changes)
+    stem = _prepared_outputs(rendered, outputs)
+    with Render(rendered, warn=warn) as made:
         if checkpoint is not None and os.path.exists(checkpoint):
             made.load(checkpoint)
         run(
@@ -413,9 +398,7 @@ def render(
             plugins=plugins,
             progress=progress,
         )
-        if writes:
-            made.write_outputs(stem)
-        return made.snapshot()
+        return _result(made, stem, warn)
 
 
 def frames(
@@ -450,7 +433,7 @@ def frames(
                 if given is None:
                     exhausted = True
                     break
-                job = _job(given)
+                job = _loaded(given)
                 tone_maps[number] = None if job.tone_map is None else _core.copy(job.tone_map)
                 tasks.submit(number, render_whole, _Sent(client, SentJob.of(job, there, files)), threads)
             if not len(tasks):

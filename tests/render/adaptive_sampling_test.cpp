@@ -183,5 +183,21 @@ TEST(AdaptiveSampling, WhatHasNoPixelsOfItsOwnIsRefused) {
   }
 }
 
+TEST(AdaptiveSampling, AFirstStepThatIsAbortedIsMadeAgain) {
+  const std::unique_ptr<Render> straight = test::rendered(job(adaptive, 16));
+  Render* running = nullptr;
+  RenderSettings settings;
+  settings.progress_interval = 0;
+  int calls = 0;
+  settings.on_progress = [&](const Progress&) {
+    if (++calls == 1) running->abort();
+  };
+  Render render(job(adaptive, 16), settings);
+  running = &render;
+  EXPECT_EQ(render.run(), Ended::aborted);
+  EXPECT_EQ(render.run(), Ended::samples);
+  EXPECT_TRUE(render.film().save_state() == straight->film().save_state());
+}
+
 }  // namespace
 }  // namespace etendue

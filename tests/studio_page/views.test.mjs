@@ -160,3 +160,19 @@ test("warnings stand in the text; the program begins again and the page is there
   await page.locator("[role=treeitem]", { hasText: "Sphere" }).first().click();
   await page.locator(".panel-title h2", { hasText: "Sphere" }).waitFor();
 });
+
+test("the window of files reads its folder when the line to the program is back", whole, async (t) => {
+  const { page } = await begin(t);
+  await page.click("button:has-text('Details')");
+  await until("there are samples", async () => !(await page.locator("button:has-text('Save checkpoint')").isDisabled()));
+  await page.evaluate(() => {
+    const send = WebSocket.prototype.send;
+    WebSocket.prototype.send = function (message) {
+      if (!String(message).includes('"do":"files"')) return send.call(this, message);
+      WebSocket.prototype.send = send;
+      this.close(); // the line is lost while the folder is asked for
+    };
+  });
+  await page.click("button:has-text('Save checkpoint')");
+  await page.locator("dialog button[type=submit]:enabled").waitFor();
+});

@@ -1,7 +1,7 @@
 #pragma once
-// Schedule: runs work on all cores, and on all machines that render together. An algorithm gives a function of an item; the
-// results are combined in the order of items, so no result depends on threads or machines. Every process of a render makes the
-// same calls, and gets the same results.
+// Schedule: runs work on all cores. An algorithm gives a function of an item; the results are combined in the order of items,
+// so no result depends on threads. The work of an item changes nothing but its results, and these can be packed: so a schedule
+// may also have items computed by other processes, each of which makes the same calls and gets the same results.
 
 #include <atomic>
 #include <iterator>

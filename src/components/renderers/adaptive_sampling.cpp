@@ -92,7 +92,7 @@ class AdaptiveProcess final : public RenderProcess {
         inner_(r.inner->start(c)),
         area_(c.image.sampled_area()),
         known_(size_t(area_.width()) * size_t(area_.height())),
-        planned_(known_.size()) {}
+        planned_(known_.size(), AdaptiveSampling::mean_samples) {}
 
   void prepare_step(Schedule& schedule, const Step& step) override {
     inner_->prepare_step(schedule, step);
