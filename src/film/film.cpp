@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <mutex>
 
 #include "etendue/film/splat_label.h"
@@ -12,15 +13,16 @@
 #include "film_members.h"
 #include "film_values.h"
 #include "filter_window.h"
+#include "tile_values.h"
 
 namespace etendue {
 
 namespace {
 
-/// The least memory that a render of a picture needs [bytes]: the light of the current step and its exact sums.
+/// The least memory that a render of a picture needs [bytes]: the light of the current step, with bands, and its exact sums.
 double least_memory(const PictureFormat& format) {
   const auto pixels = double(format.area.width()) * double(format.area.height());
-  return pixels * double(2 * list_stride(light_list, format) * sizeof(double));
+  return pixels * double(2 * (list_stride(light_list, format) + list_stride(part_list, format)) * sizeof(double));
 }
 
 }  // namespace
@@ -151,10 +153,11 @@ void Film::add_splats(const ImageTile& tile) {
   Members& m = *members_;
   const PictureFormat& format = *m.format;
   std::vector<double>& sums = m.list(splat_list);
-  double* parts = format.parts() > 0 ? m.list(part_splat_list).data() : nullptr;
+  double* parts = format.triples() > 0 ? m.list(part_splat_list).data() : nullptr;
   std::vector<double>& of_path = m.splatted;  // sum of the current path so far; zero except in pixels it has reached
   if (of_path.empty()) of_path.resize(format.pixels());
   std::vector<size_t> reached;
+  std::vector<SpectralBands::Value> measured;  // of the current splat, in the bands
   const auto end_path = [&] {
     for (const size_t pixel : reached) of_path[pixel] = 0;
     reached.clear();
@@ -174,8 +177,16 @@ void Film::add_splats(const ImageTile& tile) {
     of_path[pixel] += value.y;
     reached.push_back(pixel);
     if (!parts) return;
+    if (double* bands = &parts[3 * (format.triples() * pixel + format.parts())]; !measured.empty())
+      for (const auto& [band, light] : measured) {
+        bands[band] += weight * light;
+        if (!summable(bands[band])) [[unlikely]] {
+          end_path();
+          m.complain({&bands[band], 1}, 1, x, y);
+        }
+      }
     const auto add_part = [&](size_t part) {
-      double* at = &parts[3 * (format.parts() * pixel + part)];
+      double* at = &parts[3 * (format.triples() * pixel + part)];
       at[0] += value.x;
       at[1] += value.y;
       at[2] += value.z;
@@ -185,8 +196,15 @@ void Film::add_splats(const ImageTile& tile) {
     if (label.group >= 0) add_part(size_t(format.path_lengths) + size_t(label.group));
   };
   constexpr int size = PictureFormat::table_size;
+  const double* lights = tile.parts_.data() + pixel_values(format, tile.extent_);
   for (const ImageTile::Splat& splat : tile.splats_) {
     if (!splat.same_path) end_path();
+    if (format.bands) {
+      SpectralBands::Light light;
+      std::memcpy(&light, lights, sizeof light);
+      lights += splat_values(format);
+      format.bands->measure(light, measured);
+    }
     if (format.box) {
       add(splat, std::min(int(splat.film.x), format.area.x1 - 1), std::min(int(splat.film.y), format.area.y1 - 1),
           double(format.table[0]));

@@ -1,5 +1,8 @@
 // Develops the collected sums to a picture, and estimates its error.
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cmath>
 
 #include "film_values.h"
@@ -40,12 +43,15 @@ std::vector<Layer> add_layers(const PictureFormat& format, std::vector<std::stri
     for (const char* part : {".X", ".Y", ".Z"}) channels.push_back("length_" + std::to_string(length) + part);
   for (const std::string& group : format.light_groups)
     for (const char* part : {".X", ".Y", ".Z"}) channels.push_back(PictureFormat::light_prefix + group + part);
+  if (format.bands) channels.insert(channels.end(), format.bands->channels().begin(), format.bands->channels().end());
   return layers;
 }
 
 Image blank(const PictureFormat& format, std::vector<std::string> channels) {
   Image image(format.area.width(), format.area.height(), std::move(channels));
   image.metadata["color_space"] = "xyz";
+  if (format.bands && !format.bands->edges().empty())
+    image.metadata[band_edges_key] = fmt::format("{}", fmt::join(format.bands->edges(), " "));
   if (format.cropped) {
     image.metadata["crop_x"] = std::to_string(format.area.x0);
     image.metadata["crop_y"] = std::to_string(format.area.y0);
@@ -96,7 +102,8 @@ Image FilmSnapshot::develop() const {
 
   const bool even = v.even();
   const auto& [light, splats, features, parts, part_splats, weights, batches] = v.lists;
-  const size_t all_parts = list_stride(part_list, format);
+  const size_t stride = list_stride(part_list, format),
+               all_parts = 3 * format.parts() + (format.bands ? format.bands->count() : 0);
   double* out = image.values.data();
   for (int y = format.area.y0; y < format.area.y1; ++y)
     for (int x = format.area.x0; x < format.area.x1; ++x) {
@@ -117,7 +124,7 @@ Image FilmSnapshot::develop() const {
           case Layer::Source::count: *out++ = v.counts.samples[pixel]; break;
         }
       }
-      for (size_t i = 0; i < all_parts; ++i) *out++ = sum(parts, part_splats, all_parts * pixel + i);
+      for (size_t i = 0; i < all_parts; ++i) *out++ = sum(parts, part_splats, stride * pixel + i);
     }
   return image;
 }

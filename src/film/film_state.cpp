@@ -18,7 +18,8 @@ static_assert(std::has_unique_object_representations_v<FeatureCount>, "written a
 
 /// The properties that a state must have in common with the film that loads it.
 std::array<std::int32_t, 9> kind_of_film(const PictureFormat& f, Estimator estimator) {
-  return {f.width, f.height, f.area.x0, f.area.y0, f.area.x1, f.area.y1, int(f.wants_features), int(f.parts()), int(estimator)};
+  return {f.width,          f.height,      f.area.x0, f.area.y0, f.area.x1, f.area.y1, int(f.wants_features),
+          int(f.triples()), int(estimator)};
 }
 
 constexpr size_t place_of_estimator = 8;  // index of the estimator in kind_of_film
@@ -91,7 +92,7 @@ Film::Totals Film::read_state(std::span<const std::byte> bytes) const {
     if (r.value<std::int32_t>() != i)
       throw Error("the film's state belongs to a picture of another size, crop or layers, or to another kind of algorithm");
   if (r.value<std::uint64_t>() != format.hash())
-    throw Error("the film's state was made with another filter, or with other light groups");
+    throw Error("the film's state was made with another filter, or with other light groups or bands");
   Totals totals;
   totals.steps = r.value<std::uint32_t>();
   if (totals.steps > ExactSums::most_addends) throw Error("the film's state holds an impossible number of steps");

@@ -15,7 +15,7 @@ enum List : std::uint8_t {
   light_list,    ///< filtered X, Y, Z of samples, and filtered Y^2
   splat_list,    ///< filtered X, Y, Z of splats, and the squared Y of all splats of one sample
   feature_list,  ///< albedo, normal, depth
-  part_list,     ///< X, Y, Z for each path length, and then for each light group
+  part_list,     ///< X, Y, Z for each path length, then for each light group, and then the bands (PictureFormat::triples)
   part_splat_list,
   weight_list,  ///< the weight of samples minus their number
   batch_list,   ///< squares of steps' means, times their samples (Estimator::correlated)
@@ -26,7 +26,7 @@ using Lists = std::array<std::vector<double>, list_count>;
 /// Values per pixel in a list.
 inline size_t list_stride(List list, const PictureFormat& format) {
   constexpr std::array<size_t, list_count> strides = {4, 4, 7, 3, 3, 1, 1};
-  return strides[list] * (list == part_list || list == part_splat_list ? format.parts() : 1);
+  return strides[list] * (list == part_list || list == part_splat_list ? format.triples() : 1);
 }
 
 /// Values of a list that are summed as one group of an ExactSums; a list may hold several groups side by side.
@@ -49,9 +49,9 @@ inline constexpr std::array<Plane, 11> planes = {{{light_list, 0, 3},
 inline bool kept(const Plane& plane, Estimator estimator) {
   return estimator == Estimator::independent || !((plane.list == light_list || plane.list == splat_list) && plane.group == 1);
 }
-/// Consecutive groups of a pixel: one for each part of the light, or one.
+/// Consecutive groups of a pixel: one for each part of the light and for three bands, or one.
 inline size_t groups_per_pixel(const Plane& plane, const PictureFormat& format) {
-  return plane.list == part_list || plane.list == part_splat_list ? format.parts() : 1;
+  return plane.list == part_list || plane.list == part_splat_list ? format.triples() : 1;
 }
 
 /// Counters, and values that are chosen by the order of pixels and samples: exact in any order of addition.

@@ -117,6 +117,7 @@ void ImageBuffer::prepare() {
   format.wants_features = wants("albedo") || wants("normal") || wants("depth") || wants("object");
   format.path_lengths = path_lengths;
   format.light_groups = std::move(light_groups);
+  if (const auto* spectral = dynamic_cast<const HasBands*>(this)) format.bands = spectral->make_bands();
   format.set_filter(std::move(table), radius);
   format.sampled_area = intersection(widened(area, format.reach()), {0, 0, width, height});
   format_ = std::make_shared<const PictureFormat>(std::move(format));

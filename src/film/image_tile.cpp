@@ -9,6 +9,7 @@
 #include "film_values.h"
 #include "filter_window.h"
 #include "pixel_area.h"
+#include "tile_values.h"
 
 namespace etendue {
 namespace {
@@ -103,7 +104,26 @@ void require_groups(const PictureFormat& format, const Xyz& color, std::span<con
 /// Whether a film point is finite and of ordinary size; false for NaN.
 bool ordinary(Point2 film) { return std::abs(film.x) < 1e7f && std::abs(film.y) < 1e7f; }
 
-size_t pixels(const PixelArea& a) { return size_t(std::max(a.width(), 0)) * size_t(std::max(a.height(), 0)); }
+/// A spectrum that `to_color` accepted, without its harmless faults.
+Spectrum without_faults(const Spectrum& value, const Wavelengths& wavelengths) {
+  Spectrum good = value;
+  BadKind kind;
+  if (!regular(good)) repair(good, wavelengths, kind);
+  return good;
+}
+
+/// Calls f(x, y, factor) for the pixels of an area that a sample contributes to.
+template <class F>
+void each_reached(const PictureFormat& format, const PixelArea& extent, Point2 film, int px, int py, float weight, F f) {
+  if (format.box) return f(px, py, double(weight));
+  constexpr int size = PictureFormat::table_size;
+  const FilterWindow across(film.x, format.radius, size, extent.x0, extent.x1);
+  const FilterWindow down(film.y, format.radius, size, extent.y0, extent.y1);
+  for (int j = 0; j < down.count; ++j) {
+    const float* row = &format.table[size_t(down.cells[size_t(j)]) * size];
+    for (int i = 0; i < across.count; ++i) f(across.first + i, down.first + j, double(row[across.cells[size_t(i)]] * weight));
+  }
+}
 
 }  // namespace
 
@@ -128,7 +148,7 @@ void ImageTile::begin(const ImageBuffer& image, const PixelArea& area, std::uint
   extent_ = intersection(widened(area, format_->reach()), format_->area);
   light_.assign(4 * pixels(extent_), 0);
   lit_ = false;
-  parts_.assign(3 * format_->parts() * pixels(extent_), 0);
+  parts_.assign(pixel_values(*format_, extent_), 0);
   samples_.assign(pixels(area_), 0);
   weights_.clear();
   features_.assign(format_->wants_features ? feature_values * pixels(area_) : 0, 0);
@@ -179,6 +199,14 @@ void ImageTile::contribute(Point2 film, int px, int py, std::uint32_t sample, co
   if (!parts_.empty()) [[unlikely]] {
     require_groups(*format_, color, parts, wavelengths);
     add_parts(film, px, py, wavelengths, weight, parts);
+    if (format_->bands) {
+      static thread_local std::vector<SpectralBands::Value> measured;
+      format_->bands->measure({without_faults(value, wavelengths), wavelengths}, measured);
+      each_reached(*format_, extent_, film, px, py, weight, [&](int x, int y, double factor) {
+        double* sum = &parts_[place_of_parts(*format_, extent_, x, y) + 3 * format_->parts()];
+        for (const auto& [band, in_band] : measured) sum[band] += factor * in_band;
+      });
+    }
   }
   add_light(film, px, py, color, weight);
 }
@@ -208,30 +236,18 @@ void ImageTile::add_light(Point2 film, int px, int py, const Xyz& color, float w
 
 void ImageTile::add_parts(Point2 film, int px, int py, const Wavelengths& wavelengths, float weight,
                           std::span<const Spectrum> parts) {
-  const size_t count = std::min(parts.size(), format_->parts()), stride = 3 * format_->parts();
+  const size_t count = std::min(parts.size(), format_->parts());
   for (size_t part = 0; part < count; ++part) {
     if (parts[part].black()) continue;
     Xyz color;
     BadKind kind;
     if (!to_color(parts[part], wavelengths, color, kind)) continue;
-    const auto add = [&](int x, int y, double factor) {
-      double* sum = &parts_[stride * (size_t(y - extent_.y0) * size_t(extent_.width()) + size_t(x - extent_.x0)) + 3 * part];
+    each_reached(*format_, extent_, film, px, py, weight, [&](int x, int y, double factor) {
+      double* sum = &parts_[place_of_parts(*format_, extent_, x, y) + 3 * part];
       sum[0] += factor * color.x;
       sum[1] += factor * color.y;
       sum[2] += factor * color.z;
-    };
-    if (format_->box) {
-      add(px, py, double(weight));
-      continue;
-    }
-    constexpr int size = PictureFormat::table_size;
-    const FilterWindow across(film.x, format_->radius, size, extent_.x0, extent_.x1);
-    const FilterWindow down(film.y, format_->radius, size, extent_.y0, extent_.y1);
-    for (int j = 0; j < down.count; ++j) {
-      const float* row = &format_->table[size_t(down.cells[size_t(j)]) * size];
-      for (int i = 0; i < across.count; ++i)
-        add(across.first + i, down.first + j, double(row[across.cells[size_t(i)]] * weight));
-    }
+    });
   }
 }
 
@@ -268,6 +284,11 @@ void ImageTile::splat(Point2 film, int px, int py, std::uint32_t sample, const S
   const bool same = splat_path_.x == px && splat_path_.y == py && splat_path_.sample == sample;
   splat_path_ = {px, py, sample};
   splats_.push_back({film, color, length, same});
+  if (format_->bands) [[unlikely]] {
+    const SpectralBands::Light light(without_faults(value, wavelengths), wavelengths);
+    parts_.insert(parts_.end(), light.wavelengths.begin(), light.wavelengths.end());
+    parts_.insert(parts_.end(), light.weights.begin(), light.weights.end());
+  }
   if (largest_wanted_ > 0) [[unlikely]]
     note_large(
         {color.y * (double(format_->width) * double(format_->height) / double(pixels(all))), px, py, sample, film, true});

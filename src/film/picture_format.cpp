@@ -67,13 +67,15 @@ std::uint64_t PictureFormat::hash() const {
     add(std::uint32_t(name.size()));
     for (const char c : name) add(std::uint32_t(static_cast<unsigned char>(c)));
   }
+  if (bands)
+    for (const char c : bands->key()) add(std::uint32_t(static_cast<unsigned char>(c)));
   return h;
 }
 
 bool PictureFormat::collects_as(const PictureFormat& other) const {
   return width == other.width && height == other.height && area == other.area && path_lengths == other.path_lengths &&
-         light_groups == other.light_groups && wants_features == other.wants_features && radius == other.radius &&
-         table == other.table;
+         light_groups == other.light_groups && (bands ? other.bands && *bands == *other.bands : !other.bands) &&
+         wants_features == other.wants_features && radius == other.radius && table == other.table;
 }
 
 }  // namespace etendue

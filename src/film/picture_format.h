@@ -7,8 +7,12 @@
 #include <vector>
 
 #include "etendue/film/image_buffer.h"
+#include "spectral_bands.h"
 
 namespace etendue {
+
+/// Key of the metadata of an image with bands: their edges [nm], separated by spaces.
+inline constexpr const char* band_edges_key = "band_edges";
 
 struct PictureFormat {
   int width = 0, height = 0;
@@ -23,6 +27,8 @@ struct PictureFormat {
   static constexpr const char* light_prefix = "light.";
   static constexpr const char* rest_group = "rest";
   static constexpr size_t most_light_groups = 256;
+  /// The bands of a spectral film. Null: it has none.
+  std::shared_ptr<const SpectralBands> bands;
 
   /// The filter tabulated over one quadrant, weight at ((i + 0.5) / table_size * radius).
   static constexpr int table_size = 64;
@@ -42,6 +48,8 @@ struct PictureFormat {
 
   /// Parts of the light that are stored besides the whole: by path length, then by group.
   size_t parts() const { return size_t(path_lengths) + light_groups.size(); }
+  /// Values that are stored besides the whole, in groups of three: X, Y, Z of each part, then the bands, filled up with zeros.
+  size_t triples() const { return parts() + (bands ? (bands->count() + 2) / 3 : 0); }
   size_t pixels() const { return size_t(area.width()) * size_t(area.height()); }
   size_t index(int x, int y) const { return size_t(y - area.y0) * size_t(area.width()) + size_t(x - area.x0); }
   /// Pixels to each side that a sample anywhere in a pixel may contribute to: a sample at the edge of its pixel lies half a
@@ -59,7 +67,7 @@ struct PictureFormat {
     });
     return sum;
   }
-  /// FNV-1a hash of the filter and the names of light groups: sums with different hashes must not be added.
+  /// FNV-1a hash of the filter, the names of light groups and the bands: sums with different hashes must not be added.
   std::uint64_t hash() const;
   /// Whether sums collected with one format are valid for the other.
   bool collects_as(const PictureFormat&) const;

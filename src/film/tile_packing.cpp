@@ -6,11 +6,10 @@
 #include "etendue/core/packing.h"
 #include "etendue/film/film.h"
 #include "film_members.h"
+#include "tile_values.h"
 
 namespace etendue {
 namespace {
-
-size_t pixels(const PixelArea& a) { return size_t(std::max(a.width(), 0)) * size_t(std::max(a.height(), 0)); }
 
 bool lies_within(const PixelArea& part, const PixelArea& whole) {
   return pixels(part) == 0 || (part.x0 >= whole.x0 && part.y0 >= whole.y0 && part.x1 <= whole.x1 && part.y1 <= whole.y1);
@@ -28,6 +27,8 @@ void ImageTile::pack(std::vector<std::byte>& to) const {
   if (lit_) {
     Packing::pack(to, light_);
     Packing::pack(to, parts_);
+  } else if (format_->bands) {
+    Packing::pack(to, std::vector<double>(parts_.begin() + std::ptrdiff_t(pixel_values(*format_, extent_)), parts_.end()));
   }
   Packing::pack(to, samples_);
   Packing::pack(to, weights_);
@@ -58,7 +59,12 @@ void Film::unpack(std::span<const std::byte>& from, ImageTile& tile) const {
     Packing::unpack(from, tile.parts_);
   } else {
     tile.light_.assign(4 * reached, 0);
-    tile.parts_.assign(3 * format->parts() * reached, 0);
+    tile.parts_.assign(pixel_values(*format, tile.extent_), 0);
+    if (format->bands) {
+      std::vector<double> of_splats;
+      Packing::unpack(from, of_splats);
+      tile.parts_.insert(tile.parts_.end(), of_splats.begin(), of_splats.end());
+    }
   }
   Packing::unpack(from, tile.samples_);
   Packing::unpack(from, tile.weights_);
@@ -71,7 +77,8 @@ void Film::unpack(std::span<const std::byte>& from, ImageTile& tile) const {
   Packing::unpack(from, tile.paths_);
   const size_t features = format->wants_features ? own : 0;
   const bool sound = lies_within(tile.area_, format->area) && lies_within(tile.extent_, format->area) &&
-                     tile.light_.size() == 4 * reached && tile.parts_.size() == 3 * format->parts() * reached &&
+                     tile.light_.size() == 4 * reached &&
+                     tile.parts_.size() == pixel_values(*format, tile.extent_) + splat_values(*format) * tile.splats_.size() &&
                      tile.samples_.size() == own && (tile.weights_.empty() || tile.weights_.size() == own) &&
                      tile.features_.size() == ImageTile::feature_values * features && tile.feature_counts_.size() == features;
   if (!sound) throw Error("the packed tile is of another picture");
