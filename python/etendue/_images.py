@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import struct
 import zlib
 from collections.abc import Mapping, Sequence
@@ -18,6 +19,10 @@ from ._classes import Part, class_named
 Path = Union[str, "os.PathLike[str]"]
 Doubles = npt.NDArray[np.float64]
 Bytes = npt.NDArray[np.uint8]
+
+
+# The channel of a band, as spectral films and the layout of Fichet, Pacanowski & Wilkie 2021 name it, in nanometres.
+_BAND = re.compile(r"S0\.(\d+,?\d*)nm")
 
 
 class Image:
@@ -151,6 +156,33 @@ class Image:
         if places == list(range(places[0], places[0] + len(places))):
             return self._pixels[:, :, places[0] : places[-1] + 1]
         return self._pixels[:, :, places]
+
+    @property
+    def wavelengths(self) -> Doubles:
+        """The wavelengths [nm] in the middle of the bands of a spectral picture, increasing; empty: it has none."""
+        return np.array([wavelength for wavelength, _ in self._bands()], dtype=np.float64)
+
+    @property
+    def band_edges(self) -> Doubles:
+        """The edges [nm] of the bands of a spectral picture, one more than there are bands; empty: not known."""
+        edges = np.array([float(edge) for edge in self.metadata.get("band_edges", "").split()], dtype=np.float64)
+        return edges if len(edges) == len(self._bands()) + 1 else edges[:0]
+
+    @property
+    def spectrum(self) -> Doubles:
+        """The mean spectral radiance [W/(m² sr nm)] in each band: shape (height, width, bands), in the order of `wavelengths`.
+
+        Raises Error if the picture has no bands: ImageBuffer is then to be replaced by SpectralFilm.
+        """
+        bands = self._bands()
+        if not bands:
+            _fail("the picture has no spectrum: its image is no SpectralFilm")
+        return self._taken([place for _, place in bands])
+
+    def _bands(self) -> list[tuple[float, int]]:
+        """The wavelength [nm] and the channel of each band, by wavelength."""
+        found = ((_BAND.fullmatch(name), place) for place, name in enumerate(self.channels))
+        return sorted((float(match[1].replace(",", ".")), place) for match, place in found if match)
 
     def xyz(self) -> Doubles:
         """The colours as CIE 1931 X, Y, Z: shape (height, width, 3); a view if the picture has these channels."""

@@ -11,6 +11,8 @@
 
 namespace etendue {
 
+/// Names of channels with a response curve begin with it.
+inline constexpr const char* response_prefix = "response.";
 /// Key of the metadata of an image with bands: their edges [nm], separated by spaces.
 inline constexpr const char* band_edges_key = "band_edges";
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "etendue/core/error.h"
+#include "picture_format.h"
 
 namespace etendue {
 namespace {
@@ -46,7 +47,7 @@ SpectralBands::SpectralBands(std::vector<float> edges) : edges_(std::move(edges)
 SpectralBands::SpectralBands(std::vector<std::string> names, const std::vector<Color>& responses) {
   table_.resize(size_t(table_size) * responses.size());
   for (size_t b = 0; b < responses.size(); ++b) {
-    channels_.push_back("response." + names[b]);
+    channels_.push_back(response_prefix + names[b]);
     const auto at = [&](int i) { return double(responses[b]->at(wavelength_low + float(i), ColorUse::coefficient)); };
     double integral = 0;  // exact for a table that is linear between whole nanometres
     for (int i = 0; i < table_size; ++i) integral += (i == 0 || i + 1 == table_size ? 0.5 : 1) * at(i);

@@ -9,6 +9,7 @@
 #include "etendue/film/film.h"
 #include "etendue/render/render.h"
 #include "etendue/transport/camera_walk.h"
+#include "film/image_bands.h"
 #include "parallel_schedule.h"
 
 namespace etendue {
@@ -60,7 +61,8 @@ class GuideProcess final : public RenderProcess {
 /// Whether a channel describes the noise of the original picture or holds a part of its light; neither is valid for the
 /// denoised picture.
 bool tells_of_noise(const std::string& channel) {
-  return channel.starts_with("variance.") || channel.starts_with("length_") || channel.starts_with("light.");
+  return channel.starts_with("variance.") || channel.starts_with("length_") || channel.starts_with("light.") ||
+         measures_spectrum(channel);
 }
 
 }  // namespace

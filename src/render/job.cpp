@@ -1,6 +1,7 @@
 #include "etendue/render/job.h"
 
 #include "etendue/transport/light_groups.h"
+#include "film/picture_format.h"
 #include "geometry/rendering_space.h"
 
 namespace etendue {
@@ -34,6 +35,12 @@ namespace {
 template <class T>
 Ref<T> created(const char* name) {
   return ref_cast<T>(Registry::instance().create(name));
+}
+
+/// Renderers that show something else than light make their colours of a few wavelengths: their spectra would mean nothing.
+void require_light(const Renderer& renderer, const ImageBuffer& image) {
+  if (image.format()->bands && renderer.finds() == no_paths)
+    renderer.fail({}, "shows no light, so that there is no spectrum for a SpectralFilm");
 }
 
 }  // namespace
@@ -116,6 +123,7 @@ void Job::prepare() {
   refuse_heterogeneous_media_within(*scene, false);
   camera->set_film(image->width, image->height);
   const LightGroups known(*scene, *image);  // throws Error for an unknown name
+  require_light(*renderer, *image);
 }
 
 void Job::prepare_again() {
@@ -123,6 +131,7 @@ void Job::prepare_again() {
   refuse_heterogeneous_media_within(*scene, false);
   camera->set_film(image->width, image->height);
   const LightGroups known(*scene, *image);
+  require_light(*renderer, *image);
 }
 
 bool Job::rendering_origin_is_stale() const {

@@ -4,6 +4,7 @@
 #include "etendue/describe/color.h"
 #include "etendue/film/image_tools.h"
 #include "etendue/output.h"
+#include "film/image_bands.h"
 
 namespace etendue {
 namespace {
@@ -17,10 +18,13 @@ class ExrOutput final : public Output {
  public:
   static void describe(Description<ExrOutput>& d) {
     d.summary(
-         "OpenEXR: linear values without bounds, the film's layers (light groups as light.NAME.R, .G, .B), and what is known "
+         "OpenEXR: linear values without bounds, the film's layers (light groups as light.NAME.R, .G, .B; the bands of a "
+         "SpectralFilm as S0.405nm, …), and what is known "
          "of the picture as attributes. The "
          "encoding of a tone map is undone, as the format holds linear values by definition.",
-         "Kainz, Bogart & Hess 2004, The OpenEXR image file format")
+         "Kainz, Bogart & Hess 2004, The OpenEXR image file format; Fichet, Pacanowski & Wilkie 2021, An OpenEXR layout for "
+         "spectral "
+         "images")
         .member<&ExrOutput::precision>("precision", "", "of the colours: 16 or 32 bits", choices("half", "float"),
                                        Effect::retone)
         .member<&ExrOutput::color_space>("color_space", "", "the RGB space the colours are written in, or xyz", Effect::retone,
@@ -51,6 +55,7 @@ class ExrOutput final : public Output {
       for (size_t j = 0; j < 2; ++j) (*header.chromaticities)[2 * i + j] = float(space.primaries[i][j]);
     for (size_t j = 0; j < 2; ++j) (*header.chromaticities)[6 + j] = float(space.white[j]);
     header.texts = image.metadata;
+    state_layout(header);
     place(header, image);
 
     std::vector<float> values(size_t(image.width) * size_t(image.height) * kept.size());
@@ -70,6 +75,17 @@ class ExrOutput final : public Output {
   }
 
  private:
+  /// The attributes that the layout for spectral images requires. The unit is the only one that the published reader accepts;
+  /// the values are per nanometre.
+  static void state_layout(ImageHeader& header) {
+    const bool spectral = std::ranges::any_of(header.channels, [](const auto& c) {
+      const std::optional<ImageBand> band = band_of_name(c.name);
+      return band && band->kind == BandKind::emissive;
+    });
+    if (!spectral) return;
+    header.texts["spectralLayoutVersion"] = "1.0";
+    header.texts["emissiveUnits"] = "W.m^-2.sr^-1";
+  }
   /// Converts light groups to the RGB space of the image, so that other programs can add them up.
   static void convert_light_groups(Image& image, const RgbSpace& space) {
     if (space.name == "xyz") return;

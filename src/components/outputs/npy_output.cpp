@@ -1,16 +1,18 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstring>
 
 #include "etendue/film/image_tools.h"
 #include "etendue/output.h"
 #include "files/whole_file.h"
+#include "film/image_bands.h"
 
 namespace etendue {
 namespace {
 
 class NpyOutput final : public Output {
-  bool layers = false;
+  bool layers = false, spectrum = false;
 
  public:
   static void describe(Description<NpyOutput>& d) {
@@ -19,12 +21,17 @@ class NpyOutput final : public Output {
          "mapped picture is turned back into linear X, Y, Z.",
          "NumPy enhancement proposal 1, the .npy format, version 1.0")
         .member<&NpyOutput::layers>("layers", "", "whether the film's layers follow as further values of each pixel",
-                                    Effect::retone);
+                                    Effect::retone)
+        .member<&NpyOutput::spectrum>("spectrum", "",
+                                      "whether the bands of a SpectralFilm are written instead, shape (height, width, bands); "
+                                      "the bands' edges [nm] are then written to a second file, NAME.edges.npy",
+                                      Effect::retone);
   }
   std::string extension() const override { return ".npy"; }
   bool for_display() const override { return false; }
 
   void write_image(const Image& given, const std::string& path) const override {
+    if (spectrum) return write_spectrum(given, path);
     const Image image = convert_color_space(given, "xyz");
     std::vector<size_t> kept;
     for (const char* name : {"X", "Y", "Z"})
@@ -32,9 +39,39 @@ class NpyOutput final : public Output {
     for (size_t c = 0; layers && c < image.channels.size(); ++c)
       if (image.channels[c].find('.') != std::string::npos) kept.push_back(c);
 
+    write_array(path, {size_t(image.height), size_t(image.width), kept.size()}, image, kept);
+  }
+
+ private:
+  /// The bands alone, and their edges in a file of their own.
+  void write_spectrum(const Image& image, const std::string& path) const {
+    std::vector<size_t> kept;
+    for (const ImageBand& band : bands_of(image)) kept.push_back(band.channel);
+    for (size_t c = 0; kept.empty() && c < image.channels.size(); ++c)
+      if (measures_spectrum(image.channels[c])) kept.push_back(c);
+    if (kept.empty())
+      throw Error(
+          fmt::format("cannot write the spectrum to '{}': the picture has none; the image is no SpectralFilm, or the "
+                      "picture was denoised",
+                      path));
+    write_array(path, {size_t(image.height), size_t(image.width), kept.size()}, image, kept);
+    const std::vector<double> edges = band_edges_of(image);
+    if (!edges.empty()) write_array(path.substr(0, path.rfind('.')) + ".edges.npy", {edges.size()}, edges);
+  }
+
+  static void write_array(const std::string& path, const std::vector<size_t>& shape, const Image& image,
+                          const std::vector<size_t>& channels) {
+    std::vector<double> values;
+    values.reserve(shape[0] * shape[1] * shape[2]);
+    for (size_t i = 0; i < image.values.size(); i += image.channels.size())
+      for (const size_t c : channels) values.push_back(image.values[i + c]);
+    write_array(path, shape, values);
+  }
+
+  static void write_array(const std::string& path, const std::vector<size_t>& shape, const std::vector<double>& values) {
     // Magic number, version, length of the text, and the text, padded so that the numbers begin at a multiple of 64 bytes.
-    std::string text = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}, {}), }}", image.height,
-                                   image.width, kept.size());
+    std::string text = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}{}), }}", fmt::join(shape, ", "),
+                                   shape.size() == 1 ? "," : "");
     const size_t header = (10 + text.size() + 1 + 63) / 64 * 64;
     text.resize(header - 10 - 1, ' ');
     text += '\n';
@@ -42,13 +79,8 @@ class NpyOutput final : public Output {
     bytes.insert(bytes.end(), text.begin(), text.end());
 
     static_assert(std::endian::native == std::endian::little, "the numbers are written as they lie in memory");
-    bytes.resize(header + sizeof(double) * kept.size() * size_t(image.width) * size_t(image.height));
-    char* to = bytes.data() + header;
-    for (size_t i = 0; i < image.values.size(); i += image.channels.size())
-      for (const size_t c : kept) {
-        std::memcpy(to, &image.values[i + c], sizeof(double));
-        to += sizeof(double);
-      }
+    bytes.resize(header + sizeof(double) * values.size());
+    std::memcpy(bytes.data() + header, values.data(), sizeof(double) * values.size());
     write_whole_file(path, bytes.data(), bytes.size());
   }
 };

@@ -6,6 +6,7 @@
 
 #include "etendue/core/error.h"
 #include "etendue/describe/color.h"
+#include "film/image_bands.h"
 
 namespace etendue::studio {
 
@@ -34,7 +35,7 @@ std::vector<Group> groups_of(const Image& picture, const std::map<std::string, s
 }
 
 bool of_another_picture(const std::string& channel) {
-  return channel.starts_with("variance.") || channel.starts_with("length_");
+  return channel.starts_with("variance.") || channel.starts_with("length_") || measures_spectrum(channel);
 }
 
 using Matrix = std::array<double, 9>;
