@@ -26,6 +26,7 @@ void add_image_command(Command& program);
 void add_verify_command(Command& program);
 void add_compare_command(Command& program);
 void add_conform_command(Command& program);
+void add_measure_command(Command& program);
 void add_cluster_command(Command& program);
 void add_studio_command(Command& program);
 

@@ -23,6 +23,7 @@ First steps
   etendue image diff a.exr b.exr                         how much two pictures differ
   etendue verify box.etd                                 whether all algorithms agree on a scene
   etendue compare box.etd --renderers A,B --time 1m      which algorithm is better on a scene, and by how much
+  etendue measure desk.etd                               what a meter reads: lux, W/m2 per band, with errors
   etendue conform Shader                                 whether parts do what their interfaces promise
   etendue cluster submit box.etd --parts 16              renders on the machines of a cluster
   etendue studio box.etd                                 describes, shows and controls a render in the browser
@@ -50,6 +51,7 @@ int run_program(int argument_count, char** arguments) {
   add_verify_command(program);
   add_compare_command(program);
   add_conform_command(program);
+  add_measure_command(program);
   add_cluster_command(program);
   add_studio_command(program);
   return command_line.run(argument_count, arguments);
