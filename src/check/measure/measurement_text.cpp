@@ -17,6 +17,13 @@ std::string text(const Reading& r) {
   return fmt::format("{:.{}g} ± {:.2g}", r.value, int(std::clamp(digits, 2.0, 12.0)), r.error);
 }
 
+/// "W/(m2 sr)" to "W/(m2 sr nm)", "W/m2" to "W/(m2 nm)".
+std::string per_nanometre(const std::string& unit) {
+  if (unit.ends_with(')')) return unit.substr(0, unit.size() - 1) + " nm)";
+  const size_t slash = unit.find('/');
+  return unit.substr(0, slash + 1) + "(" + unit.substr(slash + 1) + " nm)";
+}
+
 nlohmann::ordered_json json(const Reading& r) { return {{"value", r.value}, {"error", r.error}}; }
 
 }  // namespace
@@ -29,8 +36,7 @@ std::string measurement_text(const Measurement& m) {
     out += fmt::format("{:<14} {} {}   ({:g} to {:g} nm)\n", q.name, text(m.total), q.unit, m.bands.front().low,
                        m.bands.back().high);
   if (m.photometric.value > 0) out += fmt::format("{:<14} x {}, y {}   (CIE 1931)\n", "chromaticity", text(m.x), text(m.y));
-  out += fmt::format("\n{:<20} {:>15} {:>15}\n", edges ? "band [nm]" : "response",
-                     q.unit.substr(0, q.unit.rfind(')')) + (q.unit.ends_with(')') ? " nm)" : " nm"), "standard error");
+  out += fmt::format("\n{:<20} {:>15} {:>15}\n", edges ? "band [nm]" : "response", per_nanometre(q.unit), "standard error");
   for (const BandReading& b : m.bands)
     out += fmt::format("{:<20} {:>15.6g} {:>15.2g}\n",
                        edges ? fmt::format("{:g} to {:g}", b.low, b.high) : b.channel.substr(b.channel.find('.') + 1),
