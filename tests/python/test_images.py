@@ -353,3 +353,25 @@ def test_the_wrong_class():
         etendue.Image(np.ones((2, 2, 3)))
     assert isinstance(etendue.Image.from_array(np.ones((2, 2)))._picture, _core.Picture)
     assert io.BytesIO(etendue.Image.from_array(np.ones((2, 2))).to_bytes()).read(4) == b"\x89PNG"
+
+
+def test_a_spectral_picture_has_a_spectrum():
+    job = etendue.Job(
+        renderer=etendue.PathTracer(samples=4),
+        image=etendue.SpectralFilm(width=5, height=4, edges=[400, 500.5, 600, 700]),
+        camera=etendue.PerspectiveCamera(**{"from": [0, 0, -4], "to": [0, 0, 0]}),
+        scene=etendue.BruteForceScene(objects=[etendue.Sphere(emission=etendue.DiffuseEmission(radiance=2))]),
+    )
+    image = etendue.render(job, progress=False)
+    assert image.spectrum.shape == (4, 5, 3)
+    assert image.wavelengths.tolist() == [450.25, 550.25, 650]
+    assert image.band_edges.tolist() == [400, 500.5, 600, 700]
+    assert image.spectrum.max() > 0
+    assert (image["S0"] == image.spectrum).all()
+
+
+def test_other_pictures_have_none():
+    image = etendue.Image.from_array(np.zeros((2, 3, 3)))
+    assert len(image.wavelengths) == len(image.band_edges) == 0
+    with pytest.raises(etendue.Error, match="no spectrum"):
+        image.spectrum
