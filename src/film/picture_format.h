@@ -23,6 +23,13 @@ struct PictureFormat {
   static constexpr const char* light_prefix = "light.";
   static constexpr const char* rest_group = "rest";
   static constexpr size_t most_light_groups = 256;
+  /// Layers by light path expression: "path.NAME = EXPRESSION" in ImageBuffer::layers.
+  struct PathLayer {
+    std::string name, expression;
+    bool operator==(const PathLayer&) const = default;
+  };
+  std::vector<PathLayer> path_layers;
+  static constexpr const char* path_prefix = "path.";
 
   /// The filter tabulated over one quadrant, weight at ((i + 0.5) / table_size * radius).
   static constexpr int table_size = 64;
@@ -40,8 +47,8 @@ struct PictureFormat {
   std::vector<Integral> shares;  ///< over the pixels around its own, one quadrant of (filter_reach + 1)^2 pixels
   Integral whole;                ///< over all pixels
 
-  /// Parts of the light that are stored besides the whole: by path length, then by group.
-  size_t parts() const { return size_t(path_lengths) + light_groups.size(); }
+  /// Parts of the light that are stored besides the whole: by path length, then by group, then by expression.
+  size_t parts() const { return size_t(path_lengths) + light_groups.size() + path_layers.size(); }
   size_t pixels() const { return size_t(area.width()) * size_t(area.height()); }
   size_t index(int x, int y) const { return size_t(y - area.y0) * size_t(area.width()) + size_t(x - area.x0); }
   /// Pixels to each side that a sample anywhere in a pixel may contribute to: a sample at the edge of its pixel lies half a
@@ -59,7 +66,7 @@ struct PictureFormat {
     });
     return sum;
   }
-  /// FNV-1a hash of the filter and the names of light groups: sums with different hashes must not be added.
+  /// FNV-1a hash of the filter, the names of light groups and the expressions: sums with different hashes must not be added.
   std::uint64_t hash() const;
   /// Whether sums collected with one format are valid for the other.
   bool collects_as(const PictureFormat&) const;

@@ -60,7 +60,8 @@ class GuideProcess final : public RenderProcess {
 /// Whether a channel describes the noise of the original picture or holds a part of its light; neither is valid for the
 /// denoised picture.
 bool tells_of_noise(const std::string& channel) {
-  return channel.starts_with("variance.") || channel.starts_with("length_") || channel.starts_with("light.");
+  return channel.starts_with("variance.") || channel.starts_with("length_") || channel.starts_with("light.") ||
+         channel.starts_with("path.");
 }
 
 }  // namespace

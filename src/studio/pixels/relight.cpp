@@ -34,7 +34,7 @@ std::vector<Group> groups_of(const Image& picture, const std::map<std::string, s
 }
 
 bool of_another_picture(const std::string& channel) {
-  return channel.starts_with("variance.") || channel.starts_with("length_");
+  return channel.starts_with("variance.") || channel.starts_with("length_") || channel.starts_with("path.");
 }
 
 using Matrix = std::array<double, 9>;
