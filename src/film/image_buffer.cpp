@@ -34,7 +34,8 @@ PictureFormat::PathLayer path_layer(const ImageBuffer& image, const std::string&
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
   if (made.name.empty() || !plain)
-    image.fail("layers", fmt::format("'path.{}' is no name of a layer: letters, digits, '_' and '-' may follow 'path.'", made.name));
+    image.fail("layers",
+               fmt::format("'path.{}' is no name of a layer: letters, digits, '_' and '-' may follow 'path.'", made.name));
   try {
     PathLabelNames names;
     const PathExpression parsed(made.expression, names);

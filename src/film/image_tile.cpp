@@ -96,8 +96,8 @@ void require_groups(const PictureFormat& format, const Xyz& color, std::span<con
   if (format.light_groups.empty()) return;
   constexpr double rounding = 1e-3;
   Xyz sum{};
-  for (size_t i = size_t(format.path_lengths); i < std::min(parts.size(), size_t(format.path_lengths) + format.light_groups.size());
-       ++i) {
+  for (size_t i = size_t(format.path_lengths);
+       i < std::min(parts.size(), size_t(format.path_lengths) + format.light_groups.size()); ++i) {
     Xyz part;
     BadKind kind;
     if (parts[i].black() || !to_color(parts[i], wavelengths, part, kind)) continue;

@@ -77,8 +77,8 @@ std::uint64_t PictureFormat::hash() const {
 
 bool PictureFormat::collects_as(const PictureFormat& other) const {
   return width == other.width && height == other.height && area == other.area && path_lengths == other.path_lengths &&
-         light_groups == other.light_groups && path_layers == other.path_layers && wants_features == other.wants_features && radius == other.radius &&
-         table == other.table;
+         light_groups == other.light_groups && path_layers == other.path_layers && wants_features == other.wants_features &&
+         radius == other.radius && table == other.table;
 }
 
 }  // namespace etendue

@@ -15,9 +15,10 @@ constexpr size_t most_positions = 1024, most_states = 1024, most_letters = 1024;
 constexpr std::uint64_t most_work = 400'000'000;
 
 [[noreturn]] void too_many(const char* what, size_t most) {
-  throw Error(fmt::format("the light path expressions together need more than {} {}: fewer or simpler ones are needed, with "
-                          "smaller numbers in {{ }}",
-                          most, what));
+  throw Error(
+      fmt::format("the light path expressions together need more than {} {}: fewer or simpler ones are needed, with "
+                  "smaller numbers in {{ }}",
+                  most, what));
 }
 
 /// A set of positions.
@@ -255,7 +256,8 @@ PathAutomaton::PathAutomaton(std::span<const PathExpression> expressions, std::s
     last_.push_back(c.kinds[letter] & path_ends ? backward.number(c.leading(finals, letter)) : State(0));
   for (size_t s = 0; s < backward.sets.size(); ++s)
     for (size_t letter = 0; letter < letters_; ++letter)
-      backward_.push_back(c.kinds[letter] & path_scatterings ? backward.number(c.leading(*backward.sets[s], letter)) : State(0));
+      backward_.push_back(c.kinds[letter] & path_scatterings ? backward.number(c.leading(*backward.sets[s], letter))
+                                                             : State(0));
   backward_states_ = backward.sets.size();
 
   joined_.reserve(forward_states_ * backward_states_);

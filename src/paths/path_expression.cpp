@@ -9,10 +9,10 @@
 namespace etendue {
 namespace {
 
-constexpr PathEvents reflections = bit(PathEvent::diffuse_reflection) | bit(PathEvent::glossy_reflection) |
-                                   bit(PathEvent::specular_reflection);
-constexpr PathEvents transmissions = bit(PathEvent::diffuse_transmission) | bit(PathEvent::glossy_transmission) |
-                                     bit(PathEvent::specular_transmission);
+constexpr PathEvents reflections =
+    bit(PathEvent::diffuse_reflection) | bit(PathEvent::glossy_reflection) | bit(PathEvent::specular_reflection);
+constexpr PathEvents transmissions =
+    bit(PathEvent::diffuse_transmission) | bit(PathEvent::glossy_transmission) | bit(PathEvent::specular_transmission);
 constexpr PathEvents diffuse = bit(PathEvent::diffuse_reflection) | bit(PathEvent::diffuse_transmission);
 constexpr PathEvents glossy = bit(PathEvent::glossy_reflection) | bit(PathEvent::glossy_transmission);
 constexpr PathEvents specular = bit(PathEvent::specular_reflection) | bit(PathEvent::specular_transmission);
@@ -252,7 +252,8 @@ class PathExpressionParser {
     }
     const PathEvents events = part == 0 ? type_of(c) : scattering_of(c);
     if (!events) {
-      if (part == 0 && scattering_of(c)) fail(at_, fmt::format("the type comes before the scattering, as in <R{}> or <.{}>", c, c));
+      if (part == 0 && scattering_of(c))
+        fail(at_, fmt::format("the type comes before the scattering, as in <R{}> or <.{}>", c, c));
       if (part == 1 && type_of(c)) fail(at_, "an event has one type; several are a set, as in <[RT]D>");
       refuse(c);
     }
@@ -308,8 +309,7 @@ class PathExpressionParser {
   }
 
   [[noreturn]] void refuse(char c) const {
-    if (c == 's')
-      fail(at_, "'s' (straight) never occurs: light that passes straight on is no event here, so leave it out");
+    if (c == 's') fail(at_, "'s' (straight) never occurs: light that passes straight on is no event here, so leave it out");
     if (c == '*' || c == '+' || c == '?' || c == '{')
       fail(at_, fmt::format("'{}' repeats nothing: it follows an event, and stands outside of < > and [ ]", c));
     if (c == '|') fail(at_, "before '|' an event is missing");
@@ -326,7 +326,8 @@ class PathExpressionParser {
 
 PathExpression::PathExpression(std::string text, PathLabelNames& names) : text_(std::move(text)) {
   constexpr size_t longest = 10000;
-  if (text_.size() > longest) throw Error(place(text_, longest, fmt::format("an expression has at most {} characters", longest)));
+  if (text_.size() > longest)
+    throw Error(place(text_, longest, fmt::format("an expression has at most {} characters", longest)));
   PathExpressionParser(*this, names).parse();
 }
 

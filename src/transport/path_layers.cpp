@@ -64,9 +64,8 @@ PathLayers::PathLayers(const Scene& scene, const ImageBuffer& image) {
   std::set<PathLabels> others;
   const auto visit = [&](const SceneObject& object, const Shader* shader) {
     const PathLabels own = note(&object.original());
-    for (const Component* part :
-         {static_cast<const Component*>(shader), static_cast<const Component*>(object.emission.get()),
-          static_cast<const Component*>(object.interior.get())})
+    for (const Component* part : {static_cast<const Component*>(shader), static_cast<const Component*>(object.emission.get()),
+                                  static_cast<const Component*>(object.interior.get())})
       others.insert(own | note(part));
     others.insert(own);
   };

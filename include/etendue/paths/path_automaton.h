@@ -8,8 +8,8 @@
 // events have B matches the expressions that have positions in the intersection of F and B. So a path can be cut anywhere, at a
 // connection or a merge, and neither part depends on the other.
 //
-// The states are those that paths can reach: C, then scattering, then one of L, B, O. All are found beforehand, and their number is
-// bounded, so that tracing paths needs no locks and takes the same steps in every thread.
+// The states are those that paths can reach: C, then scattering, then one of L, B, O. All are found beforehand, and their
+// number is bounded, so that tracing paths needs no locks and takes the same steps in every thread.
 
 #include <span>
 

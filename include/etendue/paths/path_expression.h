@@ -80,9 +80,9 @@ class PathExpression {
   };
   struct Node {
     enum class Kind : std::uint8_t { event, sequence, choice, repeated } kind = Kind::sequence;
-    int test = -1;           ///< of an event
+    int test = -1;                ///< of an event
     std::vector<int> parts = {};  ///< indices of nodes
-    int least = 0, most = 0;  ///< of what is repeated; most = -1: any number
+    int least = 0, most = 0;      ///< of what is repeated; most = -1: any number
   };
   const std::vector<Test>& tests() const { return tests_; }
   const std::vector<Node>& nodes() const { return nodes_; }

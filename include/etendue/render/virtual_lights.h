@@ -27,8 +27,8 @@ struct VirtualLight {
   SubpathVertex at;
   int vertices = 0;                        ///< of its subpath, the emitter's vertex and its own included
   const SceneObject* luminaire = nullptr;  ///< the emitter where its subpath began
-  PathState rest = {};  ///< with light path expressions, the backward state of its subpath before it; as for photons, there is a
-                        ///< light for each state of a distribution
+  PathState rest = {};  ///< with light path expressions, the backward state of its subpath before it; as for photons, there is
+                        ///< a light for each state of a distribution
 };
 
 /// The virtual lights of a step, with the memory they refer to.

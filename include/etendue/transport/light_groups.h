@@ -46,8 +46,8 @@ class LightGroups {
   std::shared_ptr<const PathLayers> paths_;
 };
 
-/// The light of a sample in the parts that a film stores: by path length, by group and by light path expression. As long as it exists it collects the
-/// arguments of `report_light` on its thread; if there are several, the newest does.
+/// The light of a sample in the parts that a film stores: by path length, by group and by light path expression. As long as it
+/// exists it collects the arguments of `report_light` on its thread; if there are several, the newest does.
 class LightParts {
  public:
   /// The groups must outlive it.
@@ -61,8 +61,8 @@ class LightParts {
   std::span<Spectrum> lengths();
   /// For ImageTile::contribute.
   std::span<const Spectrum> all() const;
-  /// Throws Error if expressions are wanted, and the light that was reported with its path is not the whole value of the sample:
-  /// a renderer that reports only a part would make layers that are too dark.
+  /// Throws Error if expressions are wanted, and the light that was reported with its path is not the whole value of the
+  /// sample: a renderer that reports only a part would make layers that are too dark.
   void require_all(const Spectrum& value, const Wavelengths&) const;
 
   /// Light with what a film must know of it.
@@ -85,9 +85,8 @@ class LightParts {
     if (!collecting_) return visit(SplatLabel{length}, light);
     const int group = collecting_->groups_.count() > 0 ? collecting_->groups_.of(luminaire) : -1;
     if (collecting_->groups_.paths().count() == 0 || !matches.known()) return visit(SplatLabel{length, group}, light);
-    collecting_->states_.each(matches, light, [&](std::uint32_t set, const Spectrum& part) {
-      visit(SplatLabel{length, group, set}, part);
-    });
+    collecting_->states_.each(matches, light,
+                              [&](std::uint32_t set, const Spectrum& part) { visit(SplatLabel{length, group, set}, part); });
   }
   /// The number for Splat::length.
   static int packed(const SplatLabel& label) { return label.packed(collecting_ ? size_t(collecting_->groups_.count()) : 0); }

@@ -5,12 +5,12 @@
 // on by a forward state, from the emitter on by a backward state. Where an algorithm has a whole path, the two give the set of
 // expressions that it matches.
 //
-// A surface may scatter the same pair of directions both diffusely and glossily, f = f_D + f_G. Such an event is D with the weight
-// f_D / f and G with the weight f_G / f, for each wavelength: an algorithm that evaluates f (next event estimation, connections,
-// merging) has sampled no lobe, and one that samples a lobe divides by the pdf of all. So the state of a path is a distribution: a
-// list of states, each with the part of the light that belongs to it. The parts add up to 1, so the layers of expressions that
-// divide all paths add up to the picture. With one kind of smooth lobe at each vertex there is one state, and nothing is
-// evaluated.
+// A surface may scatter the same pair of directions both diffusely and glossily, f = f_D + f_G. Such an event is D with the
+// weight f_D / f and G with the weight f_G / f, for each wavelength: an algorithm that evaluates f (next event estimation,
+// connections, merging) has sampled no lobe, and one that samples a lobe divides by the pdf of all. So the state of a path is a
+// distribution: a list of states, each with the part of the light that belongs to it. The parts add up to 1, so the layers of
+// expressions that divide all paths add up to the picture. With one kind of smooth lobe at each vertex there is one state, and
+// nothing is evaluated.
 
 #include <cstdint>
 #include <memory>

@@ -5,8 +5,8 @@
 
 #include "etendue/transport/boundaries.h"
 #include "etendue/transport/light_groups.h"
-#include "etendue/transport/path_vertex.h"
 #include "etendue/transport/medium.h"
+#include "etendue/transport/path_vertex.h"
 #include "etendue/transport/sample_context.h"
 #include "etendue/transport/scattering.h"
 
@@ -79,9 +79,9 @@ struct RayBranch {
   Spectrum throughput{1.0f};
   Wavelengths wavelengths;
   MediumStack media = {};
-  bool tracked = false;  ///< whether media are tracked
-  int depth = 1;         ///< segments from the camera to the ray's end
-  int crossings = 0;     ///< consecutive null scatterings
+  bool tracked = false;                ///< whether media are tracked
+  int depth = 1;                       ///< segments from the camera to the ray's end
+  int crossings = 0;                   ///< consecutive null scatterings
   PathState path = path_after_camera;  ///< with light path expressions: of the branch up to the surface at its end
 
   /// The same with the scattering of light there from `in`, by the lobe if it is specular, else by the smooth ones of `lobes`.

@@ -17,7 +17,8 @@ class ExrOutput final : public Output {
  public:
   static void describe(Description<ExrOutput>& d) {
     d.summary(
-         "OpenEXR: linear values without bounds, the film's layers (light groups as light.NAME.R, .G, .B, light path expressions as path.NAME.R), and what is known "
+         "OpenEXR: linear values without bounds, the film's layers (light groups as light.NAME.R, .G, .B, light path "
+         "expressions as path.NAME.R), and what is known "
          "of the picture as attributes. The "
          "encoding of a tone map is undone, as the format holds linear values by definition.",
          "Kainz, Bogart & Hess 2004, The OpenEXR image file format")
@@ -70,7 +71,8 @@ class ExrOutput final : public Output {
   }
 
  private:
-  /// Converts light groups and layers by light path expression to the RGB space of the image, so that other programs can add them up.
+  /// Converts light groups and layers by light path expression to the RGB space of the image, so that other programs can add
+  /// them up.
   static void convert_parts(Image& image, const RgbSpace& space) {
     if (space.name == "xyz") return;
     const auto is = [&](size_t c, const char* end) {

@@ -140,7 +140,8 @@ class DirectRenderer final : public Renderer {
     return straight->weight;
   }
 
-  /// Calls `add(light, luminaire, in, lobe)` for the light scattered towards `out`, found by luminaire samples; by_shader by directions.
+  /// Calls `add(light, luminaire, in, lobe)` for the light scattered towards `out`, found by luminaire samples; by_shader by
+  /// directions.
   template <class Add>
   void by_luminaires(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const Scatter& scatter,
                      const Add& add) const {
@@ -197,7 +198,8 @@ class DirectRenderer final : public Renderer {
         if (!meet_surface(scene, ray, around, hit, met)) {
           for (const SceneObject* far : scene.infinite_luminaires(ray)) {
             far->surface_point(ray, hit, met);
-            add(throughput * far->emission->radiance(met, -ray.direction, wavelengths) * weight(met), far, next->direction, next->lobe);
+            add(throughput * far->emission->radiance(met, -ray.direction, wavelengths) * weight(met), far, next->direction,
+                next->lobe);
           }
           break;
         }

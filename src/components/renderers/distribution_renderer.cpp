@@ -257,8 +257,7 @@ class DistributionRenderer final : public Renderer {
       const Spectrum direct = branch.throughput * (f * light.radiance *
                                                    shadow_transmittance(tree.scene, light.shadow, nullptr, branch.wavelengths,
                                                                         sample.numbers, sample.arena));
-      tree.add(branch.depth + 1, direct, chosen.luminaire,
-               branch.path_after(place.point, place.scatter, light.direction));
+      tree.add(branch.depth + 1, direct, chosen.luminaire, branch.path_after(place.point, place.scatter, light.direction));
       sum += direct;
     }
     return sum;

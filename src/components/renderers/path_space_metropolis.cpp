@@ -73,7 +73,11 @@ constexpr int direct_length = MutatedPaths::direct_length;
 class PathSpaceProcess final : public RenderProcess, Chains {
  public:
   PathSpaceProcess(const PathSpaceMetropolis& r, const RenderContext& c, Ref<Renderer> direct)
-      : RenderProcess(r, c), settings_(r), direct_renderer_(std::move(direct)), direct_(direct_renderer_->start(c)), groups_(c.scene, c.image) {
+      : RenderProcess(r, c),
+        settings_(r),
+        direct_renderer_(std::move(direct)),
+        direct_(direct_renderer_->start(c)),
+        groups_(c.scene, c.image) {
     require_mutable(c.wavelengths, r);
     if (!c.image.crop.empty()) r.fail({}, "renders whole pictures, no crops");
     if (c.camera.parallel()) r.fail({}, "needs a camera that sees from a place, and not by parallel rays");
@@ -188,7 +192,8 @@ class PathSpaceProcess final : public RenderProcess, Chains {
     const ArenaScope memory(arena);
     const double all = begun(space, arena, choices, y, F);
     const double own = luminance(F);
-    for (Contribution::Brightness& part : F.luminances) part.luminance = own > 0 ? float(all * (double(part.luminance) / own)) : 0;
+    for (Contribution::Brightness& part : F.luminances)
+      part.luminance = own > 0 ? float(all * (double(part.luminance) / own)) : 0;
   }
 
   void run(std::uint64_t first, std::uint64_t own_seed, std::uint64_t states, const StateWeights& weights, const FilmWeights& v,
