@@ -191,9 +191,12 @@ void Film::add_splats(const ImageTile& tile) {
       at[1] += value.y;
       at[2] += value.z;
     };
-    const SplatLabel label = SplatLabel::unpacked(splat.length);
+    const SplatLabel label = SplatLabel::unpacked(splat.length, format.light_groups.size());
     if (label.length >= 1 && format.path_lengths > 0) add_part(size_t(std::min(label.length, format.path_lengths)) - 1);
     if (label.group >= 0) add_part(size_t(format.path_lengths) + size_t(label.group));
+    if (label.matches != SplatLabel::unknown)
+      for (size_t i = 0; i < format.path_layers.size(); ++i)
+        if (label.matches & (1u << i)) add_part(size_t(format.path_lengths) + format.light_groups.size() + i);
   };
   constexpr int size = PictureFormat::table_size;
   const double* lights = tile.parts_.data() + pixel_values(format, tile.extent_);

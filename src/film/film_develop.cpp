@@ -43,6 +43,8 @@ std::vector<Layer> add_layers(const PictureFormat& format, std::vector<std::stri
     for (const char* part : {".X", ".Y", ".Z"}) channels.push_back("length_" + std::to_string(length) + part);
   for (const std::string& group : format.light_groups)
     for (const char* part : {".X", ".Y", ".Z"}) channels.push_back(PictureFormat::light_prefix + group + part);
+  for (const PictureFormat::PathLayer& layer : format.path_layers)
+    for (const char* part : {".X", ".Y", ".Z"}) channels.push_back(PictureFormat::path_prefix + layer.name + part);
   if (format.bands) channels.insert(channels.end(), format.bands->channels().begin(), format.bands->channels().end());
   return layers;
 }

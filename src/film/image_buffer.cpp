@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "etendue/film/splat_label.h"
+#include "etendue/paths/path_expression.h"
 #include "filter_window.h"
 #include "picture_format.h"
 #include "pixel_area.h"
@@ -17,10 +19,37 @@ const std::vector<std::string>& known_layers() {
   return names;
 }
 
-/// The known layers, and a pattern for light groups of any name.
+/// The parts of "path.NAME = EXPRESSION". Throws Error at the image if it is not like this.
+PictureFormat::PathLayer path_layer(const ImageBuffer& image, const std::string& layer) {
+  const auto trimmed = [](std::string_view s) {
+    const size_t first = s.find_first_not_of(' '), last = s.find_last_not_of(' ');
+    return first == s.npos ? std::string() : std::string(s.substr(first, last - first + 1));
+  };
+  const size_t prefix = std::string_view(PictureFormat::path_prefix).size(), equals = layer.find('=');
+  if (equals == layer.npos)
+    image.fail("layers", fmt::format("'{}' needs a name and a light path expression, as in 'path.caustics = C<RD>S+L'", layer));
+  PictureFormat::PathLayer made{trimmed(std::string_view(layer).substr(prefix, equals - prefix)),
+                                trimmed(std::string_view(layer).substr(equals + 1))};
+  const bool plain = std::ranges::all_of(made.name, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+  if (made.name.empty() || !plain)
+    image.fail("layers",
+               fmt::format("'path.{}' is no name of a layer: letters, digits, '_' and '-' may follow 'path.'", made.name));
+  try {
+    PathLabelNames names;
+    const PathExpression parsed(made.expression, names);
+  } catch (const Error& e) {
+    image.fail("layers", fmt::format("path.{}: {}", made.name, e.what()));
+  }
+  return made;
+}
+
+/// The known layers, and patterns for light groups and light path expressions of any name.
 std::vector<std::string> offered_layers() {
   std::vector<std::string> names = known_layers();
   names.push_back(PictureFormat::light_prefix + std::string("…"));
+  names.push_back(PictureFormat::path_prefix + std::string("…"));
   return names;
 }
 
@@ -38,7 +67,9 @@ void ImageBuffer::describe(Description<ImageBuffer>& d) {
                                     "further channels: of albedo, normal, depth, object (what camera paths meet first), "
                                     "variance (of the mean of Y), samples (per pixel); light.NAME for the light of the "
                                     "luminaires of which the object or the emission has this name, light.NAME+NAME for that "
-                                    "of several together, and then light.rest for all other light",
+                                    "of several together, and then light.rest for all other light; 'path.NAME = EXPRESSION' "
+                                    "for the light whose paths match a light path expression, as in 'path.caustics = "
+                                    "C<RD>S+L'",
                                     offered_layers())
       .member<&ImageBuffer::path_lengths>("path_lengths", "1",
                                           "further channels length_1.X, … by the number of segments of the paths that "
@@ -73,9 +104,12 @@ void ImageBuffer::prepare() {
                                crop[2], crop[3], width, height));
   }
   std::vector<std::string> light_groups;
+  std::vector<PictureFormat::PathLayer> path_layers;
   for (size_t i = 0; i < layers.size(); ++i) {
     if (layers[i].starts_with(PictureFormat::light_prefix))
       light_groups.push_back(layers[i].substr(std::string_view(PictureFormat::light_prefix).size()));
+    else if (layers[i].starts_with(PictureFormat::path_prefix))
+      path_layers.push_back(path_layer(*this, layers[i]));
     else if (std::find(known_layers().begin(), known_layers().end(), layers[i]) == known_layers().end())
       fail("layers", fmt::format("no layer is called '{}'{}", layers[i], suggestion(layers[i], known_layers())));
     if (std::find(layers.begin(), layers.begin() + std::ptrdiff_t(i), layers[i]) != layers.begin() + std::ptrdiff_t(i))
@@ -90,6 +124,14 @@ void ImageBuffer::prepare() {
     fail("layers",
          fmt::format("there may be {} light groups, not {}", PictureFormat::most_light_groups - 1, light_groups.size()));
   if (!light_groups.empty()) light_groups.emplace_back(PictureFormat::rest_group);
+
+  for (size_t i = 0; i < path_layers.size(); ++i)
+    for (size_t j = 0; j < i; ++j)
+      if (path_layers[i].name == path_layers[j].name)
+        fail("layers", fmt::format("two layers are called 'path.{}'", path_layers[i].name));
+  if (const size_t most = SplatLabel::most_expressions(light_groups.size()); path_layers.size() > most)
+    fail("layers", fmt::format("there may be {} light path expressions{}, not {}", most,
+                               light_groups.empty() ? "" : " beside so many light groups", path_layers.size()));
 
   if (!filter) fail("filter", "is missing");
   const float radius = filter->radius();
@@ -117,6 +159,7 @@ void ImageBuffer::prepare() {
   format.wants_features = wants("albedo") || wants("normal") || wants("depth") || wants("object");
   format.path_lengths = path_lengths;
   format.light_groups = std::move(light_groups);
+  format.path_layers = std::move(path_layers);
   if (const auto* spectral = dynamic_cast<const HasBands*>(this)) format.bands = spectral->make_bands();
   format.set_filter(std::move(table), radius);
   format.sampled_area = intersection(widened(area, format.reach()), {0, 0, width, height});

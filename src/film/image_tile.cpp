@@ -84,6 +84,12 @@ bool regular(const Spectrum& s) {
       "cannot be kept");
 }
 
+[[noreturn]] void refuse_paths() {
+  throw Error(
+      "this renderer does not tell by which paths its light comes, so that layers by light path expressions ('path.…' of the "
+      "image) cannot be kept");
+}
+
 /// Throws Error if light groups are wanted and those of a sample do not add up to its colour: a renderer that reports only a
 /// part of its light by group, or none, would make layers that are too dark.
 void require_groups(const PictureFormat& format, const Xyz& color, std::span<const Spectrum> parts,
@@ -91,7 +97,8 @@ void require_groups(const PictureFormat& format, const Xyz& color, std::span<con
   if (format.light_groups.empty()) return;
   constexpr double rounding = 1e-3;
   Xyz sum{};
-  for (size_t i = size_t(format.path_lengths); i < parts.size(); ++i) {
+  for (size_t i = size_t(format.path_lengths);
+       i < std::min(parts.size(), size_t(format.path_lengths) + format.light_groups.size()); ++i) {
     Xyz part;
     BadKind kind;
     if (parts[i].black() || !to_color(parts[i], wavelengths, part, kind)) continue;
@@ -280,7 +287,11 @@ void ImageTile::splat(Point2 film, int px, int py, std::uint32_t sample, const S
   BadKind kind = BadKind::not_a_number;
   if (!to_color(value, wavelengths, color, kind)) [[unlikely]]
     return note({px, py, sample, kind});
-  if (!format_->light_groups.empty() && SplatLabel::unpacked(length).group < 0) refuse_groups();
+  if (!format_->light_groups.empty() || !format_->path_layers.empty()) [[unlikely]] {
+    const SplatLabel label = SplatLabel::unpacked(length, format_->light_groups.size());
+    if (!format_->light_groups.empty() && label.group < 0) refuse_groups();
+    if (!format_->path_layers.empty() && label.matches == SplatLabel::unknown) refuse_paths();
+  }
   const bool same = splat_path_.x == px && splat_path_.y == py && splat_path_.sample == sample;
   splat_path_ = {px, py, sample};
   splats_.push_back({film, color, length, same});

@@ -63,9 +63,14 @@ std::uint64_t PictureFormat::hash() const {
   const auto add = [&](std::uint32_t bits) { h = (h ^ bits) * 0x100000001b3ull; };
   add(std::bit_cast<std::uint32_t>(radius));
   for (const float w : table) add(std::bit_cast<std::uint32_t>(w));
-  for (const std::string& name : light_groups) {
-    add(std::uint32_t(name.size()));
-    for (const char c : name) add(std::uint32_t(static_cast<unsigned char>(c)));
+  const auto add_text = [&](const std::string& text) {
+    add(std::uint32_t(text.size()));
+    for (const char c : text) add(std::uint32_t(static_cast<unsigned char>(c)));
+  };
+  for (const std::string& name : light_groups) add_text(name);
+  for (const PathLayer& layer : path_layers) {
+    add_text(PictureFormat::path_prefix + layer.name);
+    add_text(layer.expression);
   }
   if (bands)
     for (const char c : bands->key()) add(std::uint32_t(static_cast<unsigned char>(c)));
@@ -74,8 +79,9 @@ std::uint64_t PictureFormat::hash() const {
 
 bool PictureFormat::collects_as(const PictureFormat& other) const {
   return width == other.width && height == other.height && area == other.area && path_lengths == other.path_lengths &&
-         light_groups == other.light_groups && (bands ? other.bands && *bands == *other.bands : !other.bands) &&
-         wants_features == other.wants_features && radius == other.radius && table == other.table;
+         light_groups == other.light_groups && path_layers == other.path_layers &&
+         (bands ? other.bands && *bands == *other.bands : !other.bands) && wants_features == other.wants_features &&
+         radius == other.radius && table == other.table;
 }
 
 }  // namespace etendue

@@ -29,6 +29,13 @@ struct PictureFormat {
   static constexpr const char* light_prefix = "light.";
   static constexpr const char* rest_group = "rest";
   static constexpr size_t most_light_groups = 256;
+  /// Layers by light path expression: "path.NAME = EXPRESSION" in ImageBuffer::layers.
+  struct PathLayer {
+    std::string name, expression;
+    bool operator==(const PathLayer&) const = default;
+  };
+  std::vector<PathLayer> path_layers;
+  static constexpr const char* path_prefix = "path.";
   /// The bands of a spectral film. Null: it has none.
   std::shared_ptr<const SpectralBands> bands;
 
@@ -48,8 +55,8 @@ struct PictureFormat {
   std::vector<Integral> shares;  ///< over the pixels around its own, one quadrant of (filter_reach + 1)^2 pixels
   Integral whole;                ///< over all pixels
 
-  /// Parts of the light that are stored besides the whole: by path length, then by group.
-  size_t parts() const { return size_t(path_lengths) + light_groups.size(); }
+  /// Parts of the light that are stored besides the whole: by path length, then by group, then by expression.
+  size_t parts() const { return size_t(path_lengths) + light_groups.size() + path_layers.size(); }
   /// Values that are stored besides the whole, in groups of three: X, Y, Z of each part, then the bands, filled up with zeros.
   size_t triples() const { return parts() + (bands ? (bands->count() + 2) / 3 : 0); }
   size_t pixels() const { return size_t(area.width()) * size_t(area.height()); }
@@ -69,7 +76,8 @@ struct PictureFormat {
     });
     return sum;
   }
-  /// FNV-1a hash of the filter, the names of light groups and the bands: sums with different hashes must not be added.
+  /// FNV-1a hash of the filter, the names of light groups, the expressions and the bands: sums with different hashes must not
+  /// be added.
   std::uint64_t hash() const;
   /// Whether sums collected with one format are valid for the other.
   bool collects_as(const PictureFormat&) const;

@@ -62,7 +62,7 @@ class GuideProcess final : public RenderProcess {
 /// denoised picture.
 bool tells_of_noise(const std::string& channel) {
   return channel.starts_with("variance.") || channel.starts_with("length_") || channel.starts_with("light.") ||
-         measures_spectrum(channel);
+         channel.starts_with("path.") || measures_spectrum(channel);
 }
 
 }  // namespace

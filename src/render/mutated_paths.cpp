@@ -1,5 +1,6 @@
 // MutatedPaths: Markov chains over the primary samples of another process.
 
+#include <algorithm>
 #include <array>
 
 #include "etendue/render/primary_sample_chains.h"
@@ -12,6 +13,7 @@ MutatedPaths::MutatedPaths(const Renderer& r, const RenderContext& c, const Chai
       settings_(settings),
       area_(c.image.sampled_area()),
       lengths_(size_t(std::max(c.image.path_lengths, direct_length + 1))),
+      groups_(c.scene, c.image),
       held_(std::move(held)),
       paths_(std::move(paths)),
       direct_(std::move(direct)) {
@@ -44,9 +46,21 @@ Spectrum MutatedPaths::radiance(const Ray& ray, SampleContext& sample) const {
                     sample.numbers,
                     sample.arena,
                     {.features = sample.sink.features, .lengths = lengths, .splats = &splats, .abort = sample.sink.abort}};
-  direct_->radiance(ray, own);
+  if (groups_.any()) {
+    std::vector<LightParts::Labelled> labelled;
+    {
+      LightParts parts(context.image, groups_);
+      parts.keep_labelled();
+      direct_->radiance(ray, own);
+      labelled.assign(parts.labelled().begin(), parts.labelled().end());
+    }
+    for (const LightParts::Labelled& part : labelled)
+      if (is_direct(part.label.length)) LightParts::add(part);
+  } else {
+    direct_->radiance(ray, own);
+  }
   for (const Splat& s : splats)
-    if (is_direct(s.length)) sample.sink.splat(s.film, s.value, s.wavelengths, s.length);
+    if (is_direct(length_of(s))) sample.sink.splat(s.film, s.value, s.wavelengths, s.length);
   Spectrum light;
   for (int length = 1; length <= direct_length; ++length) {
     light += lengths[size_t(length - 1)];
@@ -59,6 +73,22 @@ CameraSample MutatedPaths::sample(int, int, std::uint32_t, Arena&, const PathSin
   renderer.fail({}, "its samples are mutations of one another: none belongs to a pixel, and none can be replayed by itself");
 }
 
+void MutatedPaths::add_labelled(const LightParts& parts, const CameraSample& s, float share, Contribution& f) const {
+  parts.require_all(s.value, s.wavelengths);
+  static thread_local std::vector<std::pair<int, Spectrum>> sums;
+  sums.clear();
+  for (const LightParts::Labelled& part : parts.labelled()) {
+    if (is_direct(part.label.length)) continue;
+    const int label = LightParts::packed(part.label);
+    const auto same = std::ranges::find(sums, label, &std::pair<int, Spectrum>::first);
+    if (same == sums.end())
+      sums.emplace_back(label, part.light);
+    else
+      same->second += part.light;
+  }
+  for (const auto& [label, light] : sums) f.add({s.film, light * share, s.wavelengths, label}, area_);
+}
+
 void MutatedPaths::evaluate(const NumberSource& numbers, Arena& arena, const std::atomic<bool>* abort, Contribution& f) const {
   static thread_local std::vector<Splat> splats;
   static thread_local std::vector<Spectrum> lengths;
@@ -66,22 +96,25 @@ void MutatedPaths::evaluate(const NumberSource& numbers, Arena& arena, const std
   lengths.assign(lengths_, {});
   f.clear();
   const PathSink sink{.lengths = lengths, .splats = &splats, .abort = abort};
+  std::optional<LightParts> parts;
+  if (groups_.any()) parts.emplace(context.image, groups_).keep_labelled();
   const CameraSample s = paths_->path(area_, numbers, {}, arena, sink);
   // The contribution of one path to the mean over the whole film, when all paths go through a crop of it.
   const auto share =
       float(double(area_.width()) * area_.height() / (double(context.image.width) * double(context.image.height)));
   const auto add = [&](const Spectrum& light, int length) { f.add({s.film, light * share, s.wavelengths, length}, area_); };
+  if (parts) add_labelled(*parts, s, share, f);
   Spectrum told;
-  for (size_t i = 0; i < lengths.size(); ++i) {
+  for (size_t i = 0; !parts && i < lengths.size(); ++i) {
     told += lengths[i];
     if (!is_direct(int(i) + 1)) add(lengths[i], int(i) + 1);
   }
   // Light whose path length the process does not report is carried by the chains completely. Smaller differences are rounding
   // errors.
   const Spectrum untold = s.value + told * -1.0f;
-  if (untold.maximum() > 1e-4f * s.value.maximum()) add(untold, 0);
+  if (!parts && untold.maximum() > 1e-4f * s.value.maximum()) add(untold, 0);
   for (const Splat& splat : splats)
-    if (!is_direct(splat.length) && area_.contains(int(std::floor(splat.film.x)), int(std::floor(splat.film.y))))
+    if (!is_direct(length_of(splat)) && area_.contains(int(std::floor(splat.film.x)), int(std::floor(splat.film.y))))
       f.add(splat, area_);
 }
 

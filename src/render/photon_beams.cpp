@@ -58,6 +58,15 @@ struct BeamEvents final : SegmentEvents {
     beam.hero_only = wavelengths.single();
     beam.caustic = caustic;
     beam.luminaire = walk[0].point.object->luminaire_index();
+    if (const PathStates* const states = PathStates::current()) [[unlikely]] {
+      const PhotonBeam whole = beam;
+      beams.pop_back();
+      states->each(walk.back().path, whole.throughput, [&](std::uint32_t state, const Spectrum& part) {
+        beams.push_back(whole);
+        beams.back().state = std::uint16_t(state);
+        beams.back().throughput = part;
+      });
+    }
   }
 };
 
@@ -66,8 +75,10 @@ struct BeamEvents final : SegmentEvents {
 void BeamWalks::operator()(std::uint64_t item, std::vector<PhotonBeam>& beams, Arena& arena) const {
   std::vector<SubpathVertex> walk;
   EmittedLight light;
+  PathStates states(walks.groups ? &walks.groups->paths() : nullptr);
   for (std::uint64_t n = item * item_size; n < std::min(walks.walks, (item + 1) * item_size); ++n) {
     const ArenaScope memory(arena);
+    states.clear();
     Wavelengths w = walks.wavelengths;
     const NumberStream numbers(walks.numbers,
                                SampleKey(walks.context.seed, -8 - int(walks.kinds), int(walks.step), std::uint32_t(n)));

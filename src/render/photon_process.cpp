@@ -47,6 +47,8 @@ PhotonWalks PhotonProcess::walks(const Schedule& schedule, const Step& step, con
 
 PhotonProcess::Photons PhotonProcess::make_photons(Schedule& schedule, const Step& step, const Request& request) const {
   PhotonWalks walks = this->walks(schedule, step, request);
+  const LightGroups groups(context.scene, context.image);
+  walks.groups = &groups;
   walks.kept = chance_to_keep(walks, request.most,
                               [&](const PhotonWalks& some) { return schedule.collect<Photon>(some.items(), some).size(); });
 
@@ -85,6 +87,8 @@ ShownPhotons PhotonProcess::some_of(std::initializer_list<const Photons*> maps, 
 
 PhotonProcess::Beams PhotonProcess::make_beams(Schedule& schedule, const Step& step, const Request& request) const {
   BeamWalks of{walks(schedule, step, request)};
+  const LightGroups groups(context.scene, context.image);
+  of.walks.groups = &groups;
   of.walks.kept = chance_to_keep(of.walks, request.most, [&](const PhotonWalks& some) {
     const BeamWalks few{some};
     return schedule.collect_everywhere<PhotonBeam>(few.items(), few).size();

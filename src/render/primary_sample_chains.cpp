@@ -3,7 +3,6 @@
 #include <array>
 
 #include "etendue/transport/primary_sample_vectors.h"
-#include "film/picture_format.h"
 
 namespace etendue {
 namespace {
@@ -109,10 +108,6 @@ void mutate_primary_samples(Schedule& schedule, const ImageBuffer& image, const 
 
 void run_chains(Schedule& schedule, const ImageBuffer& image, const ChainSettings& settings, const Chains& chains,
                 std::uint64_t seed, std::uint64_t paths, bool count_paths) {
-  if (!image.format()->light_groups.empty())
-    image.fail("layers",
-               "Markov chains do not record which luminaires their light comes from, so light groups are not supported; other "
-               "renderers, such as BidirectionalPathTracer, support them");
   const std::uint64_t mutations = paths * std::uint64_t(settings.mutations);
   // Half of the chains start with paths of one pool, the other half with paths of the other pool. Each half takes its weights v
   // and b from the other half's pool, so that they are independent of the paths they weight.

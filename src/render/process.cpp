@@ -93,6 +93,7 @@ RenderProcess::PathWork RenderProcess::path_work(const Schedule& schedule, const
           parts.clear();
           const CameraSample s = path({x, y, x + 1, y + 1}, *renderer.sampler, key, arena, sink);
           tile.count_path();
+          parts.require_all(s.value, s.wavelengths);
           tile.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, 1, parts.all());
           for (const Splat& splat : splats)
             tile.splat(splat.film, x, y, key.sample, splat.value, splat.wavelengths, splat.length);

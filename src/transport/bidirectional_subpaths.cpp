@@ -36,8 +36,12 @@ void BidirectionalSubpaths::from_camera(const Ray& ray, const SubpathLimits& lim
     BidirectionalSubpaths& paths;
     explicit Emission(BidirectionalSubpaths& p) : paths(p) {}
     void emitted(int length, const Spectrum& light) override {
-      paths.segment_emission_.push_back({0, length + 1, false, light});
+      PathContribution found{0, length + 1, false, light};
+      if (PathStates* const states = PathStates::current())
+        found.matches = states->ended(paths.camera_.back().path, nullptr, paths.emitting_.object);
+      paths.segment_emission_.push_back(found);
     }
+    void through(const Medium& medium, const Ray&, float, const Spectrum&) override { paths.emitting_ = medium; }
     void crossed_luminaire() override { paths.add_emitter_hits(paths.camera_vertices(), paths.segment_emission_); }
   } emission(*this);
   directions_ = limits.directions;
@@ -59,6 +63,14 @@ bool BidirectionalSubpaths::has_specular_prefix(int t) const {
   for (int i = 2; i < t; ++i)
     if (!camera_vertex(i).leaves_specularly) return false;
   return true;
+}
+
+PathState BidirectionalSubpaths::path_from_camera(int t, const Vector3& in) const {
+  return PathStates::current()->scattered(camera_vertex(t - 1).path, camera_vertex(t), in);
+}
+
+PathState BidirectionalSubpaths::path_from_luminaire(int s, const Vector3& on) const {
+  return PathStates::current()->scattered_before(light_vertex(s - 1).path, light_vertex(s), on);
 }
 
 std::span<const PathContribution> BidirectionalSubpaths::emitter_hits(int t) const {
@@ -101,6 +113,8 @@ void BidirectionalSubpaths::add_emitter_hit(const SubpathVertex& z, const Surfac
         vertex_pdf(x0.infinite ? 1 : point.object->emission->pdf(point, z.out), x0, x1, z.out, z.mean_transmittance, front_);
     if (path.pdf_emission_origin > 0) found.weight = bidirectional_weight(path, weights_.heuristic);
   }
+  if (PathStates* const states = PathStates::current()) [[unlikely]]
+    found.matches = states->ended(camera_vertex(t - 1).path, point.object);
   hits.push_back(found);
 }
 
@@ -110,6 +124,8 @@ std::optional<PathContribution> BidirectionalSubpaths::next_event(int t) const {
   const auto c = connect_to_luminaire(context_.scene, lights_, z, sample_.wavelengths, numbers, sample_.arena);
   if (!c) return {};
   PathContribution found{1, t, false, c->light, c->luminaire.point.object};
+  if (PathStates* const states = PathStates::current()) [[unlikely]]
+    found.matches = states->ended(path_from_camera(t, c->direction), found.luminaire);
   if (weights_.weighted) {
     const SubpathVertex& x0 = c->luminaire;
     ConnectedPath path{&x0, 1, camera_.data(), t, 0, 0, 0, 0, 0, 0, !c->delta, weights_.merging};
@@ -131,6 +147,8 @@ std::optional<PathContribution> BidirectionalSubpaths::connect(int s, int t) con
   const auto c = etendue::connect(context_.scene, y, z, sample_.wavelengths, numbers, sample_.arena);
   if (!c) return {};
   PathContribution found{s, t, false, c->light, light_[0].point.object};
+  if (PathStates* const states = PathStates::current()) [[unlikely]]
+    found.matches = states->joined(path_from_camera(t, c->direction), path_from_luminaire(s, -c->direction));
   if (weights_.weighted) {
     ConnectedPath path{light_.data(),
                        s,
@@ -160,6 +178,8 @@ std::optional<PathContribution> BidirectionalSubpaths::connect_to_lens(int s) co
   const auto c = etendue::connect_to_lens(context_, y, light_wavelengths_, numbers, sample_.arena);
   if (!c) return {};
   PathContribution found{s, 1, false, c->light, light_[0].point.object, 1, c->lens.film};
+  if (PathStates* const states = PathStates::current()) [[unlikely]]
+    found.matches = states->joined(path_after_camera, s == 1 ? y.path : path_from_luminaire(s, c->lens.direction));
   if (weights_.weighted) found.weight = lens_weight(s, *c);
   return found;
 }
@@ -190,6 +210,8 @@ std::optional<PathContribution> BidirectionalSubpaths::merge(const Photon& photo
   const Spectrum scattered = scattered_from_photon(z, photon, {sample_.wavelengths, z.hero_only});
   if (scattered.black()) return {};
   PathContribution found{int(photon.vertices), t, true, z.throughput * scattered / float(merging), photon.from(context_.scene)};
+  if (PathStates* const states = PathStates::current()) [[unlikely]]
+    found.matches = states->joined(path_from_camera(t, photon.out), photon.path());
   if (weights_.weighted) {
     ConnectedPath path{nullptr, int(photon.vertices), camera_.data(), t, 0, 0, photon.weight.pdf_forward, 0, 0, 0,
                        true,    weights_.merging};
@@ -220,10 +242,10 @@ void add_contribution(SampleContext& sample, const Wavelengths& of_light, const 
   const Spectrum light = found.light * found.weight;
   const bool splat = found.t == 1;
   if (splat) {
-    splat_light(sample, found.film, light, of_light, found.length(), found.luminaire);
+    splat_light(sample, found.film, light, of_light, found.length(), found.luminaire, found.matches);
   } else {
     radiance += light;
-    report_light(sample.sink, found.length(), light, found.luminaire);
+    report_light(sample.sink, found.length(), light, found.luminaire, found.matches);
   }
   if (PathRecord* record = sample.sink.record) [[unlikely]]
     record->contribute({std::to_string(found.s) + " from the luminaire, " + std::to_string(found.t) + " from the camera" +

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -45,11 +47,10 @@ std::vector<std::string> names_in(const std::string& group, const std::set<std::
   image.fail("layers", fmt::format("no luminaire and no emission is called '{}'{}", name, suggestion(name, all)));
 }
 
-thread_local LightParts* collecting = nullptr;
-
 }  // namespace
 
-LightGroups::LightGroups(const Scene& scene, const ImageBuffer& image) {
+LightGroups::LightGroups(const Scene& scene, const ImageBuffer& image)
+    : paths_(std::make_shared<const PathLayers>(scene, image)) {
   const std::vector<std::string>& wanted = image.format()->light_groups;
   if (wanted.empty()) return;
   count_ = int(wanted.size());
@@ -70,35 +71,68 @@ LightGroups::LightGroups(const Scene& scene, const ImageBuffer& image) {
   }
 }
 
+thread_local constinit LightParts* LightParts::collecting_ = nullptr;
+
 LightParts::LightParts(const ImageBuffer& image, const LightGroups& groups)
-    : groups_(groups), lengths_(size_t(image.path_lengths)), before_(collecting) {
-  // report_light only calls LightParts::add if lengths are stored, so groups need at least one length.
-  first_group_ = groups.count() > 0 ? std::max<size_t>(lengths_, 1) : lengths_;
-  parts_.resize(first_group_ + size_t(groups.count()));
-  collecting = groups.count() > 0 ? this : nullptr;
+    : groups_(groups), lengths_(size_t(image.path_lengths)), states_(&groups.paths()), before_(collecting_) {
+  // report_light only calls LightParts::add if lengths are stored, so groups and expressions need at least one length.
+  first_group_ = groups.any() ? std::max<size_t>(lengths_, 1) : lengths_;
+  first_expression_ = first_group_ + size_t(groups.count());
+  parts_.resize(first_expression_ + groups.paths().count());
+  collecting_ = groups.any() ? this : nullptr;
 }
 
-LightParts::~LightParts() { collecting = before_; }
+LightParts::~LightParts() { collecting_ = before_; }
 
 void LightParts::clear() {
   for (Spectrum& part : parts_) part = {};
+  told_ = {};
+  labelled_.clear();
+  states_.clear();
 }
 
 std::span<Spectrum> LightParts::lengths() { return std::span(parts_).first(first_group_); }
 std::span<const Spectrum> LightParts::all() const { return std::span(parts_).subspan(first_group_ - lengths_); }
 
-void LightParts::add(const SceneObject* luminaire, const Spectrum& light) {
-  if (!collecting) return;
-  collecting->parts_[collecting->first_group_ + size_t(collecting->groups_.of(luminaire))] += light;
+void LightParts::take(const SplatLabel& label, const Spectrum& light) {
+  if (keeps_labelled_) labelled_.push_back({label, light});
+  if (label.group >= 0) parts_[first_group_ + size_t(label.group)] += light;
+  if (label.matches == SplatLabel::unknown) return;
+  told_ += light;
+  for (std::uint32_t set = label.matches; set; set &= set - 1)
+    parts_[first_expression_ + size_t(std::countr_zero(set))] += light;
+}
+
+void LightParts::add(int length, const SceneObject* luminaire, const Spectrum& light, PathState matches) {
+  if (!collecting_) return;
+  each_label(length, luminaire, light, matches,
+             [](const SplatLabel& label, const Spectrum& part) { collecting_->take(label, part); });
+}
+
+void LightParts::add(const Labelled& part) {
+  if (collecting_) collecting_->take(part.label, part.light);
 }
 
 void LightParts::weigh(const Spectrum& weight) {
-  if (!collecting) return;
-  for (size_t i = collecting->first_group_; i < collecting->parts_.size(); ++i) collecting->parts_[i] *= weight;
+  if (!collecting_) return;
+  for (size_t i = collecting_->first_group_; i < collecting_->parts_.size(); ++i) collecting_->parts_[i] *= weight;
+  collecting_->told_ *= weight;
+  for (Labelled& part : collecting_->labelled_) part.light *= weight;
 }
 
-SplatLabel LightParts::label(int length, const SceneObject* luminaire) {
-  return {length, collecting ? collecting->groups_.of(luminaire) : -1};
+void LightParts::require_all(const Spectrum& value, const Wavelengths& wavelengths) const {
+  if (groups_.paths().count() == 0) return;
+  constexpr float rounding = 1e-3f;
+  const int count = wavelengths.single() ? 1 : spectrum_size;  // the others are meaningless
+  float apart = 0, most = 0;
+  for (int i = 0; i < count; ++i) {
+    apart = std::max(apart, std::abs(value[i] - told_[i]));
+    most = std::max(most, std::abs(value[i]));
+  }
+  if (std::isfinite(most) && !(apart <= rounding * most))
+    throw Error(
+        "this renderer does not tell by which paths its light comes, so that layers by light path expressions ('path.…' of the "
+        "image) cannot be kept");
 }
 
 }  // namespace etendue

@@ -89,8 +89,10 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
   const EmissionPlane front(context.scene);
   SubpathLimits of_walk = limits;
   of_walk.reverse_pdfs = against != nullptr;
+  PathStates states(groups ? &groups->paths() : nullptr);
   for (std::uint64_t n = item * item_size; n < std::min(walks, (item + 1) * item_size); ++n) {
     const ArenaScope memory(arena);
+    states.clear();
     Wavelengths w = wavelengths;
     NumberStream walk_samples(numbers, SampleKey(context.seed, -2 - int(kinds), int(step), std::uint32_t(n)));
     NumberStream chances = walk_samples.fork("kept");
@@ -119,6 +121,15 @@ void PhotonWalks::operator()(std::uint64_t item, std::vector<Photon>& photons, A
       p.caustic = caustic;
       p.luminaire = walk[0].point.object->luminaire_index();
       if (against) p.weight = weight_of(walk, i, luminaire_pdf, *against, front);
+      if (PathStates::current() == &states) [[unlikely]] {
+        const Photon whole = p;
+        photons.pop_back();
+        states.each(walk[i - 1].path, whole.throughput, [&](std::uint32_t state, const Spectrum& part) {
+          photons.push_back(whole);
+          photons.back().state = std::uint16_t(state);
+          photons.back().throughput = part;
+        });
+      }
     }
   }
 }

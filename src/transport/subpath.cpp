@@ -67,6 +67,11 @@ void grow(Growing& walk, float pdf, const SubpathLimits& limits, std::vector<Sub
         chosen ? chosen->sample(walk, choice, u) : CameraDirections::Choice{walk.sample_direction(choice, u)};
     const auto& next = way.next;
     if (!next || (v.on_surface() && enters_subsurface(v.point, *next))) return;
+    if (PathStates* const states = PathStates::current()) [[unlikely]] {
+      const PathState before = subpath[subpath.size() - 2].path;
+      v.path = from_camera ? states->scattered(before, v, next->direction, next->lobe)
+                           : states->scattered_before(before, v, next->direction, next->lobe);
+    }
     walk.leave(*next);
     v.leaves_specularly = walk.arrived_specularly;
     pdf = v.leaves_specularly ? 1 : next->pdf;
@@ -112,6 +117,7 @@ SubpathVertex lens_vertex(const Camera& camera, const Point3& position, float ti
   lens.parallel = camera.parallel();
   lens.point.position = position;
   lens.point.time = time;
+  lens.path = path_after_camera;
   return lens;
 }
 
@@ -141,6 +147,8 @@ bool generate_light_subpath(const Scene& scene, const LightSampler& lights, floa
   first.infinite = light.infinite;
   first.point = light.point;
   first.pdf_forward = light.probability * (light.infinite ? light.pdf_direction : light.pdf_position);
+  if (const PathStates* const states = PathStates::current()) [[unlikely]]
+    first.path = states->begun(light.point.object);
   if (!leaves) return false;
   Growing walk(scene, sample, light.ray, limits.longest, Transport::importance, light.throughput());
   if (scene.has_interiors() && !light.infinite) {

@@ -83,6 +83,8 @@ INSTANTIATE_TEST_SUITE_P(
                       GroupCase{"progressive", "ProgressivePhotonMapper { photon_walks: 20000 }", 2, 1, 64, 0.05},
                       GroupCase{"instant_radiosity", "InstantRadiosity {}", 2, 1, 128, 0.04},
                       GroupCase{"many_lights", "ManyLights { walks: 200 }", 2, 1, 64, 0.04},
+                      GroupCase{"primary_sample_metropolis", "PrimarySampleMetropolis {}", 2, 1, 256, 0.04},
+                      GroupCase{"multiplexed_metropolis", "MultiplexedMetropolis {}", 2, 1, 256, 0.04},
                       GroupCase{"distribution", "DistributionRenderer {}", 2, 1, 64},
                       GroupCase{"direct", "DirectRenderer {}", 1.5, 0.5, 256},
                       GroupCase{"whitted", "WhittedRenderer {}", 1, 0.5, 16}),
@@ -152,9 +154,6 @@ TEST(LightGroups, RefuseWhatTheyCannotTell) {
   EXPECT_TRUE(has(refused("PathTracer {}", R"(layers: ["light.wall+lamp"])"), "is called 'lamp'"));
   EXPECT_TRUE(has(refused("PathTracer {}", R"(layers: ["light."])"), "needs the name"));
   EXPECT_TRUE(has(refused("PathTracer {}", R"(layers: ["light.rest"])"), "by itself"));
-  EXPECT_TRUE(has(refused("PrimarySampleMetropolis {}", wall), "light groups are not supported"));
-  EXPECT_TRUE(has(refused("MultiplexedMetropolis {}", wall), "light groups are not supported"));
-  EXPECT_TRUE(has(refused("PathSpaceMetropolis {}", wall), "light groups are not supported"));
   EXPECT_TRUE(has(refused("PhotonMapper { irradiance: true, photon_walks: 20000, farthest: 2 }", wall),
                   "does not tell which luminaires"));
   EXPECT_TRUE(has(refused("FeatureRenderer { feature: albedo }", wall), "does not tell which luminaires"));

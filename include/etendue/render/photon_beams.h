@@ -49,6 +49,8 @@ struct PhotonBeam {
   bool hero_only : 1 = false;       ///< it carries the hero wavelength alone
   bool caustic : 1 = false;         ///< it came from the emitter by a specular chain of one vertex or more
   std::int32_t luminaire = -1;      ///< SceneObject::luminaire_index of the emitter
+  std::uint16_t state = Photon::no_state;
+  PathState path() const { return state == Photon::no_state ? PathState{} : PathState{state}; }  ///< see Photon::path
 
   const SceneObject* from(const Scene& scene) const { return luminaire < 0 ? nullptr : scene.luminaires()[size_t(luminaire)]; }
 

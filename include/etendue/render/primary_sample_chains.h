@@ -11,6 +11,7 @@
 
 #include "etendue/describe/description.h"
 #include "etendue/render/renderer.h"
+#include "etendue/transport/light_groups.h"
 #include "etendue/transport/metropolis.h"
 
 namespace etendue {
@@ -99,9 +100,13 @@ class MutatedPaths final : public RenderProcess, PathFunction {
   const ChainSettings settings_;
   const PixelArea area_;
   const size_t lengths_;  ///< path lengths that are distinguished, the last for all longer ones
+  const LightGroups groups_;
   const Ref<Renderer> held_;
   const std::unique_ptr<RenderProcess> paths_, direct_;
 
+  /// Adds the light of a sample's own pixel by group and by light path expression.
+  void add_labelled(const LightParts&, const CameraSample&, float share, Contribution&) const;
+  int length_of(const Splat& splat) const { return SplatLabel::unpacked(splat.length, size_t(groups_.count())).length; }
   bool is_direct(int length) const { return direct_ && length >= 1 && length <= direct_length; }
   void evaluate(const NumberSource&, Arena&, const std::atomic<bool>* abort, Contribution&) const override;
 };

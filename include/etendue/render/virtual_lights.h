@@ -27,6 +27,8 @@ struct VirtualLight {
   SubpathVertex at;
   int vertices = 0;                        ///< of its subpath, the emitter's vertex and its own included
   const SceneObject* luminaire = nullptr;  ///< the emitter where its subpath began
+  PathState rest = {};  ///< with light path expressions, the backward state of its subpath before it; as for photons, there is
+                        ///< a light for each state of a distribution
 };
 
 /// The virtual lights of a step, with the memory they refer to.
@@ -81,6 +83,21 @@ class VirtualLightProcess : public PhotonProcess {
     if (!(w > 0)) return {};
     const auto c = connect(context.scene, y.at, z, walk.sample.wavelengths, numbers, walk.sample.arena);
     return c ? w * c->light : Spectrum();
+  }
+
+  /// Adds that, over the number of light subpaths and the probability of the light.
+  template <class Walk>
+  void add_light(const VirtualLight& y, Walk& walk, NumberStream& numbers, float divisor) const {
+    const Spectrum light = light_from(y, walk, numbers) / divisor;
+    PathState rest;
+    Vector3 to_y;
+    if (PathStates* const states = PathStates::current(); states && !light.black()) [[unlikely]] {
+      to_y = normalize(y.at.point.position - walk.vertex.point.position);
+      rest = states->scattered_before(y.rest, y.at, -to_y);
+    } else if (states) {
+      return;  // it adds nothing, and its direction may be none
+    }
+    walk.add_light(y.vertices, light, y.luminaire, rest, to_y);
   }
 
   /// A one-sample estimate of the radiance along a camera ray. `gather(walk)` adds the virtual lights at the subpath's last

@@ -37,6 +37,7 @@ struct PathContribution {
   const SceneObject* luminaire = nullptr;  ///< null: emitted by a medium
   float weight = 1;                        ///< w
   Point2 film = {};                        ///< of t = 1: where it is splatted
+  PathState matches = {};                  ///< the light path expressions that the path matches
   /// Segments of the path. A merged photon and z_{t-1} are one vertex.
   int length() const { return s + t - 1; }
 };
@@ -79,6 +80,9 @@ class BidirectionalSubpaths {
   void record() const;
 
  private:
+  /// The state of the camera subpath with its scattering at z_{t-1} from a direction, and of the light subpath at y_{s-1}.
+  PathState path_from_camera(int t, const Vector3& in) const;
+  PathState path_from_luminaire(int s, const Vector3& on) const;
   void add_emitter_hit(const SubpathVertex&, const SurfacePoint& luminaire, int t, std::vector<PathContribution>&) const;
   void add_emitter_hits(int t, std::vector<PathContribution>&) const;
   /// The weight of strategy (s, 1).
@@ -94,6 +98,7 @@ class BidirectionalSubpaths {
   std::vector<SubpathVertex>&camera_, &light_;
   std::vector<PathContribution>&segment_emission_, &hits_;
   Wavelengths light_wavelengths_;
+  Medium emitting_;  ///< while the camera subpath is traced: the medium of its segment
   const EmissionPlane front_;
   CameraDirections* directions_ = nullptr;
   float y0_next_event_point_pdf_ = 0;  ///< pdf of y_0 when it is sampled as seen from y_1

@@ -122,6 +122,8 @@ class CameraWalk : public Walk<unattenuated> {
       if (direct_.light.black()) return;
     }
     direct_.light = placed(direct_.light);
+    if (follows_paths()) [[unlikely]]
+      direct_matches_ = direct_matches();
     awaits_ = true;
     direct_length_ = length + 1;
   }
@@ -152,6 +154,8 @@ class CameraWalk : public Walk<unattenuated> {
       this->pass_on(next);
       return goes_on_ = true;
     }
+    if (follows_paths()) [[unlikely]]
+      path_ = path_after(next.direction, next.lobe);
     if (vertex.on_surface() && !vertex.subsurface_exit && enters_subsurface(vertex.point, next))
       return exits_subsurface_ = goes_on_ = this->subsurface_exit_found(next);
     if (weight_at_split_ > 0) [[unlikely]]
@@ -162,9 +166,22 @@ class CameraWalk : public Walk<unattenuated> {
   }
 
   /// Adds light that the algorithm gathered at the last vertex in another way, such as from photons: the radiance scattered
-  /// there, and the number of segments from the luminaire to the vertex.
-  void add_light(int segments_before, const Spectrum& light, const SceneObject* luminaire) {
-    add(length + segments_before, placed(throughput * light), luminaire);
+  /// there, and the number of segments from the luminaire to the vertex. `rest`: the backward state of the path up to the
+  /// vertex, and `in` the direction from which it comes, for layers by light path expressions.
+  void add_light(int segments_before, const Spectrum& light, const SceneObject* luminaire, PathState rest = {},
+                 const Vector3& in = {}) {
+    PathState matches;
+    if (follows_paths()) [[unlikely]]
+      matches = PathStates::current()->joined(path_after(in), rest);
+    add(length + segments_before, placed(throughput * light), luminaire, matches);
+  }
+  /// The same for light that a medium scatters along the last segment.
+  void add_light_in(const Medium& medium, int segments_before, const Spectrum& light, const SceneObject* luminaire,
+                    PathState rest) {
+    PathState matches;
+    if (follows_paths()) [[unlikely]]
+      matches = PathStates::current()->joined(PathStates::current()->scattered_in(path_, medium.object), rest);
+    add(length + segments_before, placed(throughput * light), luminaire, matches);
   }
   /// The same where the luminaires are unknown: no light group receives the light.
   void add_light(int segments_before, const Spectrum& light) {
@@ -227,8 +244,28 @@ class CameraWalk : public Walk<unattenuated> {
         bends_(walk.bends_),
         weight_at_split_(walk.weight_at_split_),
         lane_(walk.lane_),
+        path_(walk.path_),
         memory_(own.arena.mark()),
         one_luminaire_(walk.one_luminaire_) {}
+
+  /// Whether there are light path expressions: the same test as for all parts of the light.
+  bool follows_paths() const { return !sample.sink.lengths.empty() && PathStates::current(); }
+  /// The expressions that the path of next event estimation matches.
+  [[gnu::noinline]] PathState direct_matches() const {
+    return PathStates::current()->ended(path_after(normalize(direct_.shadow.direction)), direct_.luminaire);
+  }
+  /// The state after the last vertex, which scatters light from `in`.
+  [[gnu::noinline]] PathState path_after(const Vector3& in, Lobe lobe = diffuse_reflection) const {
+    PathStates& states = *PathStates::current();
+    const PathState after = states.scattered(path_, vertex, in, lobe);
+    return lane_ < 0 ? after : states.alone(after, 0);
+  }
+  /// Those that the path matches which ends at a luminaire (null: in a medium that emits).
+  PathState ended_at(const SceneObject* luminaire) const {
+    if (!follows_paths()) [[likely]]
+      return {};
+    return PathStates::current()->ended(path_, luminaire, luminaire ? nullptr : this->media.current());
+  }
 
   Lobes ways_on() const { return Lobes(vertex.scatter->lobes() & vertex.lobes); }
   bool splits_reflection_and_refraction(const Splitting& splitting) const {
@@ -275,6 +312,7 @@ class CameraWalk : public Walk<unattenuated> {
     branch.throughput.set(0, throughput[lane] * float(spectrum_size) / float(count));
     branch.branches = float(count);
     branch.lane_ = lane;
+    if (follows_paths()) branch.path_ = PathStates::current()->alone(path_, lane_ < 0 ? lane : 0);
     const Scatter* scatter = scattering_at(vertex.point, vertex.out, wavelengths, sample.arena);
     if (!scatter) return;
     std::optional<ScatterSample> next = scatter->sample(vertex.out, choice, u, {.lobes = specular_transmission});
@@ -315,7 +353,7 @@ class CameraWalk : public Walk<unattenuated> {
   struct Events : NoEvents {
     CameraWalk& walk;
     const Weight& weight;
-    void emitted(const Spectrum& light) const { walk.add(walk.length, walk.placed(light), nullptr); }
+    void emitted(const Spectrum& light) const { walk.add(walk.length, walk.placed(light), nullptr, walk.ended_at(nullptr)); }
     void crossed_luminaire() const {
       walk.sample.sink.surface(walk.vertex.point, walk.placed(walk.throughput));
       walk.add_luminaire(weight);
@@ -325,9 +363,9 @@ class CameraWalk : public Walk<unattenuated> {
     }
   };
 
-  [[gnu::always_inline]] void add(int segments, const Spectrum& light, const SceneObject* luminaire) {
+  [[gnu::always_inline]] void add(int segments, const Spectrum& light, const SceneObject* luminaire, PathState matches) {
     radiance += light;
-    report_light(sample.sink, segments, light, luminaire);
+    report_light(sample.sink, segments, light, luminaire, matches);
   }
 
   template <class Weight>
@@ -336,7 +374,7 @@ class CameraWalk : public Walk<unattenuated> {
         placed(throughput * vertex.point.object->emission->radiance(vertex.point, -ray.direction, sample.wavelengths));
     if (light.black()) return;
     const float mis_weight = weight(vertex.point);
-    add(length, light * mis_weight, vertex.point.object);
+    add(length, light * mis_weight, vertex.point.object, ended_at(vertex.point.object));
     sample.sink.emitter_hit(light * mis_weight, length, mis_weight);
   }
 
@@ -345,7 +383,7 @@ class CameraWalk : public Walk<unattenuated> {
   [[gnu::always_inline]] void settle(bool lit) {
     if (!awaits_) return;
     awaits_ = false;
-    add(direct_length_, lit ? direct_.light : Spectrum(), direct_.luminaire);
+    add(direct_length_, lit ? direct_.light : Spectrum(), direct_.luminaire, direct_matches_);
     if (lit) sample.sink.next_event(direct_.light, direct_length_, direct_.weight);
   }
 
@@ -355,6 +393,7 @@ class CameraWalk : public Walk<unattenuated> {
                    ///< vertex: no more splits
   float weight_at_split_ = 0, branch_survival_ = 1;  ///< see reduce_branches
   int lane_ = -1;  ///< the index of a branch's only wavelength among the path's; -1: the walk has all
+  PathState path_ = path_after_camera, direct_matches_;  ///< used with light path expressions alone
   DirectLight direct_;
   const Arena::Mark memory_;
   const bool one_luminaire_;

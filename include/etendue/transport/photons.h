@@ -15,6 +15,7 @@
 // Photons and the paths that gather them must agree in wavelengths and time: all paths of a step share both.
 
 #include "etendue/transport/bidirectional_weight.h"
+#include "etendue/transport/light_groups.h"
 #include "etendue/transport/point_tree.h"
 #include "etendue/transport/projection_map.h"
 
@@ -27,6 +28,7 @@ struct Photon {
   Point3 position;
   Vector3 out;                              ///< unit, to the vertex before
   std::array<std::int16_t, 3> normal = {};  ///< of the surface, times 32767
+  std::uint16_t state = no_state;           ///< see `path`
   Spectrum throughput;                      ///< alpha_p, flux [W/nm]
   PhotonWeight weight;                      ///< computed if PhotonWalks::against is set
   std::uint32_t vertices : 29 = 0;          ///< of its subpath before it; 1: the light comes directly from a luminaire
@@ -34,6 +36,11 @@ struct Photon {
   bool in_medium : 1 = false;
   bool caustic : 1 = false;     ///< between it and the luminaire there are specular vertices only, and at least one
   std::int32_t luminaire = -1;  ///< SceneObject::luminaire_index of the luminaire; -1: none
+
+  static constexpr std::uint16_t no_state = 0xffff;
+  /// With light path expressions, the backward state of its subpath before it. Where that is a distribution, there is a photon
+  /// for each state, with that part of the flux.
+  PathState path() const { return state == no_state ? PathState{} : PathState{state}; }
 
   const SceneObject* from(const Scene& scene) const { return luminaire < 0 ? nullptr : scene.luminaires()[size_t(luminaire)]; }
 
@@ -123,6 +130,7 @@ struct PhotonWalks {
   const StrategyWeights* against = nullptr;  ///< photons get weights against these other strategies; null: none
   double kept = 1;  ///< the probability with which a photon is stored; if below 1, n must be multiplied by it as well
   const std::atomic<bool>* abort = nullptr;
+  const LightGroups* groups = nullptr;  ///< with light path expressions: photons get states
 
   std::uint64_t items() const { return (walks + item_size - 1) / item_size; }
   void operator()(std::uint64_t item, std::vector<Photon>&, Arena&) const;

@@ -6,6 +6,7 @@
 #include "etendue/transport/boundaries.h"
 #include "etendue/transport/light_groups.h"
 #include "etendue/transport/medium.h"
+#include "etendue/transport/path_vertex.h"
 #include "etendue/transport/sample_context.h"
 #include "etendue/transport/scattering.h"
 
@@ -78,10 +79,23 @@ struct RayBranch {
   Spectrum throughput{1.0f};
   Wavelengths wavelengths;
   MediumStack media = {};
-  bool tracked = false;  ///< whether media are tracked
-  int depth = 1;         ///< segments from the camera to the ray's end
-  int crossings = 0;     ///< consecutive null scatterings
+  bool tracked = false;                ///< whether media are tracked
+  int depth = 1;                       ///< segments from the camera to the ray's end
+  int crossings = 0;                   ///< consecutive null scatterings
+  PathState path = path_after_camera;  ///< with light path expressions: of the branch up to the surface at its end
 
+  /// The same with the scattering of light there from `in`, by the lobe if it is specular, else by the smooth ones of `lobes`.
+  PathState path_after(const SurfacePoint& point, const Scatter& scatter, const Vector3& in, Lobe lobe = diffuse_reflection,
+                       Lobes lobes = vertex_lobes) const {
+    if (!PathStates::current()) [[likely]]
+      return path;
+    PathVertex vertex;
+    vertex.point = point;
+    vertex.scatter = &scatter;
+    vertex.lobes = lobes;
+    vertex.out = -ray.direction;
+    return PathStates::current()->scattered(path, vertex, in, lobe);
+  }
   /// Counts a scattering by this lobe; false: the ray must end (most_crossings).
   bool may_go_on(Lobe lobe) {
     crossings = lobe == null_scattering ? crossings + 1 : 0;
@@ -101,14 +115,16 @@ struct RayTree {
   SampleContext& sample;
   Spectrum radiance = {};
 
-  void add(int length, const Spectrum& light, const SceneObject* luminaire) {
+  /// `path`: of the whole path but its luminaire.
+  void add(int length, const Spectrum& light, const SceneObject* luminaire, PathState path) {
     radiance += light;
-    report_light(sample.sink, length, light, luminaire);
+    PathStates* const states = PathStates::current();
+    report_light(sample.sink, length, light, luminaire, states ? states->ended(path, luminaire) : PathState{});
   }
   /// Adds the light that a luminaire emits from a point at the end of a branch, an emitter hit.
   void add_emission(const RayBranch& branch, const SurfacePoint& point, const SceneObject* luminaire) {
     const Spectrum light = branch.throughput * luminaire->emission->radiance(point, -branch.ray.direction, branch.wavelengths);
-    add(branch.depth, light, luminaire);
+    add(branch.depth, light, luminaire, branch.path);
     sample.sink.emitter_hit(light, branch.depth, 1);
   }
   /// Samples a specular lobe or null scattering at the end of a branch, and returns the branch that continues from there;
@@ -120,6 +136,7 @@ struct RayTree {
     if (!next || enters_subsurface(point, *next)) return std::nullopt;
     RayBranch child = branch;
     child.throughput *= next->weight;
+    child.path = branch.path_after(point, scatter, next->direction, next->lobe);
     if (next->dispersive) child.throughput *= child.wavelengths.drop_secondary();
     if (child.throughput.black() || !child.may_go_on(lobe)) return std::nullopt;
     if (lobe != null_scattering) ++child.depth;  // null scattering does not count as a segment

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "etendue/camera.h"
+#include "etendue/transport/path_layers.h"
 #include "etendue/transport/path_vertex.h"
 #include "etendue/transport/sample_context.h"
 
@@ -36,6 +37,8 @@ struct SubpathVertex : PathVertex {
   float pdf_forward = 0;  ///< of the vertex, sampled from the vertex before [1/m^2 on a surface; 1/m^3 in a medium; 1/sr on a
                           ///< luminaire at infinity and of an escaped ray]
   float pdf_reverse = 0;  ///< the same, sampled from the vertex after
+  PathState path;  ///< with light path expressions: of the subpath up to here, its scattering here included (path_layers.h); a
+                   ///< forward state from the camera, a backward one from a luminaire
 
   /// Whether the vertex can be connected to a vertex of another subpath: it has a lobe that is not specular, whichever lobe the
   /// subpath sampled.

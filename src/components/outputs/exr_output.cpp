@@ -18,8 +18,8 @@ class ExrOutput final : public Output {
  public:
   static void describe(Description<ExrOutput>& d) {
     d.summary(
-         "OpenEXR: linear values without bounds, the film's layers (light groups as light.NAME.R, .G, .B; the bands of a "
-         "SpectralFilm as S0.405nm, …), and what is known "
+         "OpenEXR: linear values without bounds, the film's layers (light groups as light.NAME.R, .G, .B, light path "
+         "expressions as path.NAME.R; the bands of a SpectralFilm as S0.405nm, …), and what is known "
          "of the picture as attributes. The "
          "encoding of a tone map is undone, as the format holds linear values by definition.",
          "Kainz, Bogart & Hess 2004, The OpenEXR image file format; Fichet, Pacanowski & Wilkie 2021, An OpenEXR layout for "
@@ -37,7 +37,7 @@ class ExrOutput final : public Output {
 
   void write_image(const Image& given, const std::string& path) const override {
     Image image = convert_color_space(given, color_space);
-    convert_light_groups(image, rgb_space(color_space));
+    convert_parts(image, rgb_space(color_space));
     std::vector<size_t> kept;
     for (size_t c = 0; c < image.channels.size(); ++c)
       if (layers || image.channels[c].find('.') == std::string::npos) kept.push_back(c);
@@ -86,11 +86,13 @@ class ExrOutput final : public Output {
     header.texts["spectralLayoutVersion"] = "1.0";
     header.texts["emissiveUnits"] = "W.m^-2.sr^-1";
   }
-  /// Converts light groups to the RGB space of the image, so that other programs can add them up.
-  static void convert_light_groups(Image& image, const RgbSpace& space) {
+  /// Converts light groups and layers by light path expression to the RGB space of the image, so that other programs can add
+  /// them up.
+  static void convert_parts(Image& image, const RgbSpace& space) {
     if (space.name == "xyz") return;
     const auto is = [&](size_t c, const char* end) {
-      return image.channels[c].starts_with("light.") && image.channels[c].ends_with(end);
+      const std::string& name = image.channels[c];
+      return (name.starts_with("light.") || name.starts_with("path.")) && image.channels[c].ends_with(end);
     };
     for (size_t c = 0; c + 2 < image.channels.size(); ++c) {
       if (!is(c, ".X") || !is(c + 1, ".Y") || !is(c + 2, ".Z")) continue;

@@ -235,6 +235,7 @@ void AdaptiveProcess::step(Schedule& schedule, const Step& step) {
               parts.clear();
               const CameraSample s = path({x, y, x + 1, y + 1}, *renderer.sampler, key, arena, sink);
               film.count_path();
+              parts.require_all(s.value, s.wavelengths);
               film.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, float(count) / float(n), parts.all());
               if (wants_features) film.features(x, y, key.sample, features);
               const double luminance = to_xyz(s.value, s.wavelengths).y;

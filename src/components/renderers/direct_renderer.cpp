@@ -105,10 +105,10 @@ class DirectRenderer final : public Renderer {
     if (!scatter) return false;
 
     Spectrum direct;
-    const auto add_direct = [&](const Spectrum& scattered, const SceneObject* luminaire) {
+    const auto add_direct = [&](const Spectrum& scattered, const SceneObject* luminaire, const Vector3& in, Lobe lobe) {
       const Spectrum light = branch.throughput * scattered;
       direct += light;
-      tree.add(branch.depth + 1, light, luminaire);
+      tree.add(branch.depth + 1, light, luminaire, branch.path_after(point, *scatter, in, lobe));
     };
     if (strategy != Strategy::shader && scatter->has(smooth_lobes)) by_luminaires(tree, branch, point, *scatter, add_direct);
     if (strategy != Strategy::light && scatter->has(direct_lobes())) by_shader(tree, branch, point, *scatter, add_direct);
@@ -140,7 +140,8 @@ class DirectRenderer final : public Renderer {
     return straight->weight;
   }
 
-  /// Calls `add(light, luminaire)` for the light scattered towards `out`, found by luminaire samples; by_shader by directions.
+  /// Calls `add(light, luminaire, in, lobe)` for the light scattered towards `out`, found by luminaire samples; by_shader by
+  /// directions.
   template <class Add>
   void by_luminaires(RayTree& tree, const RayBranch& branch, const SurfacePoint& point, const Scatter& scatter,
                      const Add& add) const {
@@ -161,7 +162,7 @@ class DirectRenderer final : public Renderer {
           weight_over_pdf(heuristic, n * chosen.probability * light.pdf, rivalled ? float(shader_samples) * f.pdf : 0);
       add(f.value * light.radiance * weight *
               shadow_transmittance(tree.scene, light.shadow, nullptr, branch.wavelengths, sample.numbers, sample.arena),
-          chosen.luminaire);
+          chosen.luminaire, light.direction, diffuse_reflection);
     }
   }
 
@@ -197,12 +198,14 @@ class DirectRenderer final : public Renderer {
         if (!meet_surface(scene, ray, around, hit, met)) {
           for (const SceneObject* far : scene.infinite_luminaires(ray)) {
             far->surface_point(ray, hit, met);
-            add(throughput * far->emission->radiance(met, -ray.direction, wavelengths) * weight(met), far);
+            add(throughput * far->emission->radiance(met, -ray.direction, wavelengths) * weight(met), far, next->direction,
+                next->lobe);
           }
           break;
         }
         if (met.object->luminaire())
-          add(throughput * met.object->emission->radiance(met, -ray.direction, wavelengths) * weight(met), met.object);
+          add(throughput * met.object->emission->radiance(met, -ray.direction, wavelengths) * weight(met), met.object,
+              next->direction, next->lobe);
         if (!met.object->shader || !(met.object->shader->possible_lobes() & null_scattering)) break;
         const Scatter* there = scattering_at(met, -ray.direction, wavelengths, sample.arena);
         const auto straight = there ? pass_straight(met, *there, ray, around) : std::nullopt;

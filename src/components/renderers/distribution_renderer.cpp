@@ -107,7 +107,7 @@ class DistributionRenderer final : public Renderer {
       weight = heuristic_weight(Heuristic::power, branch.pdf, branch.luminaire_rays * pdf);
     }
     light *= weight;
-    tree.add(branch.depth, light, point.object);
+    tree.add(branch.depth, light, point.object, branch.path);
     tree.sample.sink.emitter_hit(light, branch.depth, weight);
   }
 
@@ -208,6 +208,7 @@ class DistributionRenderer final : public Renderer {
 
   /// Continues a branch in a sampled direction; its throughput already contains the sample's weight.
   void step(SampleContext& sample, Branch& branch, const Place& place, const ScatterSample& next, float pdf, int rays) const {
+    branch.path = branch.path_after(place.point, place.scatter, next.direction, next.lobe, followed());
     if (next.dispersive) branch.throughput *= branch.wavelengths.drop_secondary();
     branch.eta_squared *= next.eta * next.eta;
     go_on(place.point, next, branch.ray, branch.around());
@@ -256,7 +257,7 @@ class DistributionRenderer final : public Renderer {
       const Spectrum direct = branch.throughput * (f * light.radiance *
                                                    shadow_transmittance(tree.scene, light.shadow, nullptr, branch.wavelengths,
                                                                         sample.numbers, sample.arena));
-      tree.add(branch.depth + 1, direct, chosen.luminaire);
+      tree.add(branch.depth + 1, direct, chosen.luminaire, branch.path_after(place.point, place.scatter, light.direction));
       sum += direct;
     }
     return sum;

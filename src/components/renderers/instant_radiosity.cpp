@@ -54,7 +54,7 @@ class InstantRadiosityProcess final : public VirtualLightProcess {
       for (const VirtualLight& y : virtual_.lights) {
         if (y.vertices + walk.length > settings().max_depth) continue;
         if (sample.aborted()) return;
-        walk.add_light(y.vertices, light_from(y, walk, numbers) / float(virtual_.walks), y.luminaire);
+        add_light(y, walk, numbers, float(virtual_.walks));
       }
     });
   }

@@ -67,7 +67,7 @@ class ManyLightsProcess final : public VirtualLightProcess {
       for (const auto& [light, probability] : taken) {
         const VirtualLight& y = virtual_.lights[light];
         if (y.vertices + walk.length > settings().max_depth) continue;
-        walk.add_light(y.vertices, light_from(y, walk, numbers) / float(virtual_.walks * probability), y.luminaire);
+        add_light(y, walk, numbers, float(virtual_.walks * probability));
       }
     });
   }

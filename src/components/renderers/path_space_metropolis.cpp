@@ -19,6 +19,7 @@
 // Paths of one or two segments are estimated sample by sample, by a bidirectional path tracer.
 
 #include "etendue/render/primary_sample_chains.h"
+#include "etendue/transport/light_groups.h"
 #include "etendue/transport/mutation.h"
 #include "etendue/transport/renderer_members.h"
 
@@ -72,7 +73,11 @@ constexpr int direct_length = MutatedPaths::direct_length;
 class PathSpaceProcess final : public RenderProcess, Chains {
  public:
   PathSpaceProcess(const PathSpaceMetropolis& r, const RenderContext& c, Ref<Renderer> direct)
-      : RenderProcess(r, c), settings_(r), direct_renderer_(std::move(direct)), direct_(direct_renderer_->start(c)) {
+      : RenderProcess(r, c),
+        settings_(r),
+        direct_renderer_(std::move(direct)),
+        direct_(direct_renderer_->start(c)),
+        groups_(c.scene, c.image) {
     require_mutable(c.wavelengths, r);
     if (!c.image.crop.empty()) r.fail({}, "renders whole pictures, no crops");
     if (c.camera.parallel()) r.fail({}, "needs a camera that sees from a place, and not by parallel rays");
@@ -104,6 +109,7 @@ class PathSpaceProcess final : public RenderProcess, Chains {
   const PathSpaceMetropolis& settings_;
   const Ref<Renderer> direct_renderer_;
   const std::unique_ptr<RenderProcess> direct_;
+  const LightGroups groups_;
   std::vector<double> shares_, lengths_;  ///< cumulative sums: of the mutations' shares, of 1 / k
 
   /// Samples an index in proportion to the terms of cumulative sums.
@@ -121,7 +127,29 @@ class PathSpaceProcess final : public RenderProcess, Chains {
     // Where vertices lie near one another both f and T are far out of the range of floats, but their quotient is not.
     const double of_f = y.scale / pdf(y);
     const Spectrum light = map(y.f, [of_f](float f) { return float(double(f) * of_f); });
-    F.add({y.film, light, y.seen, y.length()}, {0, 0, context.image.width, context.image.height});
+    const PixelArea film{0, 0, context.image.width, context.image.height};
+    if (!groups_.any()) return F.add({y.film, light, y.seen, y.length()}, film);
+    const LightParts parts(context.image, groups_);
+    const SceneObject* const luminaire = y.x[0].point.object;
+    LightParts::each_label(y.length(), luminaire, light, matches(y), [&](const SplatLabel& label, const Spectrum& part) {
+      F.add({y.film, part, y.seen, LightParts::packed(label)}, film);
+    });
+  }
+  /// The light path expressions that a path matches.
+  static PathState matches(const LightPath& y) {
+    PathStates* const states = PathStates::current();
+    if (!states) return {};
+    PathState path = path_after_camera;
+    for (size_t i = size_t(y.length()) - 1; i > 0; --i) {
+      const ChainVertex& v = y.x[i];
+      path = states->scattered(path, v, -y.x[i - 1].out, v.leaves_specularly ? v.lobe : diffuse_reflection);
+    }
+    return states->ended(path, y.x[0].point.object);
+  }
+  static double luminance(const Contribution& F) {
+    double sum = 0;
+    for (const Contribution::Brightness& part : F.luminances) sum += double(part.luminance);
+    return sum;
   }
   /// Begins a path without vertices, with new wavelengths and a new lens sample.
   void begin_anew(const PathSpace& space, Arena& arena, ChoiceNumbers& choices, LightPath& y) const {
@@ -148,7 +176,7 @@ class PathSpaceProcess final : public RenderProcess, Chains {
     space.all_ways(each, direct_length + 1, settings_.max_depth, choices, [&](const LightPath& path, double likely) {
       contribution(path, true, own);
       if (own.parts.empty()) return;
-      const double light = double(own.luminances[0].luminance) * length_share(path.length()) / likely;
+      const double light = luminance(own) * length_share(path.length()) / likely;
       sum += light;
       if (choices.next() * sum < light) {
         y = path;
@@ -163,7 +191,9 @@ class PathSpaceProcess final : public RenderProcess, Chains {
     ChoiceNumbers choices(seed);
     const ArenaScope memory(arena);
     const double all = begun(space, arena, choices, y, F);
-    for (Contribution::Brightness& part : F.luminances) part.luminance = float(all);
+    const double own = luminance(F);
+    for (Contribution::Brightness& part : F.luminances)
+      part.luminance = own > 0 ? float(all * (double(part.luminance) / own)) : 0;
   }
 
   void run(std::uint64_t first, std::uint64_t own_seed, std::uint64_t states, const StateWeights& weights, const FilmWeights& v,

@@ -169,7 +169,7 @@ class PhotonMapperProcess final : public PhotonProcess {
       if (!wanted || each.squared == infinity || walk.length + int(p.vertices) > settings_.max_depth) continue;
       if (p.in_medium != v.in_medium() || photon_occluded(context.scene, v, p, radius)) continue;
       walk.add_light(int(p.vertices), scattered_from_photon(v, p, {w, w.single()}) / (float(photons.walks) * place),
-                     p.from(context.scene));
+                     p.from(context.scene), p.path(), p.out);
     }
   }
 

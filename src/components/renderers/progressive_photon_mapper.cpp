@@ -177,7 +177,8 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     const GatheringWavelengths of_walk = wavelengths_of(walk);
     const auto add = [&](const Photon& p, float area) {
       if (walk.length + int(p.vertices) > settings_.max_depth) return;
-      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, of_walk) / area, p.from(context.scene));
+      walk.add_light(int(p.vertices), scattered_from_photon(walk.vertex, p, of_walk) / area, p.from(context.scene), p.path(),
+                     p.out);
     };
     photons_.near(context.scene, walk.vertex, add);
     caustics_.near(context.scene, walk.vertex, add);
@@ -191,9 +192,10 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     const auto add = [&](const Photon& p, float t, float area) {
       if (walk.length + int(p.vertices) > settings_.max_depth) return;
       const float phase = medium.phase(ray(t), ray.time, -ray.direction, p.out);
-      walk.add_light(int(p.vertices),
-                     transmittance(medium, ray, t, of_walk.wavelengths, numbers) * in_wavelengths(p, of_walk) * (phase / area),
-                     p.from(context.scene));
+      walk.add_light_in(
+          medium, int(p.vertices),
+          transmittance(medium, ray, t, of_walk.wavelengths, numbers) * in_wavelengths(p, of_walk) * (phase / area),
+          p.from(context.scene), p.path());
     };
     photons_.along(context.scene, ray, reach, add);
     caustics_.along(context.scene, ray, reach, add);
@@ -205,8 +207,8 @@ class ProgressivePhotonProcess final : public PhotonProcess {
     const auto add_beam = [&](const PhotonBeam& b, float s, float t, float width) {
       if (walk.length + int(b.vertices) > settings_.max_depth) return;
       const float phase = medium.phase(within(t), ray.time, -ray.direction, -b.direction);
-      walk.add_light(int(b.vertices), in_wavelengths(b.light(s, t, c), b.hero_only, of_walk) * (phase / width),
-                     b.from(context.scene));
+      walk.add_light_in(medium, int(b.vertices), in_wavelengths(b.light(s, t, c), b.hero_only, of_walk) * (phase / width),
+                        b.from(context.scene), b.path());
     };
     beams_.along(context.scene, medium, within, there.length(), numbers, add_beam);
     caustic_beams_.along(context.scene, medium, within, there.length(), numbers, add_beam);

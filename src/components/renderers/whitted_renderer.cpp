@@ -104,7 +104,7 @@ class WhittedRenderer final : public Renderer {
       const Spectrum direct = branch.throughput * (f * light.radiance / light.pdf *
                                                    shadow_transmittance(tree.scene, light.shadow, nullptr, branch.wavelengths,
                                                                         sample.numbers, sample.arena));
-      tree.add(branch.depth + 1, direct, luminaire);
+      tree.add(branch.depth + 1, direct, luminaire, branch.path_after(point, scatter, light.direction));
       sum += direct;
     }
     return sum;

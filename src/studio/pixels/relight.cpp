@@ -35,7 +35,8 @@ std::vector<Group> groups_of(const Image& picture, const std::map<std::string, s
 }
 
 bool of_another_picture(const std::string& channel) {
-  return channel.starts_with("variance.") || channel.starts_with("length_") || measures_spectrum(channel);
+  return channel.starts_with("variance.") || channel.starts_with("length_") || channel.starts_with("path.") ||
+         measures_spectrum(channel);
 }
 
 using Matrix = std::array<double, 9>;
