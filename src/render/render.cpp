@@ -173,6 +173,7 @@ std::optional<Ended> Render::Members::step(Schedule& schedule) {
     });
     if (give_up.load()) {
       if (abort.load()) return Ended::aborted;
+      if (stop.load() && settings.team && !done.empty()) return Ended::interrupted;
       continue;
     }
     if (settings.team) settings.team->end_step(process->save_state());
@@ -277,7 +278,11 @@ Ended Render::run() {
   return *ended;
 }
 
-void Render::stop() { members_->stop.store(true); }
+// A team drops its step: mpirun gives one second between the signal to end and the kill.
+void Render::stop() {
+  members_->stop.store(true);
+  if (members_->settings.team) members_->give_up.store(true);
+}
 void Render::abort() {
   members_->abort.store(true);
   members_->give_up.store(true);

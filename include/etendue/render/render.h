@@ -84,8 +84,8 @@ class Render {
   Ended run();
   /// Renders the next step. Returns the reason if it rendered none: all samples are done, or stop or abort was called.
   std::optional<Ended> step();
-  /// Stops the current run, or else the next one: `stop` after the current step; `abort` at once, in the middle of its paths,
-  /// and without the step. Safe in signal handlers.
+  /// Stops the current run, or else the next one: `stop` after the current step, or without it if a team computes it; `abort`
+  /// at once, in the middle of its paths, and without the step. Safe in signal handlers.
   void stop();
   void abort();
   /// Starts over, with other random numbers if a seed is given.
