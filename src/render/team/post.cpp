@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 
 constexpr auto sign_interval = 1s;
 // The thread looks for messages again after these times: messages cannot wake it, and a look takes some microseconds.
-constexpr std::chrono::microseconds shortest_rest = 50us, longest_rest = 1ms;
+constexpr std::chrono::microseconds shortest_rest = 200us, longest_rest = 2ms;
 
 /// An empty message is a sign of life.
 const Parcel& sign_of_life() {
@@ -58,7 +58,13 @@ void Post::start(Handlers handlers) {
 void Post::send(int to, Parcel parcel) {
   const std::lock_guard lock(mutex_);
   outgoing_.emplace_back(to, std::move(parcel));
+  urgent_ = true;
   changed_.notify_all();
+}
+
+void Post::send_soon(int to, Parcel parcel) {
+  const std::lock_guard lock(mutex_);
+  outgoing_.emplace_back(to, std::move(parcel));
 }
 
 void Post::end() {
@@ -127,10 +133,13 @@ void Post::run() {
       messages_->abandon(*abandoned_);
       return;
     }
-    if (!outgoing_.empty()) continue;
-    if (ending_ && messages_->all_sent()) break;
+    if (urgent_) {
+      urgent_ = false;
+      continue;
+    }
+    if (ending_ && outgoing_.empty() && messages_->all_sent()) break;
     rest = any ? shortest_rest : std::min(2 * rest, longest_rest);
-    changed_.wait_for(lock, rest, [&] { return !outgoing_.empty() || abandoned_; });
+    changed_.wait_for(lock, rest, [&] { return urgent_ || abandoned_; });
   }
   messages_->close();
 }

@@ -33,6 +33,8 @@ class Post {
   /// Begins to receive.
   void start(Handlers);
   void send(int to, Parcel);  ///< any thread
+  /// The same when the thread looks next, which spares waking it.
+  void send_soon(int to, Parcel);
   /// Sends what is left, waits for the others, which must end as well, and ends the thread.
   void end();
   /// Ends all processes at once (Messages::abandon).
@@ -52,6 +54,7 @@ class Post {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<std::pair<int, Parcel>> outgoing_;
+  bool urgent_ = false;  ///< something was sent that must not wait
   bool started_ = false, ending_ = false;
   std::optional<int> abandoned_;  ///< with this status
 

@@ -11,14 +11,20 @@ struct Made {
   std::shared_ptr<void> results;
 };
 
-/// The items that each process computes first, without being dealt them: two for each thread, fewer if there are few.
+/// A process asks for so many items.
+struct Wish {
+  int rank = 0;
+  std::uint64_t count = 1;
+};
+
+/// The items that each process computes first, without being dealt them: four for each thread, fewer if there are few.
 std::vector<std::uint64_t> first_shares(std::uint64_t count, const std::vector<int>& threads) {
   const int all = std::accumulate(threads.begin(), threads.end(), 0);
   std::vector<std::uint64_t> shares;
   std::uint64_t left = count;
   for (const int own : threads) {
     const std::uint64_t fair = std::max<std::uint64_t>(count * std::uint64_t(own) / std::uint64_t(2 * all), 1);
-    shares.push_back(std::min({left, fair, std::uint64_t(2 * own)}));
+    shares.push_back(std::min({left, fair, std::uint64_t(4 * own)}));
     left -= shares.back();
   }
   return shares;
@@ -44,14 +50,14 @@ class TeamSchedule::Call {
     }
     const int all = std::accumulate(threads_.begin(), threads_.end(), 0);
     all_threads_ = std::uint64_t(all);
-    window_ = 16 * all_threads_;
+    window_ = 64 * all_threads_;
   }
 
   /// Works until there is nothing left to do here; on several threads.
   void work(Arena& arena) {
     std::unique_lock lock(mutex_);
     while (!failure_ && !schedule_.stopped()) {
-      if (!asked_ && !all_dealt_ && unstarted_ < std::uint64_t(threads_[size_t(team_.rank())])) ask();
+      if (!asked_ && !all_dealt_ && unstarted_ < stock()) ask();
       if (!taking_ && !ready_.empty() && ready_.begin()->first == next_)
         take(lock);
       else if (!arrived_.empty())
@@ -68,7 +74,7 @@ class TeamSchedule::Call {
   void received(Reading&& letter) {
     const std::lock_guard lock(mutex_);
     switch (letter.kind) {
-      case LetterKind::want: deal(letter.from); break;
+      case LetterKind::want: deal({letter.from, letter.take<std::uint64_t>()}); break;
       case LetterKind::deal: {
         const auto first = letter.take<std::uint64_t>(), count = letter.take<std::uint64_t>();
         dealt_to_me(first, count);
@@ -114,9 +120,9 @@ class TeamSchedule::Call {
     taking_ = false;
     ++next_;
     while (!waiting_.empty() && (dealt_ == items_.count || dealt_ < next_ + window_)) {
-      const int rank = waiting_.front();
+      const Wish wish = waiting_.front();
       waiting_.pop_front();
-      deal(rank);
+      deal(wish);
     }
     if (over()) changed_.notify_all();
   }
@@ -145,6 +151,7 @@ class TeamSchedule::Call {
     }
     --unstarted_;
     Made made;
+    const auto began = std::chrono::steady_clock::now();
     unlocked(lock, [&] {
       if (items_.film) {
         made.tile = schedule_.tile();
@@ -157,6 +164,8 @@ class TeamSchedule::Call {
       send(item, made);
     });
     if (failure_) return;
+    busy_ += std::chrono::steady_clock::now() - began;
+    ++computed_;
     if (!combines_)
       schedule_.give_back(std::move(made.tile));
     else
@@ -171,21 +180,22 @@ class TeamSchedule::Call {
 
   /// Sends the results of an item to those who need them.
   void send(std::uint64_t item, const Made& made) const {
-    std::vector<std::byte> results;
-    if (items_.results) work_.pack(made.results.get(), results);
-    const auto add_results = [&](Writing& to) { to.bytes().insert(to.bytes().end(), results.begin(), results.end()); };
-    if (!team_.leads()) {
-      Writing to_leader = letter(LetterKind::item).add(item);
-      if (items_.film) made.tile->pack(to_leader.bytes());
-      add_results(to_leader);
-      team_.post_.send(0, to_leader.parcel());
+    // The leader gets the tile as well, if there is one; otherwise all get the same letter.
+    const bool with_tile = items_.film && !team_.leads();
+    Parcel results;
+    if (items_.results) {
+      Writing to_all = letter(LetterKind::item).add(item);
+      work_.pack(made.results.get(), to_all.bytes());
+      results = to_all.parcel();
+      for (int rank = with_tile ? 1 : 0; rank < team_.size(); ++rank)
+        if (rank != team_.rank()) team_.post_.send_soon(rank, results);
     }
-    if (!items_.results) return;
-    Writing to_followers = letter(LetterKind::item).add(item);
-    add_results(to_followers);
-    const Parcel parcel = to_followers.parcel();
-    for (int rank = 1; rank < team_.size(); ++rank)
-      if (rank != team_.rank()) team_.post_.send(rank, parcel);
+    if (!with_tile) return;
+    Writing to_leader = letter(LetterKind::item).add(item);
+    const auto head = std::ptrdiff_t(to_leader.bytes().size());
+    made.tile->pack(to_leader.bytes());
+    if (results) to_leader.bytes().insert(to_leader.bytes().end(), results->begin() + head, results->end());
+    team_.post_.send_soon(0, to_leader.parcel());
   }
 
   // ---- the rest is called with the lock held -------------------------------------------------------------------------------
@@ -195,12 +205,22 @@ class TeamSchedule::Call {
     if (item == next_ && !taking_) changed_.notify_one();
   }
 
+  /// How many items that are not begun should be here: as many as are computed while more are asked for, which takes the time
+  /// of some looks for messages.
+  std::uint64_t stock() const {
+    constexpr std::chrono::duration<double> enough = std::chrono::milliseconds(10);
+    const auto own = std::uint64_t(threads_[size_t(team_.rank())]);
+    if (computed_ == 0) return own;
+    const double each = std::max(busy_.count() / double(computed_), 1e-6);
+    return own * std::uint64_t(std::clamp(enough.count() / each, 1.0, 32.0));
+  }
+
   void ask() {
     asked_ = true;
     if (team_.leads())
-      deal(0);
+      deal({0, stock()});
     else
-      team_.post_.send(0, letter(LetterKind::want).parcel());
+      team_.post_.send(0, letter(LetterKind::want).add(stock()).parcel());
   }
 
   void add(std::uint64_t first, std::uint64_t count) {
@@ -218,20 +238,20 @@ class TeamSchedule::Call {
   }
 
   /// The leader deals items to a process, or lets it wait.
-  void deal(int rank) {
+  void deal(Wish wish) {
     const std::uint64_t left = items_.count - dealt_;
     const std::uint64_t room = next_ + window_ > dealt_ ? next_ + window_ - dealt_ : 0;
     if (left > 0 && room == 0) {
-      waiting_.push_back(rank);
+      waiting_.push_back(wish);
       return;
     }
     // At the end one by one, so that all processes end at the same time.
     const std::uint64_t fair = std::max<std::uint64_t>(left / (2 * all_threads_), 1);
-    const std::uint64_t count = std::min({left, room, fair, std::uint64_t(threads_[size_t(rank)])});
-    if (rank == 0)
+    const std::uint64_t count = std::min({left, room, fair, wish.count});
+    if (wish.rank == 0)
       dealt_to_me(dealt_, count);
     else
-      team_.post_.send(rank, letter(LetterKind::deal).add(dealt_).add(count).parcel());
+      team_.post_.send(wish.rank, letter(LetterKind::deal).add(dealt_).add(count).parcel());
     dealt_ += count;
   }
 
@@ -252,6 +272,8 @@ class TeamSchedule::Call {
   std::deque<std::uint64_t> own_, own_end_;
   std::uint64_t unstarted_ = 0;
   bool asked_ = false, all_dealt_ = false;
+  std::chrono::duration<double> busy_{0};  ///< the time that items took, and their number
+  std::uint64_t computed_ = 0;
 
   std::deque<Reading> arrived_;          ///< results of others, still packed
   std::map<std::uint64_t, Made> ready_;  ///< results that wait for their turn
@@ -260,7 +282,7 @@ class TeamSchedule::Call {
 
   // The leader's.
   std::uint64_t dealt_ = 0;
-  std::deque<int> waiting_;  ///< those who asked while too much was under way
+  std::deque<Wish> waiting_;  ///< of those who asked while too much was under way
 };
 
 TeamSchedule::TeamSchedule(ProcessTeam& team, Film& film, int threads, const std::atomic<bool>& abort_,
