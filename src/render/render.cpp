@@ -6,7 +6,6 @@
 
 #include "describe/guard.h"
 #include "render_members.h"
-#include "team.h"
 
 namespace etendue {
 namespace {

@@ -16,6 +16,7 @@
 #include "consequences.h"
 #include "etendue/render/render.h"
 #include "parallel_schedule.h"
+#include "team.h"
 
 namespace etendue {
 
@@ -92,6 +93,8 @@ template <class Work>
 auto rendering(const Job& job, Work work) {
   try {
     return work();
+  } catch (const LostProcess&) {
+    throw;
   } catch (...) {
     blame(job, "rendering");
   }

@@ -2,7 +2,6 @@
 
 #include "describe/guard.h"
 #include "render_members.h"
-#include "team.h"
 
 namespace etendue {
 

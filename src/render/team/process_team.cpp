@@ -85,7 +85,7 @@ ProcessTeam::ProcessTeam(std::unique_ptr<Messages> messages, const TeamSettings&
                [this](int silent) {
                  const std::lock_guard lock(mutex_);
                  if (over_) return;
-                 lose(fmt::format("{} has not answered for {:.0f} seconds: it is lost, or stopped, or its connection is",
+                 lose(fmt::format("{} has not answered for {:.0f} seconds: it has ended or is stopped, or the connection is broken",
                                   name_of(silent), settings_.patience));
                }});
   if (leads())
