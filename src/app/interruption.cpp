@@ -33,7 +33,8 @@ void handle(int signal) {
   const int error = errno;  // of the interrupted call
   int none = 0;
   if (requests.compare_exchange_strong(none, 1)) {
-    say("\nfinishing this pass and writing what there is; Ctrl-C again aborts\n");
+    say(render->settings().team ? "\nwriting what there is, without this pass; Ctrl-C again aborts\n"
+                                : "\nfinishing this pass and writing what there is; Ctrl-C again aborts\n");
     render->stop();
   } else if (signal == SIGINT) {
     requests.store(2);
@@ -51,6 +52,8 @@ void install(void (*handler)(int)) {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // What mpirun passes on to its processes, while it ends them a second after SIGINT and SIGTERM.
+  if (running.load() && running.load()->settings().team) sigaction(SIGUSR1, &action, nullptr);
   // A process that was started by nohup must survive the end of its terminal.
   struct sigaction old = {};
   if (sigaction(SIGHUP, nullptr, &old) == 0 && old.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);

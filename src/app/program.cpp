@@ -3,6 +3,7 @@
 #include "program.h"
 
 #include "commands.h"
+#include "program_team.h"
 #include "streams.h"
 
 using namespace etendue;
@@ -61,5 +62,7 @@ int run_program(int argument_count, char** arguments) {
 
 extern "C" int etendue_main(int argument_count, char** arguments) {
   open_standard_streams();
-  return close_standard_streams(run_program(argument_count, arguments));
+  const int status = close_standard_streams(run_program(argument_count, arguments));
+  leave_team();
+  return status;
 }

@@ -188,6 +188,7 @@ Ref<Job> RenderOptions::load() const {
 RenderSettings RenderOptions::settings() const {
   RenderSettings settings;
   settings.threads = threads;
+  settings.team = team;
   settings.steps = parse_passes();
   settings.checkpoint_file = checkpoint_file();
   if (every.empty()) return settings;

@@ -3,6 +3,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -102,6 +103,14 @@ ParallelSchedule::ParallelSchedule(Film& film, int threads, const std::atomic<bo
 }
 
 ParallelSchedule::~ParallelSchedule() = default;
+
+int ParallelSchedule::threads() const { return state_->threads; }
+
+void ParallelSchedule::on_threads(const std::function<void(Arena&)>& work) {
+  (*state_->tasks).execute([&] {
+    tbb::parallel_for(0, state_->threads, [&](int) { work(state_->arenas.local()); }, tbb::simple_partitioner());
+  });
+}
 
 namespace {
 

@@ -23,9 +23,14 @@ class ParallelSchedule final : public Schedule {
                    std::function<void(std::uint64_t, std::uint64_t)> tick = {});
   ~ParallelSchedule() override;
 
- private:
+  /// How many threads it uses.
+  int threads() const;
+  /// Calls a function on as many of its threads as are free, at most once on each, with that thread's arena; it must do all
+  /// there is to do even if it is called only once.
+  void on_threads(const std::function<void(Arena&)>&);
   void run(const Items&, Work&) override;
 
+ private:
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -107,7 +107,7 @@ void Render::select_steps(std::optional<IndexRange> steps) {
 
 // ---- one step --------------------------------------------------------------------------------------------------------------
 
-std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {
+std::optional<Ended> Render::Members::step(Schedule& schedule) {
   while (true) {
     {
       std::unique_lock lock(turn);
@@ -119,6 +119,7 @@ std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {
     const std::shared_lock sharing(description);
     if (abort.load()) return Ended::aborted;
     if (!broken.empty()) throw Error(broken);
+    assemble();
     const IndexRange part = wanted();
     if (!process) {
       process = fresh_process();
@@ -157,6 +158,7 @@ std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {
         const std::lock_guard lock(m.counts);
         m.at_hand = {};
         if (finished) return;
+        if (m.settings.team) m.settings.team->drop_step();
         m.film->drop_step();
         m.process.reset();  // the process may be anywhere within the step
       }
@@ -164,13 +166,16 @@ std::optional<Ended> Render::Members::step(ParallelSchedule& schedule) {
     const WithinStep no_edits(*this);
     rendering(*job, [&] {
       const Step at{samples.begin / size, samples};
+      if (settings.team) settings.team->begin_step(at, process_state);
       process->prepare_step(schedule, at);
       process->step(schedule, at);
     });
     if (give_up.load()) {
       if (abort.load()) return Ended::aborted;
+      if (stop.load() && settings.team && !done.empty()) return Ended::interrupted;
       continue;
     }
+    if (settings.team) settings.team->end_step(process->save_state());
     const std::lock_guard lock(counts);
     film->end_step();
     insert(done, samples);
@@ -196,8 +201,8 @@ struct Forgotten {
 std::optional<Ended> Render::step() {
   const Forgotten forgotten{*members_};
   if (members_->stop.load()) return Ended::interrupted;
-  ParallelSchedule schedule(*members_->film, members_->settings.threads, members_->give_up);
-  return members_->step(schedule);
+  const std::unique_ptr<Schedule> schedule = members_->make_schedule();
+  return members_->step(*schedule);
 }
 
 // ---- all steps -------------------------------------------------------------------------------------------------------------
@@ -216,6 +221,7 @@ std::optional<Ended> Render::Members::reason_to_stop() {
 
 Ended Render::run() {
   const Forgotten forgotten{*members_};
+  if (Team* const team = members_->settings.team; team && !team->leads()) return members_->follow_leader();
   const bool keeps = !members_->settings.checkpoint_file.empty();
   {
     const std::shared_lock sharing(members_->description);
@@ -235,15 +241,14 @@ Ended Render::run() {
     p.finished = finished;
     members_->settings.on_progress(p);
   };
-  ParallelSchedule schedule(*members_->film, members_->settings.threads, members_->give_up,
-                            [&](std::uint64_t item, std::uint64_t count) {
-                              const WithinStep no_edits(*members_);
-                              {
-                                const std::lock_guard lock(members_->counts);
-                                members_->part_at_hand = double(item) / double(count);
-                              }
-                              report(false);
-                            });
+  const std::unique_ptr<Schedule> schedule = members_->make_schedule([&](std::uint64_t item, std::uint64_t count) {
+    const WithinStep no_edits(*members_);
+    {
+      const std::lock_guard lock(members_->counts);
+      members_->part_at_hand = double(item) / double(count);
+    }
+    report(false);
+  });
   std::optional<Ended> ended;
   bool written = false;
   if (!samples_done().empty()) {
@@ -251,7 +256,12 @@ Ended Render::run() {
     written = keeps && members_->loaded_from == members_->settings.checkpoint_file;
   }
   while (!ended) {
-    ended = members_->step(schedule);
+    try {
+      ended = members_->step(*schedule);
+    } catch (const LostProcess&) {  // what there is would be lost with it
+      if (keeps && !written) members_->keep();
+      throw;
+    }
     if (ended == Ended::aborted) return *ended;
     if (ended) break;
     written = false;
@@ -267,7 +277,11 @@ Ended Render::run() {
   return *ended;
 }
 
-void Render::stop() { members_->stop.store(true); }
+// A team drops its step: mpirun gives one second between the signal to end and the kill.
+void Render::stop() {
+  members_->stop.store(true);
+  if (members_->settings.team) members_->give_up.store(true);
+}
 void Render::abort() {
   members_->abort.store(true);
   members_->give_up.store(true);

@@ -44,6 +44,7 @@ void Render::edit(const Component& component, const std::string& member, const V
 }
 
 void Render::edit(std::span<const Edit> edits) {
+  if (members_->settings.team) throw Error("a render that several processes compute cannot be edited");
   const std::lock_guard one_at_a_time(members_->editing);
   if (!members_->holders) members_->holders = std::make_unique<Holders>(*members_->job);
   Consequences consequences;

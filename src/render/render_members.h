@@ -16,6 +16,7 @@
 #include "consequences.h"
 #include "etendue/render/render.h"
 #include "parallel_schedule.h"
+#include "team.h"
 
 namespace etendue {
 
@@ -39,6 +40,7 @@ struct Render::Members {
   mutable std::optional<Identity> identity;  ///< of the job; computed on demand, since it reads files
   std::uint32_t step_size = 1;               ///< samples per step, until the next edit
   std::string loaded_from;                   ///< the checkpoint file whose state the render still has; empty: none
+  bool assembled = false;                    ///< the processes of the team have met for this render
   std::string broken;                        ///< why nothing can be rendered: an edit could be neither made nor undone
 
   std::mutex editing;                ///< serializes edits
@@ -68,7 +70,10 @@ struct Render::Members {
   void park_process();
   void follow(const Consequences&);
   void empty();
-  std::optional<Ended> step(ParallelSchedule&);
+  std::optional<Ended> step(Schedule&);
+  std::unique_ptr<Schedule> make_schedule(std::function<void(std::uint64_t, std::uint64_t)> tick = {});
+  void assemble();
+  Ended follow_leader();
   std::optional<Ended> reason_to_stop();
   Progress progress_now() const;  ///< requires that `counts` is held
   const Identity& identity_now() const;
@@ -88,6 +93,8 @@ template <class Work>
 auto rendering(const Job& job, Work work) {
   try {
     return work();
+  } catch (const LostProcess&) {
+    throw;
   } catch (...) {
     blame(job, "rendering");
   }

@@ -15,6 +15,8 @@
 
 namespace etendue {
 
+class Team;
+
 /// How far a render is.
 struct Progress {
   std::uint32_t samples = 0, samples_wanted = 0;  ///< per pixel, in whole steps
@@ -40,6 +42,10 @@ struct RenderSettings {
   double progress_interval = 0.25;   ///< [s]
   std::string checkpoint_file = {};  ///< where `run` saves its state while it renders; empty: nowhere
   double checkpoint_interval = 60;   ///< [s] between two savings at least; 0: after every step
+  /// The processes that compute this render together (src/render/team.h); null: this one alone. The leader's render collects
+  /// the picture, and cannot be edited. Others only compute: `run` ends when the leader's render has ended, and their film is
+  /// empty.
+  Team* team = nullptr;
 };
 
 /// A copy of the state of a render at one moment. It is independent of the render and may be used by any thread.
@@ -78,8 +84,8 @@ class Render {
   Ended run();
   /// Renders the next step. Returns the reason if it rendered none: all samples are done, or stop or abort was called.
   std::optional<Ended> step();
-  /// Stops the current run, or else the next one: `stop` after the current step; `abort` at once, in the middle of its paths,
-  /// and without the step. Safe in signal handlers.
+  /// Stops the current run, or else the next one: `stop` after the current step, or without it if a team computes it; `abort`
+  /// at once, in the middle of its paths, and without the step. Safe in signal handlers.
   void stop();
   void abort();
   /// Starts over, with other random numbers if a seed is given.

@@ -6,6 +6,7 @@
 
 #include "app/fireflies.h"
 #include "app/interruption.h"
+#include "app/program_team.h"
 #include "app/progress_display.h"
 #include "app/render_options.h"
 #include "app/tev.h"
@@ -20,6 +21,7 @@
 #include "render/checkpoint.h"
 #include "render/denoising.h"
 #include "render_series.h"
+#include "render_team.h"
 
 namespace etendue {
 
@@ -151,6 +153,7 @@ void require_outputs(const Job& job, const std::vector<Ref<Output>>& outputs, co
 
 int render(const RenderOptions& options, Series& series) {
   const std::optional<TevAddress> tev = options.tev.empty() ? std::nullopt : std::optional(parse_tev_address(options.tev));
+  const TeamRender with_others(options);
   const Ref<Job> job = options.load();
   if (!options.pixel.empty()) return replay(job, options);
 
@@ -239,6 +242,9 @@ void add_render_command(Command& program) {
       "\nThe first Ctrl-C ends the render after the current pass and writes what there is, a second one aborts it.\n"
       "The picture depends on the file and the seed alone, never on the number of threads.");
   command.runs([options] {
+    ProcessTeam* const team = join_team();
+    options->team = team;
+    if (team && !team->leads()) return follow_renders(*options, *team);
     return render_series(*options, [](const RenderOptions& one, Series& series) { return render(one, series); });
   });
 }

@@ -73,20 +73,6 @@ void refuse_for_several(const RenderOptions& options, bool several_frames) {
                    fmt::format("all frames would be written to '{}': write #### where the frame number belongs", output));
 }
 
-/// The options of one frame of one file.
-RenderOptions one_of(const RenderOptions& options, const std::string& file, std::optional<int> frame, bool several_frames) {
-  RenderOptions one = options;
-  one.file = file;
-  one.files = {file};
-  one.frames.clear();
-  one.frame = frame;
-  one.animated = one.in_series = several_frames;
-  if (!frame) return one;
-  for (std::string& output : one.outputs) output = numbered(output, *frame);
-  for (std::string* name : {&one.checkpoint, &one.resume, &one.continue_file}) *name = numbered(*name, *frame);
-  return one;
-}
-
 /// Announces the render that begins, as JSON with --progress json.
 void announce(const RenderOptions& one, size_t number, size_t count) {
   if (one.quiet) return;
@@ -121,6 +107,19 @@ std::string what_lacks(const Image& picture, const Job& job, const RenderOptions
 }
 
 }  // namespace
+
+RenderOptions one_of(const RenderOptions& options, const std::string& file, std::optional<int> frame, bool several_frames) {
+  RenderOptions one = options;
+  one.file = file;
+  one.files = {file};
+  one.frames.clear();
+  one.frame = frame;
+  one.animated = one.in_series = several_frames;
+  if (!frame) return one;
+  for (std::string& output : one.outputs) output = numbered(output, *frame);
+  for (std::string* name : {&one.checkpoint, &one.resume, &one.continue_file}) *name = numbered(*name, *frame);
+  return one;
+}
 
 std::string numbered(const std::string& text, int frame) {
   const auto [begin, end] = place_of_number(text);

@@ -28,6 +28,9 @@ void number_outputs(const std::vector<Ref<Output>>& outputs, const RenderOptions
 /// metadata tell. Reports images that are skipped on standard output, those that are rendered again on standard error.
 bool are_whole(const std::vector<Ref<Output>>& outputs, const Job&, const RenderOptions&);
 
+/// The options of one frame of one file. `several_frames`: it is one of several.
+RenderOptions one_of(const RenderOptions&, const std::string& file, std::optional<int> frame, bool several_frames);
+
 /// Renders each frame of each file. The errors of one render are reported and the others are still rendered; an interruption
 /// ends the series.
 int render_series(const RenderOptions&, const std::function<int(const RenderOptions&, Series&)>& render);

@@ -1,0 +1,25 @@
+#pragma once
+// Renders of `etendue render` that several processes compute (program_team.h).
+
+#include "app/render_options.h"
+#include "render/team/process_team.h"
+
+namespace etendue {
+
+/// While it exists, the other processes compute the render that these options describe; nothing happens without a team.
+class TeamRender {
+ public:
+  explicit TeamRender(const RenderOptions&);
+  ~TeamRender();
+  TeamRender(const TeamRender&) = delete;
+  TeamRender& operator=(const TeamRender&) = delete;
+
+ private:
+  ProcessTeam* team_ = nullptr;
+};
+
+/// What a follower does: computes the leader's renders until there are no more. It writes nothing, and leaves all signals to
+/// the leader. Returns the exit status.
+int follow_renders(const RenderOptions&, ProcessTeam&);
+
+}  // namespace etendue

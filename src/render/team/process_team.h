@@ -1,0 +1,110 @@
+#pragma once
+// ProcessTeam: a Team whose members send each other messages.
+
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "letter.h"
+#include "post.h"
+#include "render/team.h"
+
+namespace etendue {
+
+class TeamSchedule;
+
+/// How the members work, for each of them alike.
+struct TeamSettings {
+  std::string version;   ///< of the program, and of its build: all must have the same
+  double patience = 25;  ///< [s] a process may be silent for so long
+};
+
+class ProcessTeam final : public Team {
+ public:
+  /// Connects. The leader waits for all others, and throws Error if one of them is of another version.
+  ProcessTeam(std::unique_ptr<Messages>, const TeamSettings&);
+  /// Ends all other processes at once if one is lost; otherwise sends them home and waits until they have gone.
+  ~ProcessTeam() override;
+
+  int rank() const { return post_.rank(); }
+  int size() const { return post_.size(); }
+  /// "process 3 on node7"
+  std::string name_of(int rank) const;
+
+  // ---- renders, one after the other ----------------------------------------------------------------------------------------
+
+  /// Leader: lets the others prepare a render, of which `what` tells them.
+  void begin_render(std::vector<std::byte> what);
+  void end_render() noexcept;
+  /// Follower: waits for the next render; nothing: there is none.
+  std::optional<std::vector<std::byte>> next_render();
+  /// Follower: the leader warns the user, once if several have the same warning.
+  void warn(const std::string& text, const Location&);
+
+  // ---- Team ----------------------------------------------------------------------------------------------------------------
+
+  bool leads() const override { return rank() == 0; }
+  void assemble(const Prepared&) override;
+  std::unique_ptr<Schedule> schedule(Film&, int threads, const std::atomic<bool>& abort,
+                                     std::function<void(std::uint64_t, std::uint64_t)> tick) override;
+  void begin_step(const Step&, const std::vector<std::byte>& state) override;
+  void end_step(const std::vector<std::byte>& state) override;
+  void drop_step() noexcept override;
+  std::optional<Task> next_step(std::atomic<bool>& abort) override;
+  void finished(const std::vector<std::byte>& state) override;
+  void failed(const std::vector<Error>&) noexcept override;
+
+ private:
+  friend class TeamSchedule;
+  struct Member {
+    std::string host;
+    std::uint64_t process = 0;
+    std::vector<std::uint64_t> cores;  ///< a bit for each core that it may use
+  };
+  void say_hello();
+  void meet();
+  void lose(const std::string& why);
+  void forget_errors();
+  void received(int from, std::vector<std::byte>);
+  void lead(Reading&);
+  void follow(Reading&);
+  void require_same(int rank, Reading&, const Prepared& own);
+  void require_whole() const;
+  template <class Done>
+  void wait(std::unique_lock<std::mutex>&, const Done&);
+  void connect(TeamSchedule*);
+  void to_all(const Parcel&);
+  bool troubled() const { return trouble_.load(); }
+
+  const TeamSettings settings_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Member> members_;
+  std::string lost_;                      ///< why the team is no longer whole; empty: it is
+  std::vector<Error> errors_;             ///< of followers, about the current render or step
+  std::atomic<bool> trouble_{false};      ///< one of these two
+  std::uint64_t render_ = 0, epoch_ = 0;  ///< numbers of the current render, and of the current step among all that were begun
+  std::atomic<int> share_{1};             ///< the number of threads for this process that the cores suffice for
+  std::vector<int> threads_;              ///< of each process, in the current step
+  size_t largest_ = 0;                    ///< samples that each tile keeps (Film::largest_kept)
+
+  // The leader's.
+  std::vector<std::optional<Reading>> prepared_;
+  std::vector<std::optional<std::uint64_t>> finished_;  ///< hashes of the followers' states after the current step
+  std::optional<std::uint64_t> common_;                 ///< hash of the state that all processes have
+  bool step_at_hand_ = false;
+
+  // Followers'.
+  std::deque<Reading> orders_;
+  std::uint64_t dropped_ = 0;  ///< the last step that the leader dropped, and all before it
+  std::atomic<bool>* abort_ = nullptr;
+  bool over_ = false;
+
+  std::mutex schedule_mutex_;
+  TeamSchedule* schedule_ = nullptr;
+  Post post_;  // last: its thread uses all of the above
+};
+
+}  // namespace etendue
