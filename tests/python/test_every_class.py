@@ -98,6 +98,8 @@ def equal(read, expected):
         return read is expected
     if isinstance(expected, list) and expected and isinstance(expected[0], etendue.Part):
         return list(read) == expected and all(a is b for a, b in zip(read, expected))
+    if isinstance(expected, tuple) and expected and isinstance(expected[0], etendue.Value):
+        return tuple(read) == expected
     if isinstance(expected, (bool, str)) or (expected and isinstance(expected, tuple) and isinstance(expected[0], str)):
         return read == expected and type(read) is type(expected)
     if isinstance(expected, (int, float, list, tuple)):

@@ -356,13 +356,8 @@ def test_the_wrong_class():
 
 
 def test_a_spectral_picture_has_a_spectrum():
-    job = etendue.Job(
-        renderer=etendue.PathTracer(samples=4),
-        image=etendue.SpectralFilm(width=5, height=4, edges=[400, 500.5, 600, 700]),
-        camera=etendue.PerspectiveCamera(**{"from": [0, 0, -4], "to": [0, 0, 0]}),
-        scene=etendue.BruteForceScene(objects=[etendue.Sphere(emission=etendue.DiffuseEmission(radiance=2))]),
-    )
-    image = etendue.render(job, progress=False)
+    text = LIT.replace("ImageBuffer { width: 16, height: 12,", "SpectralFilm { width: 5, height: 4, edges: [400, 500.5, 600, 700] nm,")
+    image = etendue.render(etendue.loads(text), progress=False)
     assert image.spectrum.shape == (4, 5, 3)
     assert image.wavelengths.tolist() == [450.25, 550.25, 650]
     assert image.band_edges.tolist() == [400, 500.5, 600, 700]

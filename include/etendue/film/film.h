@@ -25,7 +25,7 @@ enum class Estimator : std::uint8_t {
 /// An immutable copy of a film's sums, independent of the film and of the description. May be used by any thread.
 class FilmSnapshot {
  public:
-  /// The image as X Y Z, with the requested layers as further channels.
+  /// The image as X Y Z, with the requested layers, and the bands of a spectral film, as further channels.
   Image develop() const;
   /// The mean over pixels of the standard error of Y, relative to Y + 1e-3 of the image's mean: the criterion for stopping at a
   /// given error. Infinite if there are too few samples for an estimate.

@@ -99,7 +99,7 @@ class ImageTile {
   PixelArea area_, extent_;    // those of them in the image, and all pixels of the image that the samples contribute to
   std::vector<double> light_;  // X Y Z and Y^2, weighted by the filter, per pixel of the extent
   bool lit_ = false;           // whether any value of light_ is not zero
-  std::vector<double> parts_;  // X Y Z per part and pixel of the extent
+  std::vector<double> parts_;  // X Y Z per part and the bands, per pixel of the extent; then of each splat (film/tile_values.h)
   std::vector<std::uint32_t> samples_;  // number of samples per pixel of the area
   std::vector<double> weights_;         // sum of (weight - 1) per pixel of the area; empty if all weights are 1
   std::vector<double> features_;        // feature_values per pixel of the area

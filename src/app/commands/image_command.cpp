@@ -1,4 +1,4 @@
-// etendue image diff, info, tonemap, spectrum, sensor, merge: tools for image files.
+// etendue image diff, info, tonemap, spectrum, sensor, balance, merge: tools for image files.
 
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 #include "etendue/tone_map.h"
 #include "files/input_files.h"
 #include "files/output_files.h"
+#include "image_balance.h"
 #include "image_merge.h"
 #include "image_sensor.h"
 #include "image_spectrum.h"
@@ -166,6 +167,7 @@ void add_image_command(Command& program) {
   add_tonemap(command);
   add_image_spectrum(command);
   add_image_sensor(command);
+  add_image_balance(command);
   add_image_merge(command);
 }
 

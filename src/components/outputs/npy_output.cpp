@@ -31,7 +31,12 @@ class NpyOutput final : public Output {
   bool for_display() const override { return false; }
 
   void write_image(const Image& given, const std::string& path) const override {
-    if (spectrum) return write_spectrum(given, path);
+    if (spectrum) {
+      if (const std::vector<size_t> bands = spectral_channels(given); !bands.empty()) return write_spectrum(given, bands, path);
+      // The picture is kept rather than lost after a long render.
+      warn("'" + path +
+           "' has X, Y, Z: the picture has no spectrum; the image is no SpectralFilm, or the picture was denoised");
+    }
     const Image image = convert_color_space(given, "xyz");
     std::vector<size_t> kept;
     for (const char* name : {"X", "Y", "Z"})
@@ -43,17 +48,16 @@ class NpyOutput final : public Output {
   }
 
  private:
+  static std::vector<size_t> spectral_channels(const Image& image) {
+    std::vector<size_t> channels;
+    for (const ImageBand& band : bands_of(image)) channels.push_back(band.channel);
+    for (size_t c = 0; channels.empty() && c < image.channels.size(); ++c)
+      if (measures_spectrum(image.channels[c])) channels.push_back(c);
+    return channels;
+  }
+
   /// The bands alone, and their edges in a file of their own.
-  void write_spectrum(const Image& image, const std::string& path) const {
-    std::vector<size_t> kept;
-    for (const ImageBand& band : bands_of(image)) kept.push_back(band.channel);
-    for (size_t c = 0; kept.empty() && c < image.channels.size(); ++c)
-      if (measures_spectrum(image.channels[c])) kept.push_back(c);
-    if (kept.empty())
-      throw Error(
-          fmt::format("cannot write the spectrum to '{}': the picture has none; the image is no SpectralFilm, or the "
-                      "picture was denoised",
-                      path));
+  static void write_spectrum(const Image& image, const std::vector<size_t>& kept, const std::string& path) {
     write_array(path, {size_t(image.height), size_t(image.width), kept.size()}, image, kept);
     const std::vector<double> edges = band_edges_of(image);
     if (!edges.empty()) write_array(path.substr(0, path.rfind('.')) + ".edges.npy", {edges.size()}, edges);
