@@ -213,6 +213,29 @@ TEST(PathLayers, DoNotChangeThePicture) {
   }
 }
 
+// The parts of a surface that is half matt, half rough metal are those of scenes with one of the two alone.
+TEST(PathLayers, DivideTheLobesOfASurface) {
+  const auto lit = [](const std::string& renderer, const std::string& shader) {
+    return job_of(fmt::format(R"(matt = Lambertian {{ color: rgb(0.8, 0.3, 0.1) }}
+      metal = Conductor {{ roughness: 0.4 }}
+      Job {{ renderer: {} {{ max_depth: 2 }}
+        camera: PerspectiveCamera {{ from: [0, 0, 4], to: [0, 0, 0], fov: 30 }}
+        image: ImageBuffer {{ width: 4, height: 4, layers: ["path.matt = C<RD>L", "path.metal = C<RG>L"] }}
+        scene: BvhScene {{ objects: [ Sphere {{ radius: 1, shader: {} }}
+          Sphere {{ centre: [3, 3, 3], radius: 1, emission: DiffuseEmission {{ radiance: 5 }} }} ] }} }})",
+                              renderer, shader),
+                  512);
+  };
+  const double matt = means(test::rendered(lit("PathTracer", "matt"), two_threads)->picture())["Y"];
+  const double metal = means(test::rendered(lit("PathTracer", "metal"), two_threads)->picture())["Y"];
+  for (const char* renderer : {"PathTracer", "BidirectionalPathTracer", "LightTracer"}) {
+    const auto render = test::rendered(lit(renderer, "MixShader { first: matt, second: metal, amount: 0.25 }"), two_threads);
+    std::map<std::string, double> mean = means(render->picture());
+    EXPECT_NEAR(mean["path.matt.Y"], 0.75 * matt, 0.02 * matt) << renderer;
+    EXPECT_NEAR(mean["path.metal.Y"], 0.25 * metal, 0.02 * metal) << renderer;
+  }
+}
+
 // Each wavelength of a path that dispersive glass divides keeps its own part of mixed states.
 TEST(PathLayers, FollowSingleWavelengths) {
   std::map<std::string, double> truth;
