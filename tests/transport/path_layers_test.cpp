@@ -236,6 +236,27 @@ TEST(PathLayers, DivideTheLobesOfASurface) {
   }
 }
 
+// An object in an instance has its own name and that of the instance's shader; light that was scattered in a body crosses its
+// surface twice.
+TEST(PathLayers, KnowInstancesAndBodies) {
+  const auto render = test::rendered(job_of(R"(red = Lambertian { color: rgb(0.8, 0.1, 0.1) }
+      leaf = Sphere { radius: 0.4, shader: Lambertian { color: 0.5 } }
+      Job { renderer: PathTracer { max_depth: 8 }
+        camera: PerspectiveCamera { from: [0, 0.3, 3.2], to: [0, 0, 0], fov: 50 }
+        image: ImageBuffer { width: 16, height: 12, layers: ["path.emitted = C[LBO]", "path.surfaces = C[^T]+[LBO]",
+          "path.bodies = C.*<T.><TD>.*", "path.leaf = C'leaf'.*", "path.red = C'red'.*"] }
+        scene: BvhScene { objects: [ Sphere { radius: 0.7, shader: Subsurface {} }
+          Instance { scene: BvhScene { objects: [ leaf ] }, shader: red, transform: translate(0.9, 0, 0.5) }
+          Environment { emission: EnvironmentEmission { radiance: 1 } } ] } })",
+                                            64),
+                                     two_threads);
+  std::map<std::string, double> mean = means(render->picture());
+  EXPECT_GT(mean["path.leaf.Y"], 0.01);
+  EXPECT_NEAR(mean["path.red.Y"], mean["path.leaf.Y"], 1e-9);
+  EXPECT_GT(mean["path.bodies.Y"], 0.01);
+  EXPECT_NEAR(mean["path.emitted.Y"] + mean["path.surfaces.Y"] + mean["path.bodies.Y"], mean["Y"], 1e-6);
+}
+
 // Each wavelength of a path that dispersive glass divides keeps its own part of mixed states.
 TEST(PathLayers, FollowSingleWavelengths) {
   std::map<std::string, double> truth;
