@@ -213,6 +213,50 @@ TEST(PathLayers, DoNotChangeThePicture) {
   }
 }
 
+// The parts of a surface that is half matt, half rough metal are those of scenes with one of the two alone.
+TEST(PathLayers, DivideTheLobesOfASurface) {
+  const auto lit = [](const std::string& renderer, const std::string& shader) {
+    return job_of(fmt::format(R"(matt = Lambertian {{ color: rgb(0.8, 0.3, 0.1) }}
+      metal = Conductor {{ roughness: 0.4 }}
+      Job {{ renderer: {} {{ max_depth: 2 }}
+        camera: PerspectiveCamera {{ from: [0, 0, 4], to: [0, 0, 0], fov: 30 }}
+        image: ImageBuffer {{ width: 4, height: 4, layers: ["path.matt = C<RD>L", "path.metal = C<RG>L"] }}
+        scene: BvhScene {{ objects: [ Sphere {{ radius: 1, shader: {} }}
+          Sphere {{ centre: [3, 3, 3], radius: 1, emission: DiffuseEmission {{ radiance: 5 }} }} ] }} }})",
+                              renderer, shader),
+                  512);
+  };
+  const double matt = means(test::rendered(lit("PathTracer", "matt"), two_threads)->picture())["Y"];
+  const double metal = means(test::rendered(lit("PathTracer", "metal"), two_threads)->picture())["Y"];
+  for (const char* renderer : {"PathTracer", "BidirectionalPathTracer", "LightTracer"}) {
+    const auto render = test::rendered(lit(renderer, "MixShader { first: matt, second: metal, amount: 0.25 }"), two_threads);
+    std::map<std::string, double> mean = means(render->picture());
+    EXPECT_NEAR(mean["path.matt.Y"], 0.75 * matt, 0.02 * matt) << renderer;
+    EXPECT_NEAR(mean["path.metal.Y"], 0.25 * metal, 0.02 * metal) << renderer;
+  }
+}
+
+// An object in an instance has its own name and that of the instance's shader; light that was scattered in a body crosses its
+// surface twice.
+TEST(PathLayers, KnowInstancesAndBodies) {
+  const auto render = test::rendered(job_of(R"(red = Lambertian { color: rgb(0.8, 0.1, 0.1) }
+      leaf = Sphere { radius: 0.4, shader: Lambertian { color: 0.5 } }
+      Job { renderer: PathTracer { max_depth: 8 }
+        camera: PerspectiveCamera { from: [0, 0.3, 3.2], to: [0, 0, 0], fov: 50 }
+        image: ImageBuffer { width: 16, height: 12, layers: ["path.emitted = C[LBO]", "path.surfaces = C[^T]+[LBO]",
+          "path.bodies = C.*<T.><TD>.*", "path.leaf = C'leaf'.*", "path.red = C'red'.*"] }
+        scene: BvhScene { objects: [ Sphere { radius: 0.7, shader: Subsurface {} }
+          Instance { scene: BvhScene { objects: [ leaf ] }, shader: red, transform: translate(0.9, 0, 0.5) }
+          Environment { emission: EnvironmentEmission { radiance: 1 } } ] } })",
+                                            64),
+                                     two_threads);
+  std::map<std::string, double> mean = means(render->picture());
+  EXPECT_GT(mean["path.leaf.Y"], 0.01);
+  EXPECT_NEAR(mean["path.red.Y"], mean["path.leaf.Y"], 1e-9);
+  EXPECT_GT(mean["path.bodies.Y"], 0.01);
+  EXPECT_NEAR(mean["path.emitted.Y"] + mean["path.surfaces.Y"] + mean["path.bodies.Y"], mean["Y"], 1e-6);
+}
+
 // Each wavelength of a path that dispersive glass divides keeps its own part of mixed states.
 TEST(PathLayers, FollowSingleWavelengths) {
   std::map<std::string, double> truth;
