@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 
 constexpr auto sign_interval = 1s;
 // The thread looks for messages again after these times: messages cannot wake it, and a look takes some microseconds.
-constexpr std::chrono::microseconds shortest_rest = 200us, longest_rest = 2ms;
+constexpr std::chrono::microseconds shortest_rest = 500us, longest_rest = 2ms;
 
 /// An empty message is a sign of life.
 const Parcel& sign_of_life() {
