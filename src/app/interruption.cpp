@@ -52,8 +52,8 @@ void install(void (*handler)(int)) {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  // What mpirun passes on to its processes, while it ends them a second after SIGINT and SIGTERM.
-  if (running.load() && running.load()->settings().team) sigaction(SIGUSR1, &action, nullptr);
+  // Slurm sends it some time before the end of a job, and mpirun passes it on, without killing soon after.
+  sigaction(SIGUSR1, &action, nullptr);
   // A process that was started by nohup must survive the end of its terminal.
   struct sigaction old = {};
   if (sigaction(SIGHUP, nullptr, &old) == 0 && old.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);

@@ -5,10 +5,9 @@
 
 namespace etendue {
 
-/// While an object of this class exists, the first SIGINT, SIGTERM or SIGHUP lets the render finish its pass. A second SIGINT
-/// aborts the render after the paths that its threads are computing; a third ends the program. Under nohup SIGHUP stays
-/// ignored. A render that a team computes does not finish its pass, and takes SIGUSR1 like SIGTERM. At most one object may
-/// exist at a time.
+/// While an object of this class exists, the first SIGINT, SIGTERM, SIGUSR1 or SIGHUP lets the render finish its pass, or drop
+/// it if a team computes it. A second SIGINT aborts the render after the paths that its threads are computing; a third ends the
+/// program. Under nohup SIGHUP stays ignored. At most one object may exist at a time.
 class Interruption {
  public:
   explicit Interruption(Render&);

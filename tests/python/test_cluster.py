@@ -73,6 +73,20 @@ def test_what_cannot_be_divided_is_refused(submit, tmp_path, arguments, reason):
     assert not (tmp_path / "small.render.sbatch").exists()
 
 
+def test_a_job_that_renders_by_mpi(submit, tmp_path):
+    (tmp_path / "bin" / "srun").write_text('#!/bin/sh\necho "$1 $2" > srun_options\nshift 2\nexec "$@"\n')
+    (tmp_path / "bin" / "srun").chmod(0o755)
+    done = submit("--nodes", "3", "--set", "renderer=GuidedPathTracer { samples: 4 }", "-o", "a b.npy", "--slurm=--partition=fast")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "small.render.sbatch\njob 17: the picture\n"
+    script = (tmp_path / "small.render.sbatch").read_text()
+    assert "\n#SBATCH --nodes=3\n" in script and "\n#SBATCH --partition=fast\n" in script
+    assert (tmp_path / "srun_options").read_text() == "--mpi=pmix --cpus-per-task=1\n"
+    assert (tmp_path / "a b.npy").exists() and (tmp_path / "small.checkpoint").exists()
+    for both in (["--nodes", "2", "--parts", "2"], []):
+        assert submit(*both).returncode == 2
+
+
 def test_where_there_is_no_slurm(submit):
     done = submit("--parts", "2", slurm=False)
     if not pathlib.Path("/usr/bin/sbatch").exists():

@@ -1,4 +1,5 @@
-"""`etendue cluster submit` with a real Slurm, all of which runs on this machine: a job array, requeued tasks, the merged picture."""
+"""`etendue cluster submit` with a real Slurm, all of which runs on this machine: a job array, requeued tasks, the merged picture; a job
+whose processes render together by MPI."""
 
 import getpass
 import os
@@ -128,3 +129,26 @@ def test_requeued_tasks_and_the_merged_picture(slurm, tmp_path):
     printed, _ = submitted.communicate(timeout=1000)
     assert submitted.returncode == 0, printed
     assert (tmp_path / "merged.npy").read_bytes() == (tmp_path / "one.npy").read_bytes()
+
+
+@pytest.mark.skipif(not (PROGRAM.parent / "libetendue_mpi.so").exists(), reason="built without MPI")
+def test_a_job_whose_processes_render_together_and_which_is_requeued(slurm, tmp_path):
+    if "pmix" not in subprocess.run(["srun", "--mpi=list"], capture_output=True, text=True).stderr.split() and not list(
+        pathlib.Path("/usr/lib").glob("*/slurm*/mpi_pmix.so")
+    ):
+        pytest.skip("this Slurm has no pmix")
+    picture = [SCENE, "--samples", "400", "--size", "128x128"]
+    subprocess.run([PROGRAM, "render", *picture, "-o", tmp_path / "one.npy", "--quiet"], check=True)
+    options = ["--nodes", "1", "-o", "together.npy", "--wait"]
+    for option in ("--time=30", "--ntasks-per-node=2", "--cpus-per-task=1"):
+        options.append("--slurm=" + option)
+    submitted = subprocess.Popen([PROGRAM, "cluster", "submit", *picture, *options], cwd=tmp_path, stdout=subprocess.PIPE, text=True)
+    job = wait_for(lambda: slurm("squeue", "--noheader", "--states=RUNNING", "--format=%i").strip())
+    time.sleep(2)
+    # As when the time is almost up: the leader saves, and the job requeues itself.
+    slurm("scancel", "--signal=USR1", job)
+    printed, _ = submitted.communicate(timeout=1000)
+    log = (tmp_path / "cornell_box.log").read_text()
+    assert submitted.returncode == 0, printed + log
+    assert ", interrupted\n" in log
+    assert (tmp_path / "together.npy").read_bytes() == (tmp_path / "one.npy").read_bytes()

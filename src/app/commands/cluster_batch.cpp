@@ -67,6 +67,37 @@ exit $status
   return text;
 }
 
+std::string mpi_script(const BatchRender& batch) {
+  std::string text = fmt::format(
+      R"(#!/bin/sh
+# Written by 'etendue cluster submit': a process on each node, which render the picture together.
+#SBATCH --job-name={0}
+#SBATCH --nodes={1}
+#SBATCH --ntasks-per-node=1
+#SBATCH --output={0}.log
+#SBATCH --open-mode=append
+#SBATCH --requeue
+#SBATCH --signal=USR1@{2}
+)",
+      batch.name, batch.nodes, notice);
+  text += slurm_lines(batch);
+  // Since Slurm 22.05 srun does not take --cpus-per-task from the job.
+  text += fmt::format(
+      R"(
+srun --mpi="${{ETENDUE_SRUN_MPI:-pmix}}" --cpus-per-task="${{SLURM_CPUS_PER_TASK:-${{SLURM_CPUS_ON_NODE:-1}}}}" \
+  {0} render{1}{2} --progress none --continue {3}
+status=$?
+# {4}: the time is almost up (USR1), and the checkpoint is saved. Slurm itself requeues what it preempts.
+if [ $status = {4} ]; then
+  exec scontrol requeue "$SLURM_JOB_ID"
+fi
+exit $status
+)",
+      shell_quoted(batch.program), batch.render_options, batch.merge_options, shell_quoted(batch.name + ".checkpoint"),
+      exit_status::interrupted);
+  return text;
+}
+
 std::string merge_script(const BatchRender& batch) {
   std::string text = fmt::format(
       R"(#!/bin/sh

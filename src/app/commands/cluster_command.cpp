@@ -21,13 +21,13 @@ namespace etendue {
 namespace {
 
 struct SubmitOptions : RenderOptions {
-  int parts = 1;
+  int parts = 0, nodes = 0;
   std::vector<std::string> slurm;
   std::string program;
   bool dry_run = false, wait = false;
 };
 
-/// The number of passes. Throws Error for renders that cannot be divided.
+/// The number of passes. Throws Error for renders that cannot be divided into parts.
 std::uint32_t passes_of(Job& job) {
   if (!job.renderer || !job.image) throw Error("the file describes no renderer or no image");
   if (job.renderer->steps_depend())
@@ -52,6 +52,7 @@ BatchRender batch_of(const SubmitOptions& options, std::uint32_t passes) {
   batch.render_options = options.picture_command().substr(std::string_view("etendue render").size());
   for (const std::string& output : options.outputs) batch.merge_options += " -o " + shell_quoted(output);
   batch.slurm_options = options.slurm;
+  batch.nodes = options.nodes;
   return batch;
 }
 
@@ -77,8 +78,30 @@ std::string submitted(const std::string& options, const std::string& script) {
   return line.substr(0, line.find(';'));
 }
 
+/// A job whose processes render the picture together.
+int submit_together(const SubmitOptions& options, Job& job) {
+  const BatchRender batch = batch_of(options, 1);
+  note_inputs_of(job);
+  const std::string script = batch.name + ".render.sbatch", checkpoint = batch.name + ".checkpoint";
+  OutputFiles files;
+  files.add(script, {});
+  files.add(checkpoint, {});
+  add_outputs(chosen_outputs(job.outputs, options.outputs), options.stem(), files);
+  files.raise();
+  write_whole_file(script, mpi_script(batch));
+  fmt::print("{}\n", script);
+  if (std::filesystem::exists(checkpoint)) fmt::print("{} is there already, and will be continued\n", checkpoint);
+  if (options.dry_run) return exit_status::done;
+  std::fflush(stdout);
+  fmt::print("job {}: the picture\n", submitted(options.wait ? " --wait" : "", script));
+  return exit_status::done;
+}
+
 int submit(const SubmitOptions& options) {
+  if ((options.parts > 0) == (options.nodes > 0))
+    throw Error("give either --parts N, for a job array, or --nodes N, for one job that renders by MPI");
   const Ref<Job> job = options.load();
+  if (options.nodes > 0) return submit_together(options, *job);
   const BatchRender batch = batch_of(options, passes_of(*job));
   note_inputs_of(*job);
   const std::string array = batch.name + ".render.sbatch", merge = batch.name + ".merge.sbatch";
@@ -115,8 +138,12 @@ void add_cluster_command(Command& program) {
   options->SceneOptions::add_to(command);
   options->add_picture_options(command);
   command.option("--parts N", options->parts, "Into how many parts, tasks of a job array, the passes are divided")
-      .required()
       .range(1, 100000);
+  command
+      .option("--nodes N", options->nodes,
+              "Instead of --parts: render by MPI, with one job that has a process on each of N nodes")
+      .range(1, 100000)
+      .excludes({"--parts"});
   command.option("--slurm OPTION", options->slurm, "An option for all jobs, as sbatch takes it; may be repeated");
   command.option("--program PATH", options->program, "The program on the machines that render [where this one is]");
   command.flag("--dry-run", options->dry_run, "Write the batch files, submit nothing");
@@ -125,6 +152,7 @@ void add_cluster_command(Command& program) {
       "\nExamples\n"
       "  etendue cluster submit box.etd --parts 16 -o box.exr\n"
       "  etendue cluster submit box.etd --parts 16 --slurm=--partition=fast --slurm=--time=1:00:00 --slurm=--cpus-per-task=32\n"
+      "  etendue cluster submit box.etd --nodes 8 -o box.exr        with any algorithm, also until --time or --error\n"
       "  etendue cluster submit box.etd --parts 16 --dry-run        and edit box.render.sbatch before 'sbatch "
       "box.render.sbatch'\n"
       "\nSubmit in a folder that all machines share. Parts that are lost or preempted are continued.");

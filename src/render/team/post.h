@@ -35,6 +35,17 @@ class Post {
   void send(int to, Parcel);  ///< any thread
   /// The same when the thread looks next, which spares waking it.
   void send_soon(int to, Parcel);
+  /// While one exists, somebody waits for a message: the thread looks more often.
+  class Waiting {
+   public:
+    explicit Waiting(Post&);
+    ~Waiting();
+    Waiting(const Waiting&) = delete;
+    Waiting& operator=(const Waiting&) = delete;
+
+   private:
+    Post& post_;
+  };
   /// Sends what is left, waits for the others, which must end as well, and ends the thread.
   void end();
   /// Ends all processes at once (Messages::abandon).
@@ -55,6 +66,7 @@ class Post {
   std::condition_variable changed_;
   std::vector<std::pair<int, Parcel>> outgoing_;
   bool urgent_ = false;  ///< something was sent that must not wait
+  int waiting_ = 0;
   bool started_ = false, ending_ = false;
   std::optional<int> abandoned_;  ///< with this status
 

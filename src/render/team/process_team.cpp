@@ -81,13 +81,14 @@ ProcessTeam::ProcessTeam(std::unique_ptr<Messages> messages, const TeamSettings&
   finished_.resize(count);
   threads_.assign(count, 1);
   members_[size_t(rank())] = {own_host(), std::uint64_t(getpid()), own_cores()};
-  post_.start({[this](int from, std::vector<std::byte> bytes) { received(from, std::move(bytes)); },
-               [this](int silent) {
-                 const std::lock_guard lock(mutex_);
-                 if (over_) return;
-                 lose(fmt::format("{} has not answered for {:.0f} seconds: it has ended or is stopped, or the connection is broken",
-                                  name_of(silent), settings_.patience));
-               }});
+  post_.start(
+      {[this](int from, std::vector<std::byte> bytes) { received(from, std::move(bytes)); },
+       [this](int silent) {
+         const std::lock_guard lock(mutex_);
+         if (over_) return;
+         lose(fmt::format("{} has not answered for {:.0f} seconds: it has ended or is stopped, or the connection is broken",
+                          name_of(silent), settings_.patience));
+       }});
   if (leads())
     meet();
   else
@@ -251,7 +252,10 @@ void ProcessTeam::require_whole() const {
 
 template <class Done>
 void ProcessTeam::wait(std::unique_lock<std::mutex>& lock, const Done& done) {
-  changed_.wait(lock, [&] { return trouble_ || done(); });
+  {
+    const Post::Waiting looks_often(post_);
+    changed_.wait(lock, [&] { return trouble_ || done(); });
+  }
   if (!trouble_) return;
   lock.unlock();
   require_whole();

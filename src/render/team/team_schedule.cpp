@@ -67,7 +67,7 @@ class TeamSchedule::Call {
       else if (over())
         return;
       else
-        changed_.wait_for(lock, std::chrono::milliseconds(5));
+        wait(lock);
     }
   }
 
@@ -89,6 +89,12 @@ class TeamSchedule::Call {
   }
 
  private:
+  /// Waits for letters; not for long, as an abort is not announced.
+  void wait(std::unique_lock<std::mutex>& lock) {
+    const Post::Waiting looks_often(team_.post_);
+    changed_.wait_for(lock, std::chrono::milliseconds(5));
+  }
+
   /// Of work that runs unlocked: an exception ends the call.
   template <class F>
   void unlocked(std::unique_lock<std::mutex>& lock, const F& f) {
