@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "etendue/render/guided_process.h"
 #include "etendue/render/renderer.h"
@@ -9,6 +10,10 @@
 
 namespace etendue {
 namespace {
+
+/// How many times as much a ray costs, over those of a path tracer: where a guide helps to choose its direction and learns from
+/// it, and where vertices are stored and weighted against each other. Measured on ten scenes (docs/decisions/052-automatic.md).
+constexpr double cost_of_guiding = 1.4, cost_of_two_ends = 1.1;
 
 /// Numbers of a source, whose pairs are counted: those of the path's own walk, and those of its other walks.
 class CountedNumbers final : public NumberSource {
@@ -23,8 +28,9 @@ class CountedNumbers final : public NumberSource {
   /// luminaire's point and direction (2 pairs), of the vertices from there, of a luminaire for each camera vertex, and of the
   /// lens for each vertex from the luminaire.
   double cost() const {
+    if (others_ == 0) return own_;
     const double joined = std::max((others_ - 2 - own_) / 2, 0.0);
-    return own_ + others_ + own_ * joined;
+    return cost_of_two_ends * (own_ + others_ + own_ * joined);
   }
 
   float number(SampleKey key, std::uint32_t dimension) const override { return of_.number(key, dimension); }
@@ -45,8 +51,10 @@ class CountedNumbers final : public NumberSource {
   mutable double own_ = 0, others_ = 0;  // one object belongs to one item of work
 };
 
-/// How many times as much a ray costs where a guide helps to choose its direction and learns from it.
-constexpr double cost_of_guiding = 1.25;
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
+}
 
 }  // namespace
 
@@ -160,24 +168,37 @@ AlgorithmTrial::Measured AlgorithmTrial::measure(Schedule& schedule, RenderProce
   return measured;
 }
 
+/// r of each tile: the mean light of an algorithm in the tiles around it, of that algorithm for which it is the median.
+std::vector<double> AlgorithmTrial::seen(const std::vector<Measured>& all) const {
+  constexpr int reach = 2;
+  std::vector<double> seen(all.front().tiles.size());
+  for (int row = 0; row < rows_; ++row)
+    for (int column = 0; column < columns_; ++column) {
+      std::vector<double> means;
+      for (const Measured& one : all) {
+        double sum = 0, count = 0;
+        for (int y = std::max(row - reach, 0); y <= std::min(row + reach, rows_ - 1); ++y)
+          for (int x = std::max(column - reach, 0); x <= std::min(column + reach, columns_ - 1); ++x)
+            for (const double b : one.tiles[size_t(y) * size_t(columns_) + size_t(x)]) sum += b, count += 1;
+        means.push_back(sum / count);
+      }
+      seen[size_t(row) * size_t(columns_) + size_t(column)] = median(means);
+    }
+  return seen;
+}
+
 std::vector<double> AlgorithmTrial::errors(const std::vector<Measured>& all) const {
-  const size_t tiles = size_t(columns_) * size_t(rows_);
-  std::vector<double> seen(tiles);  // r
-  double mean = 0;
-  for (size_t t = 0; t < tiles; ++t) {
-    for (const Measured& one : all)
-      for (const double b : one.tiles[t]) seen[t] += b / (batches * double(all.size()));
-    mean += seen[t] / double(tiles);
-  }
+  const std::vector<double> r = seen(all);
+  const double mean = std::accumulate(r.begin(), r.end(), 0.0) / double(r.size());
   constexpr size_t groups = 8;
   std::vector<double> errors;
   for (const Measured& one : all) {
     std::array<double, groups> sum{}, count{};
-    for (size_t t = 0; t < tiles; ++t) {
+    for (size_t t = 0; t < r.size(); ++t) {
       double b = 0, v = 0;
       for (const double k : one.tiles[t]) b += k / batches;
       for (const double k : one.tiles[t]) v += (k - b) * (k - b) * paths_ / (batches - 1);
-      const double scale = seen[t] * seen[t] + 0.01 * mean * mean;
+      const double scale = r[t] * r[t] + 0.01 * mean * mean;
       const size_t group = mix_bits(t) % groups;
       if (scale > 0) sum[group] += v / scale;
       count[group] += 1;
@@ -185,8 +206,9 @@ std::vector<double> AlgorithmTrial::errors(const std::vector<Measured>& all) con
     std::vector<double> means;
     for (size_t g = 0; g < groups; ++g)
       if (count[g] > 0) means.push_back(sum[g] / count[g]);
-    std::ranges::sort(means);
-    errors.push_back((means[(means.size() - 1) / 2] + means[means.size() / 2]) / 2);
+    double root = 0;
+    for (const double m : means) root += std::sqrt(m) / double(means.size());
+    errors.push_back(root * root);
   }
   return errors;
 }

@@ -57,12 +57,12 @@ class Automatic final : public Renderer {
          "of trials decide and are not shown. Costs are counted and not measured, so the choice is the same on all machines. "
          "Steps depend on those before, so parts cannot be rendered apart, and a crop may be rendered by another algorithm "
          "than the whole picture.",
-         "Lugosi & Mendelson 2019, Mean estimation and regression under heavy-tailed distributions")
+         "Veach 1997, section 2.2: efficiency")
         .member<&Automatic::candidates>(
             "candidates", "",
             "the algorithms, which must be unbiased with independent samples; those that lose light that another finds in the "
-            "scene are not used. How many samples there are, their sampler, the light sampler, and the longest path are said "
-            "out here, and refused in there");
+            "scene are not used. How many samples there are, their sampler, the light sampler, the filter of maps and the "
+            "longest path are said out here, and refused in there");
     describe_max_depth<&Automatic::max_depth>(d, stored_subpath_depth, range(1, longest_stored_subpath));
   }
 
@@ -86,36 +86,46 @@ class Automatic final : public Renderer {
     return all;
   }
 
+  /// The candidates with this renderer's sampler, light sampler, filter of maps and longest path.
+  const std::vector<Ref<Renderer>>& used() const { return used_; }
+
  private:
   std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;
+
+  std::vector<Ref<Renderer>> used_;
 };
 
 void Automatic::prepare() {
   if (candidates.empty()) fail("candidates", "needs at least one algorithm");
+  used_.clear();
   for (const Ref<Renderer>& c : candidates) {
     if (!c) fail("candidates", "an algorithm is none");
-    if (c->expectation() != Expectation::unbiased || c->map_filter > 0)
+    if (c->expectation() != Expectation::unbiased)
       fail("candidates", c->class_info().name + " is biased: a choice among algorithms must not change what is seen");
     if (c->estimator() == Estimator::correlated)
       fail("candidates", c->class_info().name + " does not take its samples independent of each other");
     if (c->origin)
-      for (const char* name : {"samples", "sampler", "light_sampler", "max_depth"})
+      for (const char* name : {"samples", "sampler", "light_sampler", "map_filter", "max_depth"})
         if (std::ranges::any_of(c->origin->members, [&](const auto& m) { return m.first == name; }))
           c->fail(name, "has no effect here: set it on the enclosing Automatic");
-    c->sampler = sampler;
-    c->light_sampler = light_sampler;
-    if (c->class_info().find("max_depth")) set(*c, "max_depth", Value(Number{double(max_depth)}));
+    const auto own = ref_cast<Renderer>(copy(*c));  // what is written stays as it is written
+    if (own->class_info().find("max_depth")) set(*own, "max_depth", Value(Number{double(max_depth)}));
+    prepare_tree(*own);
+    own->sampler = sampler;
+    own->light_sampler = light_sampler;
+    own->map_filter = map_filter;
+    used_.push_back(own);
   }
 }
 
 /// The candidates that find as much of the scene's light as any other.
 std::vector<const Renderer*> usable(const Automatic& r, const RenderContext& context) {
   const PathClasses there = paths_in(scene_traits(context.scene, context.camera));
-  PathClasses best = r.candidates.front()->finds() & there;
-  for (const Ref<Renderer>& c : r.candidates)
+  PathClasses best = r.used().front()->finds() & there;
+  for (const Ref<Renderer>& c : r.used())
     if (const PathClasses found = c->finds() & there; (found & best) == best) best = found;
   std::vector<const Renderer*> all;
-  for (const Ref<Renderer>& c : r.candidates)
+  for (const Ref<Renderer>& c : r.used())
     if ((c->finds() & there) == best) all.push_back(c.get());
   return all;
 }
@@ -153,7 +163,8 @@ class AutomaticProcess final : public ShownProcess, public TellsChoice {
   struct Candidate {
     const Renderer* renderer = nullptr;
     std::unique_ptr<RenderProcess> process = {};  // that is tried; null: not yet
-    std::uint32_t lessons = 0;                    // how often its guide was trained
+    std::uint32_t lessons = 0;                    // how often its guide was trained,
+    double taught = 0;                            // and with how many paths before trials
     bool out = false;                             // it was found much worse than another
     double error = 0, cost = 0;                   // V and C of the last trial it took part in
     double product() const { return error * cost; }
@@ -172,6 +183,7 @@ class AutomaticProcess final : public ShownProcess, public TellsChoice {
     return p && p->learns() ? p : nullptr;
   }
 
+  void teach(Schedule&, Candidate&, std::uint32_t number, std::uint32_t due, double paths);
   void hold_trial(Schedule&, const Step&, std::uint32_t due);
   void decide(const std::vector<size_t>& tried);
   void use(size_t candidate, std::span<const std::byte> state);
@@ -194,10 +206,24 @@ void AutomaticProcess::use(size_t candidate, std::span<const std::byte> state) {
     renderer.fail("candidates", candidates_[candidate].renderer->class_info().name + " learns in a way that cannot be tried");
 }
 
+/// Lets the guide of a candidate learn before it is tried: what it is worth shows only then. It has learned most of what it can
+/// after some ten thousand paths, whatever the picture's size (docs/decisions/052-automatic.md).
+void AutomaticProcess::teach(Schedule& schedule, Candidate& one, std::uint32_t number, std::uint32_t due, double paths) {
+  constexpr double enough = 1 << 16;
+  paths = std::min(paths, enough - one.taught);
+  if (!(paths >= 1)) return;
+  const AlgorithmTrial lesson(context, mix_bits(context.seed ^ mix_bits(0x6c657373 + due)), paths);
+  lesson.measure(schedule, *one.process, number, one.lessons);
+  one.taught += paths;
+}
+
 void AutomaticProcess::hold_trial(Schedule& schedule, const Step& step, std::uint32_t due) {
-  constexpr double share = 1.0 / 64;
+  constexpr double share = 1.0 / 128, fewest = 2048, most = 1 << 18, lessons_share = 1.0 / 32;
   const PixelArea area = context.image.sampled_area();
-  const double paths = share * step.samples.begin * double(area.width()) * double(area.height());
+  const double pixels = double(area.width()) * double(area.height());
+  const double paths = std::min(share * step.samples.begin * pixels, most);
+  trials_ = due;
+  if (paths < fewest) return;
   const AlgorithmTrial trial(context, mix_bits(context.seed ^ mix_bits(0x7472696c + due)), paths);
   std::vector<size_t> tried;
   std::vector<AlgorithmTrial::Measured> measured;
@@ -205,6 +231,8 @@ void AutomaticProcess::hold_trial(Schedule& schedule, const Step& step, std::uin
     Candidate& one = candidates_[c];
     if (one.out) continue;
     if (!one.process) one.process = one.renderer->start(context);
+    if (pupil(*one.process)) teach(schedule, one, std::uint32_t(c), due, lessons_share * step.samples.begin * pixels);
+    if (schedule.aborted()) return;
     measured.push_back(trial.measure(schedule, *one.process, std::uint32_t(c), one.lessons));
     tried.push_back(c);
     if (schedule.aborted()) return;
@@ -214,19 +242,18 @@ void AutomaticProcess::hold_trial(Schedule& schedule, const Step& step, std::uin
     candidates_[tried[i]].error = errors[i];
     candidates_[tried[i]].cost = measured[i].cost;
   }
-  trials_ = due;
   trial_samples_ = step.samples.begin;
   decide(tried);
 }
 
 void AutomaticProcess::decide(const std::vector<size_t>& tried) {
-  constexpr double hold = 0.9;           // of the present algorithm's error: what is not better by this is not worth a change
-  constexpr double hopeless[] = {4, 2};  // times the best error: no longer tried, after the first trial and after later ones
+  constexpr double hold = 0.9;    // of the present algorithm's error: what is not better by this is not worth a change
+  constexpr double hopeless = 4;  // times the best error: no longer tried
   size_t best = chosen_;
   for (const size_t c : tried)
     if (candidates_[c].product() < candidates_[best].product()) best = c;
   if (!(candidates_[best].product() < hold * candidates_[chosen_].product())) best = chosen_;
-  const double limit = hopeless[trials_ > 1] * candidates_[best].product();
+  const double limit = hopeless * candidates_[best].product();
   for (const size_t c : tried) candidates_[c].out = c != best && c > 0 && candidates_[c].product() > limit;
   if (best != chosen_) {
     const bool learns = pupil(*candidates_[best].process);
@@ -293,6 +320,7 @@ std::vector<std::byte> AutomaticProcess::save_state() const {
     Packing::pack(bytes, n);
   for (const Candidate& c : candidates_) {
     Packing::pack(bytes, c.lessons);
+    Packing::pack(bytes, c.taught);
     Packing::pack(bytes, c.out);
     Packing::pack(bytes, c.error);
     Packing::pack(bytes, c.cost);
@@ -310,6 +338,7 @@ void AutomaticProcess::load_state(std::span<const std::byte> bytes) {
   std::vector<std::byte> state;
   for (Candidate& c : candidates_) {
     Packing::unpack(bytes, c.lessons);
+    Packing::unpack(bytes, c.taught);
     std::uint8_t out = 0;
     Packing::unpack(bytes, out);
     c.out = out != 0;
