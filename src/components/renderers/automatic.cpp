@@ -91,23 +91,15 @@ class Automatic final : public Renderer {
 
  private:
   std::unique_ptr<RenderProcess> begin(const RenderContext&) const override;
+  void require_candidates() const;
 
   std::vector<Ref<Renderer>> used_;
 };
 
 void Automatic::prepare() {
-  if (candidates.empty()) fail("candidates", "needs at least one algorithm");
   used_.clear();
   for (const Ref<Renderer>& c : candidates) {
-    if (!c) fail("candidates", "an algorithm is none");
-    if (c->expectation() != Expectation::unbiased)
-      fail("candidates", c->class_info().name + " is biased: a choice among algorithms must not change what is seen");
-    if (c->estimator() == Estimator::correlated)
-      fail("candidates", c->class_info().name + " does not take its samples independent of each other");
-    if (c->origin)
-      for (const char* name : {"samples", "sampler", "light_sampler", "map_filter", "max_depth"})
-        if (std::ranges::any_of(c->origin->members, [&](const auto& m) { return m.first == name; }))
-          c->fail(name, "has no effect here: set it on the enclosing Automatic");
+    if (!c) continue;
     const auto own = ref_cast<Renderer>(copy(*c));  // what is written stays as it is written
     if (own->class_info().find("max_depth")) set(*own, "max_depth", Value(Number{double(max_depth)}));
     prepare_tree(*own);
@@ -115,6 +107,23 @@ void Automatic::prepare() {
     own->light_sampler = light_sampler;
     own->map_filter = map_filter;
     used_.push_back(own);
+  }
+}
+
+/// Throws Error for candidates that cannot be tried, and members of theirs that would have no effect.
+void Automatic::require_candidates() const {
+  if (candidates.empty()) fail("candidates", "needs at least one algorithm");
+  for (const Ref<Renderer>& c : candidates) {
+    if (!c) fail("candidates", "an algorithm is none");
+    const std::string& name = c->class_info().name;
+    if (c->expectation() != Expectation::unbiased)
+      fail("candidates", name + " is biased: a choice among algorithms must not change what is seen");
+    if (c->estimator() == Estimator::correlated)
+      fail("candidates", name + " does not take its samples independent of each other");
+    if (!c->origin) continue;
+    for (const char* member : {"samples", "sampler", "light_sampler", "map_filter", "max_depth"})
+      if (std::ranges::any_of(c->origin->members, [&](const auto& m) { return m.first == member; }))
+        c->fail(member, "has no effect here: set it on the enclosing Automatic");
   }
 }
 
@@ -371,6 +380,7 @@ std::string AutomaticProcess::told() const {
 }
 
 std::unique_ptr<RenderProcess> Automatic::begin(const RenderContext& context) const {
+  require_candidates();
   return std::make_unique<AutomaticProcess>(*this, context);
 }
 
