@@ -107,7 +107,7 @@ TEST(Automatic, MeansAreTheTruthThoughTheChoiceDependsOnChance) {
 // Splats, a guide and camera paths in one picture: the mean is that of a path tracer, whichever algorithm is chosen.
 TEST(Automatic, EachAlgorithmGivesTheSamePicture) {
   const test::Measured truth = test::measure(shaded_lamp("PathTracer { max_depth: 4 }", 128, 96));
-  for (const char* second : {"GuidedPathTracer {}", "BidirectionalPathTracer {}"}) {
+  for (const char* second : {"GuidedPathTracer {}", "BidirectionalPathTracer {}", "LightTracer {}"}) {
     // A path tracer that samples no luminaires is always worse.
     const Ref<Job> job = shaded_lamp(
         "Automatic { max_depth: 4, candidates: [PathTracer { next_event: false }, " + std::string(second) + "] }", 64, 96);
