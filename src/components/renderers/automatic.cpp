@@ -227,7 +227,7 @@ void AutomaticProcess::teach(Schedule& schedule, Candidate& one, std::uint32_t n
 }
 
 void AutomaticProcess::hold_trial(Schedule& schedule, const Step& step, std::uint32_t due) {
-  constexpr double share = 1.0 / 128, fewest = 2048, most = 1 << 18, lessons_share = 1.0 / 32;
+  constexpr double share = 1.0 / 128, fewest = 1024, most = 1 << 18, lessons_share = 1.0 / 32;
   const PixelArea area = context.image.sampled_area();
   const double pixels = double(area.width()) * double(area.height());
   const double paths = std::min(share * step.samples.begin * pixels, most);
