@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "describe/guard.h"
+#include "etendue/render/tells_choice.h"
 #include "render_members.h"
 
 namespace etendue {
@@ -83,6 +84,11 @@ void Render::Members::park_process() {
   process.reset();
 }
 
+void Render::Members::note_choice() {
+  const auto* tells = dynamic_cast<const TellsChoice*>(process.get());
+  choice = tells ? tells->told() : std::string();
+}
+
 void Render::Members::empty() {
   before_short_step.reset();
   process.reset();
@@ -91,6 +97,7 @@ void Render::Members::empty() {
   film->clear();
   done.clear();
   loaded_from.clear();
+  choice.clear();
   seconds = error = 0;
 }
 
@@ -181,6 +188,7 @@ std::optional<Ended> Render::Members::step(Schedule& schedule) {
     insert(done, samples);
     loaded_from.clear();
     seconds += seconds_since(step_began);
+    note_choice();
     before_short_step = std::move(before);
     guard.finished = true;
     break;

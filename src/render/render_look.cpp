@@ -49,7 +49,9 @@ Progress Render::progress() const {
 RenderSnapshot Render::snapshot() const {
   const std::shared_lock sharing = share(*members_);
   const std::lock_guard lock(members_->counts);
-  return {members_->film->snapshot(), members_->progress_now(), picture_metadata(*members_->job, count(members_->done))};
+  std::map<std::string, std::string> metadata = picture_metadata(*members_->job, count(members_->done));
+  if (!members_->choice.empty()) metadata["choice"] = members_->choice;
+  return {members_->film->snapshot(), members_->progress_now(), std::move(metadata)};
 }
 
 std::vector<IndexRange> Render::samples_done() const {

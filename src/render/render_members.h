@@ -54,6 +54,7 @@ struct Render::Members {
   double part_at_hand = 0;  ///< finished fraction of the current step
   double error = 0;
   std::string checkpoint_failure;
+  std::string choice;  ///< TellsChoice::told of the process at the end of the last step
 
   // Threads that wait for a moment between two steps get their turn before the next step begins.
   mutable std::mutex turn;
@@ -68,6 +69,7 @@ struct Render::Members {
   std::unique_ptr<RenderProcess> fresh_process() const;
   std::unique_ptr<RenderProcess> process_at(std::uint32_t sample) const;
   void park_process();
+  void note_choice();  ///< requires that `counts` is held
   void follow(const Consequences&);
   void empty();
   std::optional<Ended> step(Schedule&);

@@ -80,6 +80,7 @@ void Render::Members::take_over(Checkpoint&& from) {
   done = std::move(from.done);
   seconds = from.seconds;
   error = 0;
+  note_choice();
   loaded_from.clear();
 }
 

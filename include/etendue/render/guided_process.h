@@ -14,6 +14,20 @@
 
 namespace etendue {
 
+/// A RenderProcess whose guide another process may train: one that renders its paths, and passes on what they recorded.
+class LearnsFromPaths {
+ public:
+  /// Whether it has a guide; if not, nothing below may be called.
+  virtual bool learns() const = 0;
+  /// Chooses the training paths among the next `paths` paths. `number`: of earlier calls; training paths become fewer.
+  virtual void begin_learning(std::uint32_t number, int paths) = 0;
+  /// Trains the guide with the samples that these paths recorded (PathSink::records), in a fixed order.
+  virtual void learn(Schedule&, const std::vector<GuideSample>&) = 0;
+
+ protected:
+  ~LearnsFromPaths() = default;
+};
+
 /// A RenderProcess that a studio can show in space. PhotonProcess is another.
 class ShownProcess : public RenderProcess, public ShownInSpace {
  public:
@@ -21,7 +35,7 @@ class ShownProcess : public RenderProcess, public ShownInSpace {
 };
 
 template <class Base>
-class GuidedProcess : public Base {
+class GuidedProcess : public Base, public LearnsFromPaths {
  public:
   /// Settings of a guide; `nullopt`: the process has no guide and is its base. `memory` in MiB. `longest`: the most training
   /// samples of one path.
@@ -36,6 +50,11 @@ class GuidedProcess : public Base {
     guide_->begin_step(this->context.image.sampled_area(), step, longest_);
     guide_->learn(schedule, this->template film_paths<GuideSample>(schedule, step));
   }
+  bool learns() const override { return guide_.has_value(); }
+  void begin_learning(std::uint32_t number, int paths) override {
+    guide_->begin_step({0, 0, paths, 1}, {number, {0, 1}}, longest_);
+  }
+  void learn(Schedule& schedule, const std::vector<GuideSample>& samples) override { guide_->learn(schedule, samples); }
   std::optional<ShownLobes> lobes(const Point3& position, const Normal3& normal) const override {
     if (!guide_) return {};
     return guide_->lobes(position, normal);

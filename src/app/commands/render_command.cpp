@@ -110,6 +110,7 @@ std::string passes_text(const Render& render) {
 struct Written {
   std::vector<std::string> pictures, denoised;
   std::vector<Error> errors;  ///< of files that could not be written
+  std::string choice;         ///< of a renderer that chooses an algorithm, in a sentence; empty: none did
 };
 
 void report_result(const Progress& progress, Ended ended, const Written& written, ProgressDisplay::Kind kind,
@@ -125,6 +126,7 @@ void report_result(const Progress& progress, Ended ended, const Written& written
                                    {"ended", name(ended)}};
     if (!written.denoised.empty()) json["denoised"] = written.denoised;  // all denoised images are biased
     if (!checkpoint.empty()) json["checkpoint"] = checkpoint;
+    if (!written.choice.empty()) json["choice"] = written.choice;
     if (render.settings().steps) json["samples_per_pass"] = render.samples_per_step();
     fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   } else if (!options.quiet) {
@@ -132,6 +134,7 @@ void report_result(const Progress& progress, Ended ended, const Written& written
     for (const std::string& path : written.denoised) fmt::print("{}\n", path);
     fmt::print("{} sample{} per pixel in {}, {:.2f} Msamples/s{}\n{}", progress.samples, progress.samples == 1 ? "" : "s",
                duration_text(progress.seconds), progress.samples_per_second * 1e-6, reason_text(ended), passes_text(render));
+    if (!written.choice.empty()) fmt::print("{} chose {}\n", render.job().renderer->class_info().name, written.choice);
     if (ended == Ended::interrupted && !checkpoint.empty()) fmt::print("to resume: {}\n", options.resume_command());
   }
   std::fflush(stdout);
@@ -198,6 +201,7 @@ int render(const RenderOptions& options, Series& series) {
     ended = render.run();
     display.clear();
     picture = render.picture();
+    if (const auto choice = picture.metadata.find("choice"); choice != picture.metadata.end()) written.choice = choice->second;
     const bool unfinished = options.in_series && ended == Ended::interrupted;
     if (ended != Ended::aborted && !unfinished) {
       written.pictures = write_each(outputs, *job, picture, options.stem(), written.errors);
