@@ -1,6 +1,9 @@
 #pragma once
 // ColorSystem: an RGB space, for functions of colours: luminance, blackbody, wavelength_color, transformc.
 
+#include <string_view>
+#include <vector>
+
 #include "osl/values/triple.h"
 
 namespace etendue::osl {
@@ -17,12 +20,13 @@ class ColorSystem {
   static const ColorSystem& rec709();
   /// "Rec709", "sRGB", "NTSC", "EBU", "PAL", "SECAM", "SMPTE", "HDTV", "CIE", "AdobeRGB", "XYZ", "ACEScg", "ACES2065-1"; null
   /// if unknown.
-  static const ColorSystem* named(const char*);
+  static const ColorSystem* named(std::string_view);
 
   Triple to_xyz(const Triple& rgb) const;
   Triple from_xyz(const Triple& xyz) const;
   float luminance(const Triple& rgb) const;
-  /// The radiant exitance of a black body [W/m^2] as a colour, whose luminance weights are those of the visible part.
+  /// The colour of a black body: its radiant exitance [W/m^2 per m of wavelength] times the matching functions, integrated over
+  /// wavelengths. Below 800 K a very dark red.
   Triple blackbody(float kelvin) const;
   /// The colour of a spectral line [nm], scaled and with negative parts removed, for display.
   Triple wavelength(float nanometres) const;
@@ -30,6 +34,7 @@ class ColorSystem {
  private:
   Triple to_xyz_[3];    // the XYZ of red, green, blue
   Triple from_xyz_[3];  // the rows of the inverse
+  std::vector<Triple> blackbodies_;
 };
 
 }  // namespace etendue::osl

@@ -13,7 +13,7 @@ class String {
  public:
   const std::string& text() const { return text_; }
   std::string_view view() const { return text_; }
-  /// The hash that the library's hash() returns, see hash_of.
+  /// What the library's hash() returns: the lower half of farm_hash.
   std::uint32_t hash() const { return hash_; }
 
   String(std::string_view text, std::uint32_t hash) : text_(text), hash_(hash) {}  ///< for the table only: use intern_string
@@ -34,8 +34,8 @@ const String* empty_string();
 /// The longest text [bytes] that a function of the library makes; a longer one is an error of the shader.
 inline constexpr std::size_t string_limit = std::size_t(1) << 20;
 
-/// The 64-bit FarmHash (the public domain function Fingerprint64 of farmhash's `na` variant; Pike and Alakuijala 2014), whose
-/// lower half is the hash() of a string in the reference implementation.
+/// The 64-bit FarmHash (Pike and Alakuijala 2014) in the form of OpenImageIO, which the reference implementation uses: 0 for
+/// "".
 std::uint64_t farm_hash(std::string_view);
 
 }  // namespace etendue::osl
