@@ -11,15 +11,15 @@ namespace etendue::osl {
 /// Where, whence and when. All places are in "common" space; derivatives are per pixel. A renderer fills the structure for each
 /// point. The variables are shared by all layers of a group: what one layer assigns, later layers see.
 struct Globals {
-  Dual<Triple> P;             ///< the point
-  Dual<Triple> I;             ///< the direction of the ray that sees it
-  Dual<Triple> N;             ///< the shading normal
-  Dual<Triple> Ng;            ///< the geometric normal
-  Dual<float> u, v;           ///< surface parameters
-  Dual<Triple> dPdu, dPdv;    ///< tangents
-  Dual<Triple> Ps;            ///< the light's point, in shaders of light
-  Dual<float> time, dtime;    ///< of the sample, and the shutter's duration
-  Dual<Triple> dPdtime;       ///< the point's velocity
+  Dual<Triple> P;                   ///< the point
+  Dual<Triple> I;                   ///< the direction of the ray that sees it
+  Dual<Triple> N;                   ///< the shading normal
+  Dual<Triple> Ng;                  ///< the geometric normal
+  Dual<float> u, v;                 ///< surface parameters
+  Dual<Triple> dPdu, dPdv;          ///< tangents
+  Dual<Triple> Ps;                  ///< the light's point, in shaders of light
+  Dual<float> time, dtime;          ///< of the sample, and the shutter's duration
+  Dual<Triple> dPdtime;             ///< the point's velocity
   const ClosureNode* Ci = nullptr;  ///< the result: how the surface scatters and emits light
 
   // What library functions answer.

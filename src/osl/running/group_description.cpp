@@ -102,8 +102,8 @@ class GroupReader {
     for (const char* bracket : {"[[", "]]"})
       if (text_.substr(at_, 2) == bracket) return at_ += 2, bracket;
     const size_t begin = at_;
-    while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_])) && text_[at_] != ';' && text_[at_] != ',' &&
-           text_[at_] != '"' && text_.substr(at_, 2) != "[[" && text_.substr(at_, 2) != "]]")
+    while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_])) && text_[at_] != ';' &&
+           text_[at_] != ',' && text_[at_] != '"' && text_.substr(at_, 2) != "[[" && text_.substr(at_, 2) != "]]")
       ++at_;
     return std::string(text_.substr(begin, at_ - begin));
   }

@@ -18,9 +18,9 @@ namespace etendue::osl {
 /// A parameter's value, before it is known what the shader declares.
 struct ParameterText {
   std::string name;
-  std::string type;                 ///< "float", "color[3]"; empty: as the words look (infer_type)
-  std::vector<std::string> words;   ///< numbers or texts, without quotation marks
-  bool interpolated = false;        ///< may be replaced by data of the geometry (lockgeom=0)
+  std::string type;                ///< "float", "color[3]"; empty: as the words look (infer_type)
+  std::vector<std::string> words;  ///< numbers or texts, without quotation marks
+  bool interpolated = false;       ///< may be replaced by data of the geometry (lockgeom=0)
   Location at;
 };
 

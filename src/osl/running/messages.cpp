@@ -18,9 +18,10 @@ bool Messages::set(const String* name, const Type& type, bool derivatives, const
                    std::string& fault) {
   if (const Message* old = find(name)) {
     if (old->type.is_void())
-      fault = fmt::format("message \"{}\" was queried before being set (queried here: {}) setting it now ({}) would lead to "
-                          "inconsistent results",
-                          name->text(), place_text(old->at), place_text(at));
+      fault = fmt::format(
+          "message \"{}\" was queried before being set (queried here: {}) setting it now ({}) would lead to "
+          "inconsistent results",
+          name->text(), place_text(old->at), place_text(at));
     else
       fault = fmt::format("message \"{}\" already exists (created here: {}) cannot set again from {}", name->text(),
                           place_text(old->at), place_text(at));
@@ -31,7 +32,8 @@ bool Messages::set(const String* name, const Type& type, bool derivatives, const
   return true;
 }
 
-bool Messages::get(const String* name, const Type& type, bool derivatives, void* out, int layer, Location at, std::string& fault) {
+bool Messages::get(const String* name, const Type& type, bool derivatives, void* out, int layer, Location at,
+                   std::string& fault) {
   const Message* message = find(name);
   if (!message) {
     messages_.push_back({name, Type(), false, layer, at, {}});
@@ -44,9 +46,10 @@ bool Messages::get(const String* name, const Type& type, bool derivatives, void*
     return false;
   }
   if (message->layer > layer) {
-    fault = fmt::format("message \"{}\" was set by layer #{} ({}) but is being queried by layer #{} ({}): messages pass from "
-                        "earlier layers to later ones only",
-                        name->text(), message->layer, place_text(message->at), layer, place_text(at));
+    fault = fmt::format(
+        "message \"{}\" was set by layer #{} ({}) but is being queried by layer #{} ({}): messages pass from "
+        "earlier layers to later ones only",
+        name->text(), message->layer, place_text(message->at), layer, place_text(at));
     return false;
   }
   const std::size_t size = type.size();

@@ -44,7 +44,8 @@ void RunServices::displace_along_normal(const Dual<float>& amount, const String*
 
 // ---- what the layers answer ------------------------------------------------------------------------------------------------
 
-bool RunServices::attribute(const String* object, const String* name, int index, const Type& type, bool derivatives, void* out) {
+bool RunServices::attribute(const String* object, const String* name, int index, const Type& type, bool derivatives,
+                            void* out) {
   if (object == nullptr && index < 0 && type.is_string()) {
     const std::string_view text = name->view();
     const String* answer = text == "shader:shadername"  ? run_->group->shader_name(run_->layer)
@@ -90,7 +91,8 @@ void RunState::fault(std::string_view text, const Location& at) {
                at);
 }
 
-// ---- what the renderer answers -----------------------------------------------------------------------------------------------
+// ---- what the renderer answers
+// -----------------------------------------------------------------------------------------------
 
 bool RunServices::to_common(const String* space, Matrix& out) { return run_->world->to_common(space, out); }
 bool RunServices::from_common(const String* space, Matrix& out) { return run_->world->from_common(space, out); }
@@ -99,8 +101,8 @@ float RunServices::seconds_per_time() const { return run_->world->seconds_per_ti
 float RunServices::seconds_per_frame() const { return run_->world->seconds_per_frame(); }
 float RunServices::metres_per_unit() const { return run_->world->metres_per_unit(); }
 bool RunServices::ray_type(const String* name) const { return run_->world->ray_type(name); }
-std::string_view RunServices::texture(const String* file, const Dual<float>& s, const Dual<float>& t, const TextureOptions& options,
-                                      TextureLookup& lookup) {
+std::string_view RunServices::texture(const String* file, const Dual<float>& s, const Dual<float>& t,
+                                      const TextureOptions& options, TextureLookup& lookup) {
   return run_->world->texture(file, s, t, options, lookup);
 }
 std::string_view RunServices::texture3d(const String* file, const Dual<Triple>& p, const TextureOptions& options,

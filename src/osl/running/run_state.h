@@ -36,7 +36,8 @@ class RunServices final : public Services {
   bool attribute(const String* object, const String* name, int index, const Type&, bool derivatives, void* out) override;
   void set_message(const String*, const Type&, bool derivatives, const void*, Location) override;
   bool get_message(const String* source, const String* name, const Type&, bool derivatives, void* out, Location) override;
-  std::string_view texture(const String*, const Dual<float>&, const Dual<float>&, const TextureOptions&, TextureLookup&) override;
+  std::string_view texture(const String*, const Dual<float>&, const Dual<float>&, const TextureOptions&,
+                           TextureLookup&) override;
   std::string_view texture3d(const String*, const Dual<Triple>&, const TextureOptions&, TextureLookup&) override;
   std::string_view environment(const String*, const Dual<Triple>&, const TextureOptions&, TextureLookup&) override;
   bool texture_info(const String*, const float* at, const String* name, const Type&, void* out) override;
@@ -56,15 +57,15 @@ class RunServices final : public Services {
 };
 
 struct RunState {
-  std::byte* memory = nullptr;     ///< the frame: all values of all layers, see memory_layout.h
-  Services* world = nullptr;       ///< the renderer's
+  std::byte* memory = nullptr;  ///< the frame: all values of all layers, see memory_layout.h
+  Services* world = nullptr;    ///< the renderer's
   const ShaderGroup* group = nullptr;
-  Globals* globals = nullptr;      ///< in the frame
+  Globals* globals = nullptr;  ///< in the frame
   Messages messages;
-  int layer = 0;                   ///< which runs now
-  bool speaks_itself = false;      ///< a call of error() or warning() runs: the text is the shader's, not a fault
+  int layer = 0;               ///< which runs now
+  bool speaks_itself = false;  ///< a call of error() or warning() runs: the text is the shader's, not a fault
   const std::atomic<bool>* abort = nullptr;
-  unsigned steps = 0;              ///< of loops, to look at `abort` now and then
+  unsigned steps = 0;  ///< of loops, to look at `abort` now and then
   RunServices services{*this};
 
   RunState() = default;
