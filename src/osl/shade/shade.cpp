@@ -202,7 +202,7 @@ int run(ShadeArguments& a) {
   std::vector<Picture> pictures = find_outputs(a, *group);
   const std::vector<int> entries = entry_layers(a, *group);
   GridServices services(a);
-  Execution execution(group);
+  Execution& execution = group->execution();
   for (int pass = 0; pass < a.repetitions; ++pass) {
     for (Picture& picture : pictures) picture.values.clear();
     for (int y = 0; y < a.height; ++y)
