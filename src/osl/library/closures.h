@@ -1,7 +1,11 @@
 #pragma once
-// The closures that shaders can make: their signatures, for the compiler. What a renderer does with one is said elsewhere.
+// The closures that shaders can make: their signatures, for the compiler, and how nodes are made as a shader runs. What a
+// renderer does with a closure is said elsewhere.
 
 #include <span>
+
+#include "call.h"
+#include "osl/values/closure.h"
 
 namespace etendue::osl {
 
@@ -16,5 +20,14 @@ struct ClosureSignature {
 
 /// ClosureShape::known is an index of this list.
 std::span<const ClosureSignature> closures();
+
+/// Runs a constructor. The call's arguments are those of the shape in order, with each keyword's string before its value. The
+/// node lives in Services::allocate's memory, and refers to the shape.
+const ClosureNode* make_component(const Call&, const ClosureShape&);
+/// a + b; either may be null.
+const ClosureNode* make_sum(Services&, const ClosureNode* a, const ClosureNode* b);
+/// weight * closure; null if either is zero.
+const ClosureNode* make_product(Services&, const Triple& weight, const ClosureNode* closure);
+const ClosureNode* make_product(Services&, const Spectrum& weight, const ClosureNode* closure);
 
 }  // namespace etendue::osl

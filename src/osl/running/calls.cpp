@@ -141,6 +141,16 @@ bool is_output(const Row& row, std::size_t i) {
   return text.starts_with("output ") && (i == 0 || text.find("...") != std::string_view::npos);
 }
 
+/// How this call treats derivatives. The noises that are chosen by name take them only if the name is "gabor", or unknown.
+Derivatives treatment(const Row& row, const Expression& e) {
+  const std::string_view signature = row.signature;
+  if (row.derivatives != Derivatives::taken || signature.find("noise(string name") == std::string_view::npos)
+    return row.derivatives;
+  const Expression& name = *e.operands[0];
+  if (name.kind != Expression::Kind::constant || name.constant.at<const String*>()->view() == "gabor") return row.derivatives;
+  return Derivatives::passed;
+}
+
 /// The row of a constructor, "matrix matrix(string", with as many parameters; null if there is none.
 const Row* constructor_row(std::string_view beginning, std::size_t parameters) {
   for (const Row& row : library_rows()) {
@@ -150,8 +160,8 @@ const Row* constructor_row(std::string_view beginning, std::size_t parameters) {
   return nullptr;
 }
 
-bool takes_derivatives(const Row& row, std::size_t i) {
-  return row.derivatives == Derivatives::taken && (row.taken == 0 || (i < 32 && (row.taken >> i & 1)));
+bool takes_derivatives(const Row& row, Derivatives how, std::size_t i) {
+  return how == Derivatives::taken && (row.taken == 0 || (i < 32 && (row.taken >> i & 1)));
 }
 
 }  // namespace
@@ -217,6 +227,7 @@ Value LayerBuilder::contiguous(const Value& v) {
 
 Value LayerBuilder::library_call(const Expression& e, bool derivatives) {
   const Row& row = *e.row;
+  const Derivatives how = treatment(row, e);
   if (row.refused) throw Error(row.refused, e.place);
   auto types = std::make_unique<CallTypes>();
   types->place = e.place;
@@ -243,7 +254,7 @@ Value LayerBuilder::library_call(const Expression& e, bool derivatives) {
         after.push_back(nodes_.make<ReferenceOut>(copy, pointer, at.memory.stride));
       }
     } else {
-      const bool wanted = takes_derivatives(row, i) || (row.derivatives != Derivatives::none && writes_derivatives);
+      const bool wanted = takes_derivatives(row, how, i) || (how != Derivatives::none && writes_derivatives);
       argument = contiguous(value(operand, wanted));
       if (!wanted) argument.memory.stride = 0;
       any = any || argument.memory.derivatives();
@@ -251,7 +262,7 @@ Value LayerBuilder::library_call(const Expression& e, bool derivatives) {
     types->arguments.push_back({argument.type(), argument.memory.derivatives()});
     arguments.push_back(argument);
   }
-  const bool has = derivatives && (row.derivatives == Derivatives::taken || (row.derivatives == Derivatives::passed && any));
+  const bool has = derivatives && (how == Derivatives::taken || (how == Derivatives::passed && any));
   Memory result;
   if (!e.type.is_void()) result = layout_.temporary(e.type, has);
   types->result = {e.type, has};

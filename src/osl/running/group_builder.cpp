@@ -281,6 +281,11 @@ void GroupBuilder::find_lazy_layers() {
     else
       group_->entries_.push_back(i);
   }
+  if (options_.outputs_only) {
+    group_->entries_.clear();
+    for (const auto& [layer, symbol] : wanted_) group_->entries_.push_back(layer);
+    return;
+  }
   if (description_.entries.empty())
     for (int i = 0; i < int(plans_.size()); ++i)
       if (!group_->layers_[std::size_t(i)].lazy) group_->entries_.push_back(i);

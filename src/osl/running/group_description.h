@@ -7,11 +7,13 @@
 //   shader wood wood1 ;
 //   connect tex1.Cout wood1.rings ;
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "etendue/core/error.h"
+#include "osl/language/tree.h"
 
 namespace etendue::osl {
 
@@ -22,6 +24,7 @@ struct ParameterText {
   std::vector<std::string> words;  ///< numbers or texts, without quotation marks
   bool interpolated = false;       ///< may be replaced by data of the geometry (lockgeom=0)
   Location at;
+  std::optional<Constant> value;  ///< instead of type and words, for a value that is no text
 };
 
 struct LayerText {

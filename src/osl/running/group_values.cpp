@@ -28,6 +28,10 @@ Type parse_type(std::string text) {
   return {};
 }
 
+std::string wrong_type(const std::string& name, const std::string& expected, const std::string& given) {
+  return fmt::format("attempting to set parameter with wrong type: {} (expected '{}', received '{}')", name, expected, given);
+}
+
 bool same_kind(const Type& a, const Type& b) { return a.base == b.base || (a.triple_based() && b.triple_based()); }
 
 }  // namespace
@@ -64,7 +68,22 @@ bool find_part(const Shader& shader, const std::string& path, const std::functio
   return true;
 }
 
+/// A value that is given as it lies in memory.
+static bool take_value(const ParameterText& text, Type& type, std::vector<std::byte>& bytes, std::string& reason) {
+  const Type& given = text.value->type;
+  const bool same = given.closure == type.closure && same_kind(given, type) && given.structure == type.structure &&
+                    given.is_array() == type.is_array() && (type.array == given.array || type.array == Type::unsized);
+  if (!same) {
+    reason = wrong_type(text.name, type.name(), given.name());
+    return false;
+  }
+  type.array = given.array;
+  bytes = text.value->bytes;
+  return true;
+}
+
 bool parse_value(const ParameterText& text, Type& type, std::vector<std::byte>& bytes, std::string& reason) {
+  if (text.value) return take_value(text, type, bytes, reason);
   std::vector<std::string> words = text.words;
   const std::string stated = text.type.empty() ? infer_type(words) : text.type;
   const Type given = parse_type(stated);
@@ -81,16 +100,14 @@ bool parse_value(const ParameterText& text, Type& type, std::vector<std::byte>& 
   const bool float_array = given.base == Base::float_ && given.array == 3 && type.is_triple();
   if (given.is_void() || type.is_closure() || type.is_structure() || (!same_kind(given, type) && !float_array) ||
       (!float_array && given.is_array() != type.is_array())) {
-    reason = fmt::format("attempting to set parameter with wrong type: {} (expected '{}', received '{}')", text.name,
-                         type.name(), stated);
+    reason = wrong_type(text.name, type.name(), stated);
     return false;
   }
   const int numbers = std::max(1, type.floats());
   if (type.array == Type::unsized)
     type.array = given.array > 0 ? given.array : std::max(1, int((words.size() + size_t(numbers) - 1) / size_t(numbers)));
   else if (given.array > 0 && type.is_array() && given.array != type.array) {
-    reason = fmt::format("attempting to set parameter with wrong type: {} (expected '{}', received '{}')", text.name,
-                         type.name(), stated);
+    reason = wrong_type(text.name, type.name(), stated);
     return false;
   }
   bytes.resize(type.size());

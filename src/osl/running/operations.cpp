@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "etendue/core/spectrum.h"
+#include "osl/library/closures.h"
 
 namespace etendue::osl {
 namespace {
@@ -236,12 +237,6 @@ const Node* whole(NodeStore& nodes, const Value& a, const Value& b, const Memory
 // ---- closures
 // ----------------------------------------------------------------------------------------------------------------
 
-template <class T>
-T* allocate(RunState& run, T value) {
-  void* memory = run.services.allocate(sizeof(T), alignof(T));
-  return new (memory) T(std::move(value));
-}
-
 class AddClosures final : public Node {
  public:
   AddClosures(const Value& a, const Value& b, const Memory& out) : a_(a), b_(b), out_(out) {}
@@ -250,14 +245,7 @@ class AddClosures final : public Node {
     b_.evaluate(run);
     const auto* a = load<const ClosureNode*>(run, a_.memory);
     const auto* b = load<const ClosureNode*>(run, b_.memory);
-    const ClosureNode* sum = a ? a : b;
-    if (a && b) {
-      ClosureSum made;
-      made.kind = ClosureNode::Kind::sum;
-      made.a = a, made.b = b;
-      sum = allocate(run, made);
-    }
-    value_at<const ClosureNode*>(run, out_.offset) = sum;
+    value_at<const ClosureNode*>(run, out_.offset) = make_sum(run.services, a, b);
     return Flow::next;
   }
 
@@ -281,21 +269,10 @@ class WeighClosure final : public Node {
 
  private:
   const ClosureNode* product(RunState& run, const ClosureNode* closure) const {
-    ClosureProduct made;
-    made.kind = ClosureNode::Kind::product;
-    made.closure = closure;
     const Type& type = weight_.type();
-    if (type.base == Base::spectrum) {
-      const Spectrum& spectrum = load<Spectrum>(run, weight_.memory);
-      bool zero = true;
-      for (int i = 0; i < spectrum_size; ++i) zero = zero && spectrum[i] == 0;
-      if (zero) return nullptr;
-      made.spectrum = allocate(run, spectrum);
-    } else {
-      made.weight = type.is_float() ? Triple(load<float>(run, weight_.memory)) : load<Triple>(run, weight_.memory);
-      if (made.weight == Triple(0)) return nullptr;
-    }
-    return allocate(run, made);
+    if (type.base == Base::spectrum) return make_product(run.services, load<Spectrum>(run, weight_.memory), closure);
+    return make_product(
+        run.services, type.is_float() ? Triple(load<float>(run, weight_.memory)) : load<Triple>(run, weight_.memory), closure);
   }
 
   Value closure_, weight_;

@@ -1,12 +1,25 @@
 #include "shader_group.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <cstring>
 
 #include "group_nodes.h"
 
 namespace etendue::osl {
 
-ShaderGroup::ShaderGroup() : name_(empty_string()), layout_(sizeof(Globals)) {}
+struct ShaderGroup::Executions {
+  tbb::enumerable_thread_specific<std::unique_ptr<Execution>> of_threads;
+};
+
+ShaderGroup::ShaderGroup() : name_(empty_string()), layout_(sizeof(Globals)), executions_(std::make_unique<Executions>()) {}
+ShaderGroup::~ShaderGroup() = default;
+
+Execution& ShaderGroup::execution() const {
+  std::unique_ptr<Execution>& own = executions_->of_threads.local();
+  if (!own) own = std::make_unique<Execution>(*this);
+  return *own;
+}
 
 std::optional<Memory> ShaderGroup::find_parameter(int layer, std::string_view name) const {
   for (const auto& [symbol, memory] : layers_[std::size_t(layer)].parameters)
@@ -62,13 +75,13 @@ Flow InterpolatedParameter::run(RunState& run) const {
   return Flow::next;
 }
 
-Execution::Execution(std::shared_ptr<const ShaderGroup> group) : group_(std::move(group)) {
+Execution::Execution(const ShaderGroup& group) : group_(&group) {
   const auto& image = group_->layout_.image();
   memory_.reset(static_cast<std::byte*>(
       ::operator new[](std::max<std::size_t>(image.size(), 1), std::align_val_t(MemoryLayout::alignment))));
   std::memcpy(memory_.get(), image.data(), image.size());
   state_.memory = memory_.get();
-  state_.group = group_.get();
+  state_.group = group_;
   state_.globals = reinterpret_cast<Globals*>(memory_.get());
 }
 

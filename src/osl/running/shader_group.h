@@ -25,6 +25,7 @@ struct GroupOptions {
   std::function<std::shared_ptr<const Shader>(const std::string& name, Location)> load;
   /// Outputs that the renderer will read: "layer.output", or "output" of the last layer that has it.
   std::vector<std::string> outputs;
+  bool outputs_only = false;           ///< runs nothing but what these outputs need
   bool output_derivatives = false;     ///< the renderer reads their derivatives, too
   bool lazy_globals = true;            ///< a layer that only assigns Ci runs if it is needed; false: always
   bool lazy_errors = true;             ///< likewise, one that calls error()
@@ -38,11 +39,17 @@ struct GroupProblem {
   Location at;
 };
 
+class Execution;
+
 class ShaderGroup {
  public:
+  ~ShaderGroup();
   /// Builds a group, or returns null if there are errors among the problems.
   static std::shared_ptr<const ShaderGroup> build(const GroupDescription&, const GroupOptions&,
                                                   std::vector<GroupProblem>& problems);
+
+  /// The calling thread's own memory for runs of this group. It exists as long as the group.
+  Execution& execution() const;
 
   const String* name() const { return name_; }
   int layer_count() const { return int(layers_.size()); }
@@ -80,12 +87,16 @@ class ShaderGroup {
 
   friend class FetchParameter;
   void run_layer(RunState&, int) const;
+
+  struct Executions;
+  std::unique_ptr<Executions> executions_;
 };
 
 /// The memory in which a group runs. One thread uses it at a time; runs of it follow one another.
 class Execution {
  public:
-  explicit Execution(std::shared_ptr<const ShaderGroup>);
+  /// The group must exist as long as this.
+  explicit Execution(const ShaderGroup&);
 
   /// Shades one point: `globals` is what the renderer knows, and afterwards what the shaders made of it. Closures and other
   /// memory come from services.allocate. Returns false if `abort` was set meanwhile; the results are then undefined.
@@ -103,7 +114,7 @@ class Execution {
   struct Free {
     void operator()(std::byte* p) const { ::operator delete[](p, std::align_val_t(MemoryLayout::alignment)); }
   };
-  std::shared_ptr<const ShaderGroup> group_;
+  const ShaderGroup* group_;
   std::unique_ptr<std::byte[], Free> memory_;
   RunState state_;
 };

@@ -5,6 +5,8 @@
 #include <OpenImageIO/strutil.h>
 
 #include <array>
+#include <atomic>
+#include <memory>
 #include <mutex>
 #include <shared_mutex>
 #include <unordered_map>
@@ -23,6 +25,8 @@ struct Table {
   std::array<Part, 64> parts;
 };
 
+std::atomic<std::size_t> total_bytes = 0;
+
 Table& table() {
   static Table* const all = new Table;  // never destroyed: static objects of shaders hold strings
   return *all;
@@ -40,9 +44,12 @@ const String* intern_string(std::string_view text) {
     if (const auto found = part.strings.find(text); found != part.strings.end()) return found->second.get();
   }
   auto made = std::make_unique<const String>(text, std::uint32_t(hash));
+  total_bytes.fetch_add(text.size() + sizeof(String), std::memory_order_relaxed);
   const std::unique_lock lock(part.mutex);
   return part.strings.try_emplace(made->view(), std::move(made)).first->second.get();
 }
+
+std::size_t interned_bytes() { return total_bytes.load(std::memory_order_relaxed); }
 
 const String* empty_string() {
   static const String* const empty = intern_string("");

@@ -34,6 +34,11 @@ const String* empty_string();
 /// The longest text [bytes] that a function of the library makes; a longer one is an error of the shader.
 inline constexpr std::size_t string_limit = std::size_t(1) << 20;
 
+/// The size of all interned texts [bytes], and where the library stops to make new ones: shaders that make endless texts end
+/// there.
+std::size_t interned_bytes();
+inline constexpr std::size_t interned_limit = std::size_t(1) << 30;
+
 /// The 64-bit FarmHash (Pike and Alakuijala 2014) in the form of OpenImageIO, which the reference implementation uses: 0 for
 /// "".
 std::uint64_t farm_hash(std::string_view);
