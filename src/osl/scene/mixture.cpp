@@ -25,13 +25,13 @@ Mixture::Mixture(const SurfacePoint& p, const MixturePart* parts, int count)
   if (count > 0) frame_ = parts[0].scatter->frame();
 }
 
-Spectrum Mixture::factor(const MixturePart& part, const Vector3& v) const {
+Spectrum Mixture::factor(const MixturePart& part, const Vector3& v, const Cover* until) const {
   Spectrum w = part.weight;
-  for (const Cover* c = part.covers; c; c = c->next) {
+  for (const Cover* c = part.covers; c != until; c = c->next) {
     Spectrum reflected;
     for (int k = c->begin; k < c->end; ++k)
-      reflected += factor(parts_[k], v) * parts_[k].scatter->albedo(v, Lobes(reflection_lobes & parts_[k].lobes));
-    w *= max(Spectrum(1.0f) - reflected, 0);
+      reflected += factor(parts_[k], v, c->next) * parts_[k].scatter->albedo(v, Lobes(reflection_lobes & parts_[k].lobes));
+    w *= max(Spectrum(1.0f) - reflected / max(c->weight, 1e-6f), 0);
   }
   return w;
 }
