@@ -1,5 +1,5 @@
 #pragma once
-// Regular expressions, by Boost.Regex: it needs no recursion, and gives up a match whose work explodes.
+// Regular expressions, by PCRE2: it needs no recursion, and gives up a match whose work explodes.
 
 #include <string>
 
@@ -7,10 +7,9 @@
 
 namespace etendue::osl {
 
-/// Whether the pattern occurs in the subject, or matches it as a whole. `places` (may be null) gets pairs of the beginning and
-/// end of the match and of its groups; where there is no group, the length of the pattern, as in the reference implementation.
-/// A pattern that is wrong or takes too long sets `fault` and is not found.
-bool find_regular_expression(const String& subject, const String& pattern, bool whole, int* places, int count,
-                             std::string& fault);
+/// Whether the pattern occurs in the subject, or matches it as a whole. `places` (may be null) gets pairs of the beginning and end of
+/// the match and of its groups; where there is no group, the length of the pattern, as in the reference implementation. A pattern
+/// that is wrong or takes too long sets `fault` and is not found.
+bool find_regular_expression(const String& subject, const String& pattern, bool whole, int* places, int count, std::string& fault);
 
 }  // namespace etendue::osl
