@@ -8,6 +8,7 @@
 
 #include "layer_builder.h"
 #include "operations.h"
+#include "osl/library/closures.h"
 #include "references.h"
 
 namespace etendue::osl {
@@ -63,10 +64,27 @@ class ReferenceOut final : public Node {
   std::uint32_t pointer_, stride_;
 };
 
+/// The addresses of arguments, without an allocation for the usual numbers of them.
+class WithAddresses {
+ public:
+  WithAddresses(RunState& run, const std::vector<Value>& arguments) {
+    void** to = few_;
+    if (arguments.size() > few) {
+      many_.resize(arguments.size());
+      to = many_.data();
+    }
+    for (const Value& argument : arguments) *to++ = run.memory + argument.memory.offset;
+  }
+  void* const* get() const { return many_.empty() ? few_ : many_.data(); }
+
+ private:
+  static constexpr std::size_t few = 20;
+  void* few_[few];
+  std::vector<void*> many_;
+};
+
 class LibraryCall final : public Node {
  public:
-  static constexpr std::size_t few = 16;
-
   LibraryCall(std::unique_ptr<const CallTypes> types, Evaluate evaluate, std::vector<Value> arguments, const Memory& result,
               bool speaks_itself, std::vector<const Node*> after)
       : types_(std::move(types)),
@@ -78,25 +96,15 @@ class LibraryCall final : public Node {
 
   Flow run(RunState& run) const override {
     for (const Value& argument : arguments_) argument.evaluate(run);
-    if (arguments_.size() <= few) {
-      void* addresses[few];
-      call(run, addresses);
-    } else {
-      std::vector<void*> addresses(arguments_.size());
-      call(run, addresses.data());
-    }
+    const WithAddresses addresses(run, arguments_);
+    run.speaks_itself = speaks_itself_;
+    evaluate_(Call{addresses.get(), run.memory + result_.offset, *types_, run.services});
+    run.speaks_itself = false;
     for (const Node* node : after_) node->run(run);
     return Flow::next;
   }
 
  private:
-  void call(RunState& run, void** addresses) const {
-    for (std::size_t i = 0; i < arguments_.size(); ++i) addresses[i] = run.memory + arguments_[i].memory.offset;
-    run.speaks_itself = speaks_itself_;
-    evaluate_(Call{addresses, run.memory + result_.offset, *types_, run.services});
-    run.speaks_itself = false;
-  }
-
   std::unique_ptr<const CallTypes> types_;
   Evaluate evaluate_;
   std::vector<Value> arguments_;
@@ -107,23 +115,20 @@ class LibraryCall final : public Node {
 
 class MakeClosure final : public Node {
  public:
-  MakeClosure(const ClosureShape* shape, std::vector<Value> arguments, const Memory& out)
-      : shape_(shape), arguments_(std::move(arguments)), out_(out) {}
+  MakeClosure(const ClosureShape* shape, std::unique_ptr<const CallTypes> types, std::vector<Value> arguments,
+              const Memory& out)
+      : shape_(shape), types_(std::move(types)), arguments_(std::move(arguments)), out_(out) {}
   Flow run(RunState& run) const override {
     for (const Value& argument : arguments_) argument.evaluate(run);
-    auto* component = new (run.services.allocate(sizeof(ClosureComponent), alignof(ClosureComponent))) ClosureComponent;
-    component->kind = ClosureNode::Kind::component;
-    component->shape = shape_;
-    auto* bytes = static_cast<std::byte*>(run.services.allocate(std::max<std::size_t>(shape_->size, 1), 8));
-    for (std::size_t i = 0; i < arguments_.size(); ++i)
-      std::memcpy(bytes + shape_->arguments[i].offset, run.memory + arguments_[i].memory.offset, arguments_[i].type().size());
-    component->arguments = bytes;
-    value_at<const ClosureNode*>(run, out_.offset) = component;
+    const WithAddresses addresses(run, arguments_);
+    const Call call{addresses.get(), nullptr, *types_, run.services};
+    value_at<const ClosureNode*>(run, out_.offset) = make_component(call, *shape_);
     return Flow::next;
   }
 
  private:
   const ClosureShape* shape_;
+  std::unique_ptr<const CallTypes> types_;
   std::vector<Value> arguments_;
   Memory out_;
 };
@@ -151,13 +156,14 @@ Derivatives treatment(const Row& row, const Expression& e) {
   return Derivatives::passed;
 }
 
-/// The row of a constructor, "matrix matrix(string", with as many parameters; null if there is none.
-const Row* constructor_row(std::string_view beginning, std::size_t parameters) {
-  for (const Row& row : library_rows()) {
-    const std::string_view text = row.signature;
-    if (text.starts_with(beginning) && std::size_t(std::count(text.begin(), text.end(), ',')) + 1 == parameters) return &row;
-  }
-  return nullptr;
+/// Whether the row makes a triple of three numbers.
+bool makes_triple(const Row& row) {
+  const std::string_view text = row.signature;
+  for (const std::string_view type : {"color", "point", "vector", "normal"})
+    if (text.starts_with(type))
+      return text.substr(type.size() + 1).starts_with(std::string(type) + "(float ") &&
+             std::count(text.begin(), text.end(), ',') == 2;
+  return false;
 }
 
 bool takes_derivatives(const Row& row, Derivatives how, std::size_t i) {
@@ -225,8 +231,9 @@ Value LayerBuilder::contiguous(const Value& v) {
   return {copy, copy_node(nodes_, v, copy)};
 }
 
-Value LayerBuilder::library_call(const Expression& e, bool derivatives) {
+Value LayerBuilder::library_call(const Expression& e, bool derivatives, const Memory* into) {
   const Row& row = *e.row;
+  if (makes_triple(row)) return triple(e, derivatives, into);
   const Derivatives how = treatment(row, e);
   if (row.refused) throw Error(row.refused, e.place);
   auto types = std::make_unique<CallTypes>();
@@ -278,40 +285,23 @@ Value LayerBuilder::library_call(const Expression& e, bool derivatives) {
 // ------------------------------------------------------------------------------------------------------------------
 
 Value LayerBuilder::closure(const Expression& e) {
-  std::vector<Value> arguments;
-  for (const auto& operand : e.operands) arguments.push_back(value(*operand, false));
-  const Memory out = layout_.temporary(Type::closure_color(), false);
-  return {out, nodes_.make<MakeClosure>(e.shape, std::move(arguments), out)};
-}
-
-Value LayerBuilder::construct(const Expression& e, bool derivatives, const Memory* into) {
-  if (e.type.is_triple() && e.operands.size() == 3) {
-    const Value x = value(*e.operands[0], derivatives), y = value(*e.operands[1], derivatives),
-                z = value(*e.operands[2], derivatives);
-    const bool any = x.memory.derivatives() || y.memory.derivatives() || z.memory.derivatives();
-    const Memory out = result_memory(e.type, derivatives && any, into);
-    return {out, triple_node(nodes_, x, y, z, out)};
-  }
-  // All others are functions of the library: "matrix matrix(string from, string to)".
-  const std::string name = e.type.name();
-  const std::string first = e.operands.empty() ? "" : e.operands[0]->type.name();
-  const Row* row = constructor_row(fmt::format("{0} {0}({1}", name, first), e.operands.size());
-  if (!row)
-    throw Error(fmt::format("there is no constructor {}({}, ...) of {} arguments", name, first, e.operands.size()), e.place);
   auto types = std::make_unique<CallTypes>();
   types->place = e.place;
   std::vector<Value> arguments;
-  bool any = false;
   for (const auto& operand : e.operands) {
-    arguments.push_back(contiguous(value(*operand, derivatives)));
-    types->arguments.push_back({arguments.back().type(), arguments.back().memory.derivatives()});
-    any = any || arguments.back().memory.derivatives();
+    arguments.push_back(value(*operand, false));
+    types->arguments.push_back({arguments.back().type(), false});
   }
-  const Memory result = layout_.temporary(e.type, derivatives && any && row->derivatives == Derivatives::passed);
-  types->result = {e.type, result.derivatives()};
-  const Evaluate evaluate = row->choose(*types);
-  return {result, nodes_.make<LibraryCall>(std::move(types), evaluate, std::move(arguments), result, false,
-                                           std::vector<const Node*>())};
+  const Memory out = layout_.temporary(Type::closure_color(), false);
+  return {out, nodes_.make<MakeClosure>(e.shape, std::move(types), std::move(arguments), out)};
+}
+
+Value LayerBuilder::triple(const Expression& e, bool derivatives, const Memory* into) {
+  const Value x = value(*e.operands[0], derivatives), y = value(*e.operands[1], derivatives),
+              z = value(*e.operands[2], derivatives);
+  const bool any = x.memory.derivatives() || y.memory.derivatives() || z.memory.derivatives();
+  const Memory out = result_memory(e.type, derivatives && any, into);
+  return {out, triple_node(nodes_, x, y, z, out)};
 }
 
 }  // namespace etendue::osl

@@ -134,9 +134,8 @@ Value LayerBuilder::value(const Expression& e, bool derivatives, const Memory* i
     case Kind::assignment: return assignment(e, derivatives);
     case Kind::increment: return increment(e);
     case Kind::call: return call(e, derivatives);
-    case Kind::library: return library_call(e, derivatives);
+    case Kind::library: return library_call(e, derivatives, into);
     case Kind::closure: return closure(e);
-    case Kind::construct: return construct(e, derivatives, into);
     case Kind::aggregate: return aggregate(e, derivatives);
     case Kind::array_length: return constant_int(place(operand(0)).memory.type.array);
     case Kind::is_connected: return constant_int(connection_of(operand(0)));

@@ -63,9 +63,9 @@ class LayerBuilder {
 
   // calls.cpp
   Value call(const Expression&, bool derivatives);
-  Value library_call(const Expression&, bool derivatives);
+  Value library_call(const Expression&, bool derivatives, const Memory* into);
   Value closure(const Expression&);
-  Value construct(const Expression&, bool derivatives, const Memory* into);
+  Value triple(const Expression&, bool derivatives, const Memory* into);
 
   // statements.cpp
   const Node* statement(const Statement&);
