@@ -144,20 +144,20 @@ struct Expression {
     /// `postfix` the old one.
     increment,
 
-    call,     ///< of `function`. The operand of an output parameter is a reference, of the same type or another kind of triple.
-    library,  ///< of the row `row` of the library. The operand of an output parameter is a reference.
-    closure,  ///< the component of `shape`: its arguments are the operands, without keywords
-    /// A triple, matrix or spectrum of parts. Triple: (float float float) or (string float float float), the string naming a
-    /// space. Matrix: 16 floats, (string, 16 floats), (string, float), (string string) from and to space.
-    /// Spectrum: (string), the words of a spectrum, or (color).
-    construct,
+    call,  ///< of `function`. The operand of an output parameter is a reference, of the same type or another kind of triple.
+    /// Of the row `row` of the library, which are also the constructors: color(r, g, b), point("world", x, y, z), matrix(1).
+    /// The operand of an output parameter is a reference.
+    library,
+    /// The component of `shape`. The operands are the arguments, then pairs of a keyword, a constant string, and its value
+    /// (make_component, library/closures.h).
+    closure,
     /// All elements of an array, or all fields of a structure, in order. There may be fewer operands than elements: the
     /// remaining ones are undefined. An operand may be null: that element is undefined, too.
     aggregate,
     array_length,  ///< of operands[0], which is an array whose length the group decides (all others are constants)
     is_connected,  ///< isconnected(operands[0]), a variable, field or element of a shader's parameter: 1 connected from
                    ///< upstream, 2 connected to downstream, 3 both, as an int
-    is_constant,  ///< isconstant(operands[0]): whether it is known when the group is built
+    is_constant,   ///< isconstant(operands[0]): whether it is known when the group is built
   };
 
   Kind kind = Kind::constant;
