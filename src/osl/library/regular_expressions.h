@@ -7,9 +7,10 @@
 
 namespace etendue::osl {
 
-/// Whether the pattern occurs in the subject, or matches it as a whole. `places` (may be null) gets pairs of the beginning and end of
-/// the match and of its groups; where there is no group, the length of the pattern, as in the reference implementation. A pattern
-/// that is wrong or takes too long sets `fault` and is not found.
-bool find_regular_expression(const String& subject, const String& pattern, bool whole, int* places, int count, std::string& fault);
+/// Whether the pattern occurs in the subject, or matches it as a whole. `places` (may be null) gets pairs of the beginning and
+/// end of the match and of its groups; where there is no group, the length of the pattern, as in the reference implementation.
+/// A pattern that is wrong or takes too long sets `fault` and is not found.
+bool find_regular_expression(const String& subject, const String& pattern, bool whole, int* places, int count,
+                             std::string& fault);
 
 }  // namespace etendue::osl
