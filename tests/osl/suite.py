@@ -144,6 +144,8 @@ class Runner:
             defines[:] = [word for word in words if word.startswith("-D")]
             status, text = self.shade(["--check", words[-1]], folder, defines)
             return status, text if status else ""
+        if kind == "oslinfo" and words[:1] == ["-v"] and len(words) == 2:
+            return self.shade(["--describe", words[1]], folder, defines)
         if kind in ("oiiotool", "maketx"):
             tool = self.tools / kind
             if not tool.exists():

@@ -12,6 +12,7 @@
 #include "osl/library/services.h"
 #include "osl/running/globals.h"
 #include "osl/running/point_memory.h"
+#include "osl/textures/texture_files.h"
 
 namespace etendue::osl {
 
@@ -27,6 +28,17 @@ class GridServices final : public Services {
   bool to_common(const String*, Matrix&) override;
   bool ray_type(const String*) const override;
   bool attribute(const String* object, const String* name, int index, const Type&, bool derivatives, void* out) override;
+  std::string_view texture(const String* file, const Dual<float>& s, const Dual<float>& t, const TextureOptions& options,
+                           TextureLookup& lookup) override {
+    return textures_.texture(file, s, t, options, lookup);
+  }
+  std::string_view environment(const String* file, const Dual<Triple>& direction, const TextureOptions& options,
+                               TextureLookup& lookup) override {
+    return textures_.environment(file, direction, options, lookup);
+  }
+  bool texture_info(const String* file, const float* at, const String* name, const Type& type, void* out) override {
+    return textures_.texture_info(file, at, name, type, out);
+  }
   void print(std::string_view) override;
   void print_to(const String* file, std::string_view) override;
   void warn(std::string_view, Location) override;
@@ -45,6 +57,7 @@ class GridServices final : public Services {
   Globals point_;
   int index_ = 0;
   PointMemory memory_;
+  TextureFiles textures_;
   std::set<std::string, std::less<>> reported_;
   std::map<const String*, std::FILE*> files_;
 };
