@@ -30,7 +30,7 @@ C hsv_to_rgb(const C& c) {
   const N s = c[1], v = c[2];
   if (value_of(s) < 0.0001f) return make_triple(v, v, v);
   const N turns = c[0], sixths = N(6) * (turns - N(std::floor(value_of(turns))));
-  const int sector = int(value_of(sixths));
+  const int sector = value_of(sixths) >= 0 && value_of(sixths) < 6 ? int(value_of(sixths)) : 0;  // 0 for what is no number
   const N f = sixths - N(float(sector)), p = v * (N(1) - s), q = v * (N(1) - s * f), t = v * (N(1) - s * (N(1) - f));
   switch (sector) {
     case 0: return make_triple(v, t, p);

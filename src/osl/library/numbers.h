@@ -48,7 +48,10 @@ inline float safe_log(float x) { return std::log(std::max(x, std::numeric_limits
 /// The remainder of a / b with the sign of a, 0 if b is 0.
 inline float safe_fmod(float a, float b) { return b == 0 ? 0 : std::fmod(a, b); }
 /// d(a - b n) with n, the truncated quotient, constant.
-inline Dual<float> safe_fmod(const Dual<float>& a, const Dual<float>& b) { return {safe_fmod(a.value, b.value), a.dx, a.dy}; }
+inline Dual<float> safe_fmod(const Dual<float>& a, const Dual<float>& b) {
+  const float n = b.value == 0 ? 0 : std::trunc(a.value / b.value);
+  return {safe_fmod(a.value, b.value), a.dx - b.dx * n, a.dy - b.dy * n};
+}
 
 /// a - b floor(a / b), a if b is 0.
 inline float floor_mod(float a, float b) { return b == 0 ? a : a - b * std::floor(a / b); }

@@ -1,5 +1,5 @@
 #pragma once
-// Regular expressions, by Boost.Regex: it needs no recursion, and gives up a match whose work explodes.
+// Regular expressions, by PCRE2: it needs no recursion, and gives up a match whose work explodes.
 
 #include <string>
 
