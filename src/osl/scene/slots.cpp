@@ -17,8 +17,15 @@ thread_local const SlotValues* current = nullptr;
 
 const SlotValues& values() { return current ? *current : at_rest; }
 
+/// Slots are no class of the description: they are described as the interface is.
+const ClassInfo& slot_class() {
+  static const ClassInfo& info = *Registry::instance().find("ObjectMap");
+  return info;
+}
+
 class ColorSlot final : public ObjectMap {
  public:
+  const ClassInfo& class_info() const override { return slot_class(); }
   explicit ColorSlot(int i) : index_(i) {}
   Spectrum color(const SurfacePoint&, const Wavelengths&, ColorUse) const override { return values().colors[index_]; }
   float scalar(const SurfacePoint&) const override { return values().colors[index_].average(); }
@@ -29,6 +36,7 @@ class ColorSlot final : public ObjectMap {
 
 class NumberSlot final : public ObjectMap {
  public:
+  const ClassInfo& class_info() const override { return slot_class(); }
   explicit NumberSlot(int i) : index_(i) {}
   Spectrum color(const SurfacePoint&, const Wavelengths&, ColorUse) const override { return values().numbers[index_]; }
   float scalar(const SurfacePoint&) const override { return values().numbers[index_]; }
