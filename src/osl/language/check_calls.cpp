@@ -212,8 +212,8 @@ std::optional<ExpressionPointer> Checker::special_call(const syntax::Expression&
   }
   if (e.name == "isconnected") {
     const Symbol* root = v->root();
-    const bool parameter = root && (root->role == Symbol::Role::parameter || root->role == Symbol::Role::output);
-    if (!parameter) refuse(e.place, "isconnected() takes a parameter of the shader");
+    const bool parameter = root && root->role != Symbol::Role::local && root->role != Symbol::Role::global;
+    if (!parameter) refuse(e.place, "isconnected() takes a parameter");
     return make(Expression::Kind::is_connected, Base::int_, e.place, std::move(v));
   }
   return make(Expression::Kind::is_constant, Base::int_, e.place, std::move(v));

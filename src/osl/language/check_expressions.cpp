@@ -247,8 +247,15 @@ void Checker::must_be_writable(const Expression& e) {
   const Symbol* root = e.root();
   if (!root) refuse(e.place, "only a variable, or a part of one, can be written");
   switch (root->role) {
-    case Symbol::Role::parameter:
     case Symbol::Role::argument:
+      // The reference implementation lets it pass, too.
+      if (!root->written)
+        diagnostics_.warning(e.place,
+                             fmt::format("'{}' is written, but is a parameter without 'output': the function changes a "
+                                         "copy of its own",
+                                         root->name));
+      break;
+    case Symbol::Role::parameter:
       refuse(e.place, fmt::format("'{}' cannot be written: it is a parameter without 'output'", root->name));
     default: break;
   }
@@ -267,6 +274,8 @@ ExpressionPointer Checker::assignment(const syntax::Expression& e) {
   ExpressionPointer v = value(right, type);
   if (e.operation == Operator::none) {
     const Symbol* root = to->root();
+    // Elements of int arrays take floats, as in the reference implementation (variables do not).
+    if (to->kind == Expression::Kind::element && type.is_int() && v->type.is_float()) v = convert(std::move(v), type);
     return make(Expression::Kind::assignment, type, e.place, std::move(to), converted(std::move(v), type, root->name.c_str()));
   }
   // The types are those of `to operation value`; the result must be of the variable's type.

@@ -22,7 +22,7 @@ constexpr OperatorName operator_names[] = {
     {Operator::modulus, "%", "__operator__mod__"},      {Operator::shift_left, "<<", "__operator__shl__"},
     {Operator::shift_right, ">>", "__operator__shr__"}, {Operator::bit_and, "&", "__operator__bitand__"},
     {Operator::bit_or, "|", "__operator__bitor__"},     {Operator::bit_xor, "^", "__operator__xor__"},
-    {Operator::equal, "==", "__operator__eq__"},        {Operator::unequal, "!=", "__operator__ne__"},
+    {Operator::equal, "==", "__operator__eq__"},        {Operator::unequal, "!=", "__operator__neq__"},
     {Operator::less, "<", "__operator__lt__"},          {Operator::less_equal, "<=", "__operator__le__"},
     {Operator::greater, ">", "__operator__gt__"},       {Operator::greater_equal, ">=", "__operator__ge__"},
     {Operator::negate, "-", "__operator__neg__"},       {Operator::complement, "~", "__operator__compl__"},

@@ -580,7 +580,7 @@ ExpressionPointer Parser::unary() {
     if (sign == "+") e->name = "+";
     return e;
   }
-  if (is("(") && at_type(1)) {  // (type) value
+  if (is("(") && at_type(1) && !ahead(2).is("(")) {  // (type) value
     take();
     const TypeName t = type();
     expect(")", "behind the type of a conversion");

@@ -75,7 +75,9 @@ struct Symbol {
   std::vector<Metadatum> metadata;
   /// Whether the value must have derivatives, if no other layer asks for those of an output (see find_derivatives).
   bool needs_derivatives = false;
-  bool read = false, written = false;  ///< in the text, for warnings and for the inputs a shader really has
+  bool read = false;  ///< the text reads it
+  /// The text writes it. An `argument` that is written is a copy of the caller's value instead of a reference.
+  bool written = false;
 
   /// nullptr if there is none.
   const Metadatum* find(std::string_view metadatum) const;
@@ -156,9 +158,10 @@ struct Expression {
     /// remaining ones are undefined. An operand may be null: that element is undefined, too.
     aggregate,
     array_length,  ///< of operands[0], which is an array whose length the group decides (all others are constants)
-    is_connected,  ///< isconnected(operands[0]), a variable, field or element of a shader's parameter: 1 connected from
-                   ///< upstream, 2 connected to downstream, 3 both, as an int
-    is_constant,   ///< isconstant(operands[0]): whether it is known when the group is built
+    /// isconnected(operands[0]), a reference to a shader's parameter or a part of one, or to a function's parameter (then it is
+    /// asked of what the caller passes): 1 connected from upstream, 2 to downstream, 3 both, else 0, as an int.
+    is_connected,
+    is_constant,  ///< isconstant(operands[0]): whether it is known when the group is built
   };
 
   Kind kind = Kind::constant;
