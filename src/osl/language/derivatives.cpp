@@ -1,152 +1,163 @@
-// Which symbols must have derivatives: a fixed point of demands that flow backward, from what takes derivatives to what is
-// assigned.
+// Which variables must have derivatives.
+//
+// A graph: an edge from a variable, a function's result or a call to all variables of which its derivatives are made. What is
+// taken (Dx, filterwidth, texture coordinates ...) and what the caller wants is marked, and all that is reached from there.
 
-#include <algorithm>
 #include <cstring>
-#include <string_view>
 #include <unordered_map>
 
 #include "tree.h"
 
 namespace etendue::osl {
+
 namespace {
 
-/// Values of these types are computed with derivatives; structures, because a field may be.
-bool may_have_derivatives(const Type& type) { return type.float_based() || type.is_structure(); }
+bool may_have_derivatives(const Type& t) {
+  if (!t.is_structure()) return t.float_based();
+  for (const Field& f : t.structure->fields)
+    if (may_have_derivatives(f.type)) return true;
+  return false;
+}
 
-class Demands {
+class Graph {
  public:
-  Demands(const Shader& shader, std::vector<bool>& needed) : shader_(shader), needed_(needed) {}
+  explicit Graph(const Shader& shader) : shader_(shader), sources_(shader.symbols.size() + shader.functions.size() + 1) {
+    taken_ = int(sources_.size()) - 1;
+    for (std::size_t i = 0; i < shader.functions.size(); ++i)
+      result_[shader.functions[i].get()] = int(shader.symbols.size() + i);
+    for (const Symbol* p : shader.parameters) initial(*p);
+    for (const auto& f : shader.functions) visit(f->body.get(), result_.at(f.get()));
+    visit(shader.body.get(), nowhere);
+  }
 
-  void find() {
-    do {
-      changed_ = false;
-      for (const Symbol* parameter : shader_.parameters)
-        if (parameter->initial) expression(*parameter->initial, needs(*parameter));
-      for (const auto& function : shader_.functions) {
-        function_ = function.get();
-        if (function->body) statement(*function->body);
-      }
-      function_ = nullptr;
-      if (shader_.body) statement(*shader_.body);
-    } while (changed_);
+  std::vector<bool> reached(std::span<const Symbol* const> wanted) const {
+    std::vector<bool> marked(sources_.size(), false);
+    std::vector<int> open{taken_};
+    marked[std::size_t(taken_)] = true;
+    for (const Symbol* s : wanted)
+      if (!marked[std::size_t(s->index)]) marked[std::size_t(s->index)] = true, open.push_back(s->index);
+    while (!open.empty()) {
+      const int node = open.back();
+      open.pop_back();
+      for (const int source : sources_[std::size_t(node)])
+        if (!marked[std::size_t(source)]) marked[std::size_t(source)] = true, open.push_back(source);
+    }
+    marked.resize(shader_.symbols.size());
+    for (std::size_t i = 0; i < marked.size(); ++i)
+      if (!may_have_derivatives(shader_.symbols[i]->type)) marked[i] = false;
+    return marked;
   }
 
  private:
-  bool needs(const Symbol& symbol) const { return needed_[std::size_t(symbol.index)]; }
-  bool needs(const Expression& reference) const { return reference.root() && needs(*reference.root()); }
+  /// The value goes where no derivatives are used.
+  static constexpr int nowhere = -1;
 
-  void demand(const Symbol& symbol) {
-    if (needs(symbol) || !may_have_derivatives(symbol.type)) return;
-    needed_[std::size_t(symbol.index)] = changed_ = true;
+  void edge(int from, int to) {
+    if (from != nowhere && from != to) sources_[std::size_t(from)].push_back(to);
+  }
+  int new_node() {
+    sources_.emplace_back();
+    return int(sources_.size()) - 1;
   }
 
-  void statement(const Statement& s) {
-    for (const auto& inner : s.statements)
-      if (inner) statement(*inner);
-    if (s.symbol && s.kind == Statement::Kind::declaration && s.symbol->initial)
-      expression(*s.symbol->initial, needs(*s.symbol));
-    if (s.expression) expression(*s.expression, s.kind == Statement::Kind::leave && function_ && results_[function_]);
-    if (s.step) expression(*s.step, false);
-    if (s.body) statement(*s.body);
-    if (s.otherwise) statement(*s.otherwise);
+  void initial(const Symbol& s) {
+    if (s.initial) visit(s.initial.get(), s.index);
   }
 
-  /// An expression whose derivatives are demanded or not.
-  void expression(const Expression& e, bool wanted) {
-    using Kind = Expression::Kind;
-    wanted = wanted && may_have_derivatives(e.type);
-    switch (e.kind) {
-      case Kind::variable:
-        if (wanted) demand(*e.symbol);
+  /// `result`: the node of the function's result.
+  void visit(const Statement* s, int result) {
+    if (!s) return;
+    if (s->expression) visit(s->expression.get(), s->kind == Statement::Kind::leave ? result : nowhere);
+    if (s->step) visit(s->step.get(), nowhere);
+    for (const StatementPointer& inner : s->statements) visit(inner.get(), result);
+    visit(s->body.get(), result);
+    visit(s->otherwise.get(), result);
+    if (s->symbol) initial(*s->symbol);
+  }
+
+  /// Adds the edges from `target`, into which the expression's value goes.
+  void visit(const Expression* e, int target) {
+    if (!e) return;
+    if (!may_have_derivatives(e->type)) target = nowhere;
+    const auto& o = e->operands;
+    switch (e->kind) {
+      case Expression::Kind::variable: edge(target, e->symbol->index); return;
+      case Expression::Kind::assignment: {
+        const int to = o[0]->root()->index;
+        visit(o[0].get(), target);
+        visit(o[1].get(), to);
         return;
-      case Kind::element:
-      case Kind::component:
-      case Kind::matrix_component:
-        operand(e, 0, wanted);
-        for (std::size_t i = 1; i < e.operands.size(); ++i) operand(e, i, false);
+      }
+      case Expression::Kind::element:
+      case Expression::Kind::component:
+      case Expression::Kind::matrix_component:
+        for (std::size_t i = 0; i < o.size(); ++i) visit(o[i].get(), i == 0 ? target : nowhere);
         return;
-      case Kind::conditional: operand(e, 0, false), operand(e, 1, wanted), operand(e, 2, wanted); return;
-      case Kind::comma:
-        for (std::size_t i = 0; i < e.operands.size(); ++i) operand(e, i, wanted && i + 1 == e.operands.size());
+      case Expression::Kind::conditional:
+        for (std::size_t i = 0; i < o.size(); ++i) visit(o[i].get(), i == 0 ? nowhere : target);
         return;
-      case Kind::assignment:
-        operand(e, 0, wanted);
-        operand(e, 1, needs(*e.operands[0]) || (wanted && !e.operands[0]->is_reference()));
+      case Expression::Kind::comma:
+        for (std::size_t i = 0; i < o.size(); ++i) visit(o[i].get(), i + 1 < o.size() ? nowhere : target);
         return;
-      case Kind::call: call(e, wanted); return;
-      case Kind::library: library_call(e, wanted); return;
-      case Kind::closure:
-        for (std::size_t i = 0; i < e.operands.size(); ++i) operand(e, i, false);
+      case Expression::Kind::call: call(*e, target); return;
+      case Expression::Kind::library: library(*e, target); return;
+      case Expression::Kind::closure:
+        for (const ExpressionPointer& a : o) visit(a.get(), nowhere);
         return;
-      case Kind::aggregate:
-      case Kind::field:
       default:
-        for (std::size_t i = 0; i < e.operands.size(); ++i) operand(e, i, wanted);
-        return;
+        for (const ExpressionPointer& a : o) visit(a.get(), target);
     }
   }
 
-  void operand(const Expression& e, std::size_t i, bool wanted) {
-    if (i >= e.operands.size() || !e.operands[i]) return;
-    const Expression& operand = *e.operands[i];
-    // The derivatives of a part are those of the whole variable.
-    if (wanted && operand.is_reference() && may_have_derivatives(operand.type)) demand(*operand.root());
-    expression(operand, wanted);
-  }
-
-  void call(const Expression& e, bool wanted) {
-    bool& result = results_[e.function];
-    if (wanted && !result) result = changed_ = true;
-    for (std::size_t i = 0; i < e.function->parameters.size(); ++i) {
-      const Symbol& parameter = *e.function->parameters[i];
-      const bool output = parameter.role == Symbol::Role::output_argument;
-      if (output && needs(*e.operands[i])) demand(parameter);
-      operand(e, i, needs(parameter));
-    }
-  }
-
-  void library_call(const Expression& e, bool wanted) {
-    const Row& row = *e.row;
-    for (std::size_t i = 0; i < e.operands.size(); ++i) wanted = wanted || (writes(row, i) && needs(*e.operands[i]));
-    Derivatives how = row.derivatives;
-    if (how == Derivatives::taken && std::strstr(row.signature, "noise(string name") &&
-        e.operands[0]->kind == Expression::Kind::constant && e.operands[0]->constant.at<const String*>()->view() != "gabor")
-      how = Derivatives::passed;  // of the noises that are chosen by name only "gabor" takes them
+  void call(const Expression& e, int target) {
+    edge(target, result_.at(e.function));
     for (std::size_t i = 0; i < e.operands.size(); ++i) {
-      const bool taken = how == Derivatives::taken && (row.taken == 0 || (i < 32 && (row.taken >> i & 1)));
-      operand(e, i, taken || (wanted && how != Derivatives::none));
+      const Symbol& parameter = *e.function->parameters[i];
+      visit(e.operands[i].get(), parameter.index);
+      if (parameter.role == Symbol::Role::output_argument) edge(e.operands[i]->root()->index, parameter.index);
     }
   }
 
-  /// Whether the function writes its i-th argument.
-  static bool writes(const Row& row, std::size_t i) {
-    std::string_view text = row.signature;
-    text.remove_prefix(text.find('(') + 1);
-    for (; i > 0; --i) {
-      const std::size_t comma = text.find(',');
-      if (comma == std::string_view::npos) break;
-      text.remove_prefix(comma + 1);
+  /// noise("perlin", ...) is an ordinary function; only "gabor" filters with the derivatives.
+  static bool takes(const Expression& e) {
+    if (e.row->derivatives != Derivatives::taken) return false;
+    if (!std::strstr(e.row->signature, "noise(string")) return true;
+    const Expression& name = *e.operands[0];
+    return name.kind != Expression::Kind::constant || name.constant.at<const String*>()->text() == "gabor";
+  }
+
+  void library(const Expression& e, int target) {
+    const auto is_output = [&](std::size_t i) { return i < 64 && (e.outputs >> i & 1); };
+    const bool passed = e.row->derivatives != Derivatives::none, taken = takes(e);
+    int made = passed ? target : nowhere;
+    if (passed && e.outputs) {
+      // All outputs and the result are made of all inputs.
+      made = new_node();
+      edge(target, made);
+      for (std::size_t i = 0; i < e.operands.size(); ++i)
+        if (is_output(i)) edge(e.operands[i]->root()->index, made);
     }
-    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-    return text.starts_with("output ");
+    for (std::size_t i = 0; i < e.operands.size(); ++i) {
+      const Expression* a = e.operands[i].get();
+      if (is_output(i)) {
+        visit(a, nowhere);
+        continue;
+      }
+      if (taken && (e.row->taken == 0 || (i < 32 && (e.row->taken >> i & 1)))) visit(a, taken_);
+      visit(a, made);
+    }
   }
 
   const Shader& shader_;
-  std::vector<bool>& needed_;
-  std::unordered_map<const Function*, bool> results_;  // whether a call demands the result's derivatives
-  const Function* function_ = nullptr;
-  bool changed_ = false;
+  std::vector<std::vector<int>> sources_;  // of each node: symbols, functions' results, taken_, calls
+  std::unordered_map<const Function*, int> result_;
+  int taken_ = 0;
 };
 
 }  // namespace
 
 std::vector<bool> find_derivatives(const Shader& shader, std::span<const Symbol* const> wanted) {
-  std::vector<bool> needed(shader.symbols.size());
-  for (const Symbol* symbol : wanted)
-    if (may_have_derivatives(symbol->type)) needed[std::size_t(symbol->index)] = true;
-  Demands(shader, needed).find();
-  return needed;
+  return Graph(shader).reached(wanted);
 }
 
 }  // namespace etendue::osl

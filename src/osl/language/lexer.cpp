@@ -32,7 +32,8 @@ std::string unescape(const std::string& quoted) {
       default:
         if (c >= '0' && c <= '7') {  // octal, up to three digits
           int value = 0, count = 0;
-          while (count < 3 && i + 1 < quoted.size() && quoted[i] >= '0' && quoted[i] <= '7') value = value * 8 + (quoted[i++] - '0'), ++count;
+          while (count < 3 && i + 1 < quoted.size() && quoted[i] >= '0' && quoted[i] <= '7')
+            value = value * 8 + (quoted[i++] - '0'), ++count;
           --i;
           out += char(value);
         } else {
@@ -89,14 +90,15 @@ void append_token(const std::string& text, Location at, std::vector<Token>& out,
     if (end < text.size()) {
       // C's suffixes and preprocessing numbers ("1.x"): what follows is a token of its own.
       if (letter(text[end]))
-        diagnostics.error(at, fmt::format("'{}' is no number of this language: '{}' behind it is too much", text,
-                                          text.substr(end)));
+        diagnostics.error(
+            at, fmt::format("'{}' is no number of this language: '{}' behind it is too much", text, text.substr(end)));
       else
         append_token(text.substr(end), at, out, diagnostics);
     }
   } else if (first == '\'' || static_cast<unsigned char>(first) >= 128 || first == '$' || first == '@' || first == '`' ||
              first == '\\') {
-    diagnostics.error(at, fmt::format("the character '{}' means nothing here", first == '\'' ? std::string("'") : text.substr(0, 8)));
+    diagnostics.error(
+        at, fmt::format("the character '{}' means nothing here", first == '\'' ? std::string("'") : text.substr(0, 8)));
   } else {
     out.push_back({Token::Kind::sign, text, at});
   }

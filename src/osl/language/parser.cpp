@@ -20,13 +20,13 @@ constexpr std::array simple_types = {"int", "float", "color", "point", "vector",
 
 // Names of the language that cannot be variables; those of C that are reserved for the future among them.
 constexpr std::array reserved = {
-    "and",     "break",    "closure",  "color",    "continue",    "do",        "else",   "emit",    "float",   "for",
-    "if",      "illuminance", "illuminate", "int",  "matrix",     "normal",    "not",    "or",      "output",  "point",
-    "public",  "return",   "string",   "struct",   "vector",      "void",      "while",  "bool",    "case",    "catch",
-    "char",    "class",    "const",    "delete",   "default",     "double",    "enum",   "extern",  "false",   "friend",
-    "goto",    "inline",   "long",     "new",      "operator",    "private",   "protected", "short", "signed", "sizeof",
-    "static",  "switch",   "template", "this",     "throw",       "true",      "try",    "typedef", "uniform", "union",
-    "unsigned", "varying", "virtual",  "volatile"};
+    "and",      "break",       "closure",    "color",   "continue", "do",      "else",      "emit",    "float",   "for",
+    "if",       "illuminance", "illuminate", "int",     "matrix",   "normal",  "not",       "or",      "output",  "point",
+    "public",   "return",      "string",     "struct",  "vector",   "void",    "while",     "bool",    "case",    "catch",
+    "char",     "class",       "const",      "delete",  "default",  "double",  "enum",      "extern",  "false",   "friend",
+    "goto",     "inline",      "long",       "new",     "operator", "private", "protected", "short",   "signed",  "sizeof",
+    "static",   "switch",      "template",   "this",    "throw",    "true",    "try",       "typedef", "uniform", "union",
+    "unsigned", "varying",     "virtual",    "volatile"};
 
 bool contains(const auto& list, const std::string& word) {
   return std::any_of(list.begin(), list.end(), [&](const char* w) { return word == w; });
@@ -38,12 +38,15 @@ struct BinaryOperator {
   Operator operation;
 };
 constexpr BinaryOperator binary_operators[] = {
-    {"||", 1, Operator::none},          {"or", 1, Operator::none},     {"&&", 2, Operator::none},
-    {"and", 2, Operator::none},         {"|", 3, Operator::bit_or},    {"^", 4, Operator::bit_xor},
-    {"&", 5, Operator::bit_and},        {"==", 6, Operator::equal},    {"!=", 6, Operator::unequal},
-    {"<", 7, Operator::less},           {"<=", 7, Operator::less_equal}, {">", 7, Operator::greater},
-    {">=", 7, Operator::greater_equal}, {"<<", 8, Operator::shift_left}, {">>", 8, Operator::shift_right},
-    {"+", 9, Operator::add},            {"-", 9, Operator::subtract},  {"*", 10, Operator::multiply},
+    {"||", 1, Operator::none},          {"or", 1, Operator::none},
+    {"&&", 2, Operator::none},          {"and", 2, Operator::none},
+    {"|", 3, Operator::bit_or},         {"^", 4, Operator::bit_xor},
+    {"&", 5, Operator::bit_and},        {"==", 6, Operator::equal},
+    {"!=", 6, Operator::unequal},       {"<", 7, Operator::less},
+    {"<=", 7, Operator::less_equal},    {">", 7, Operator::greater},
+    {">=", 7, Operator::greater_equal}, {"<<", 8, Operator::shift_left},
+    {">>", 8, Operator::shift_right},   {"+", 9, Operator::add},
+    {"-", 9, Operator::subtract},       {"*", 10, Operator::multiply},
     {"/", 10, Operator::divide},        {"%", 10, Operator::modulus},
 };
 
@@ -52,9 +55,9 @@ struct AssignmentOperator {
   Operator operation;
 };
 constexpr AssignmentOperator assignment_operators[] = {
-    {"=", Operator::none},        {"+=", Operator::add},         {"-=", Operator::subtract},     {"*=", Operator::multiply},
-    {"/=", Operator::divide},     {"%=", Operator::modulus},     {"&=", Operator::bit_and},      {"|=", Operator::bit_or},
-    {"^=", Operator::bit_xor},    {"<<=", Operator::shift_left}, {">>=", Operator::shift_right},
+    {"=", Operator::none},     {"+=", Operator::add},         {"-=", Operator::subtract},     {"*=", Operator::multiply},
+    {"/=", Operator::divide},  {"%=", Operator::modulus},     {"&=", Operator::bit_and},      {"|=", Operator::bit_or},
+    {"^=", Operator::bit_xor}, {"<<=", Operator::shift_left}, {">>=", Operator::shift_right},
 };
 
 class Parser {
@@ -209,7 +212,8 @@ std::vector<Declarator> Parser::metadata() {
     Declarator d;
     d.type = t;
     d.place = now().place;
-    if (now().kind != Token::Kind::name) refuse(now().place, fmt::format("the name of a metadatum is expected, not {}", shown()));
+    if (now().kind != Token::Kind::name)
+      refuse(now().place, fmt::format("the name of a metadatum is expected, not {}", shown()));
     d.name = take().text;
     array_length(d);
     expect("=", "in metadata");
@@ -636,7 +640,8 @@ ExpressionPointer Parser::primary() {
       const std::string text = take().text;
       errno = 0;
       const unsigned long long value = std::strtoull(text.c_str(), nullptr, text.size() > 1 && (text[1] | 32) == 'x' ? 16 : 10);
-      if (errno || value > std::numeric_limits<unsigned>::max() || (value > 2147483648ULL && (text.size() < 2 || (text[1] | 32) != 'x')))
+      if (errno || value > std::numeric_limits<unsigned>::max() ||
+          (value > 2147483648ULL && (text.size() < 2 || (text[1] | 32) != 'x')))
         diagnostics_.error(at, fmt::format("the integer {} is out of range", text.substr(0, 40)));
       auto e = make(Expression::Kind::integer, at);
       e->number = double(int(unsigned(value)));

@@ -148,11 +148,25 @@ class Hooks : public wave::context_policies::eat_whitespace<WaveToken> {
 };
 
 constexpr const char* constants[] = {
-    "M_PI=3.1415926535897932",     "M_PI_2=1.5707963267948966",   "M_PI_4=0.7853981633974483",    "M_2_PI=0.6366197723675813",
-    "M_2PI=6.2831853071795865",    "M_4PI=12.566370614359173",    "M_2_SQRTPI=1.1283791670955126", "M_E=2.7182818284590452",
-    "M_LN2=0.6931471805599453",    "M_LN10=2.3025850929940457",   "M_LOG2E=1.4426950408889634",   "M_LOG10E=0.4342944819032518",
-    "M_SQRT2=1.4142135623730950",  "M_SQRT1_2=0.7071067811865475", "STDOSL_H=1",                  "OSL_VERSION_MAJOR=1",
-    "OSL_VERSION_MINOR=13",        "OSL_VERSION_PATCH=0",         "OSL_VERSION=11300",
+    "M_PI=3.1415926535897932",
+    "M_PI_2=1.5707963267948966",
+    "M_PI_4=0.7853981633974483",
+    "M_2_PI=0.6366197723675813",
+    "M_2PI=6.2831853071795865",
+    "M_4PI=12.566370614359173",
+    "M_2_SQRTPI=1.1283791670955126",
+    "M_E=2.7182818284590452",
+    "M_LN2=0.6931471805599453",
+    "M_LN10=2.3025850929940457",
+    "M_LOG2E=1.4426950408889634",
+    "M_LOG10E=0.4342944819032518",
+    "M_SQRT2=1.4142135623730950",
+    "M_SQRT1_2=0.7071067811865475",
+    "STDOSL_H=1",
+    "OSL_VERSION_MAJOR=1",
+    "OSL_VERSION_MINOR=13",
+    "OSL_VERSION_PATCH=0",
+    "OSL_VERSION=11300",
 };
 
 void define(Context& context, const CompileOptions& options) {
@@ -164,7 +178,9 @@ void define(Context& context, const CompileOptions& options) {
   for (const std::string& name : options.removed_definitions) context.remove_macro_definition(name, false);
 }
 
-bool is_space(wave::token_id id) { return (unsigned(id) & unsigned(wave::TokenTypeMask)) == unsigned(wave::WhiteSpaceTokenType); }
+bool is_space(wave::token_id id) {
+  return (unsigned(id) & unsigned(wave::TokenTypeMask)) == unsigned(wave::WhiteSpaceTokenType);
+}
 
 Location place_of(const WaveToken& token) {
   const auto& position = token.get_position();

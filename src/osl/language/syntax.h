@@ -102,7 +102,7 @@ struct FunctionDeclaration {
   Location place;
   std::vector<Declarator> parameters;
   std::vector<Declarator> metadata;
-  StatementPointer body;  ///< null: only declared
+  StatementPointer body;                           ///< null: only declared
   bool variadic = false, output_variadic = false;  ///< `...` at the end, in signatures of the library
 };
 

@@ -9,6 +9,7 @@
 // parameters `T x[]`, so that a length is unknown (Type::unsized) only where it comes from a shader's parameter `T x[]`.
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -172,6 +173,7 @@ struct Expression {
   Constant constant;                    // constant
   const Function* function = nullptr;   // call
   const Row* row = nullptr;             // library
+  std::uint64_t outputs = 0;            // library: the operands that it writes, as bits
   const ClosureShape* shape = nullptr;  // closure, owned by the shader
 
   /// The symbol of which a reference is a part; null for other kinds.
