@@ -25,6 +25,11 @@ TEST(OslNoise, HashesAreTheLanguages) {
 TEST(OslNoise, PerlinsValues) {
   expect_near(triple("TYPE noise(point p)", {point(0.5f, 0.5f, 1)}), {0.5f, 0.193125f, 0.37725f}, 1e-6f);
   EXPECT_NEAR(number("TYPE cellnoise(float x, float y)", {0.5f, 0.5f}), 0.860313, 1e-6);
+  // Of an implementation that does one corner after the other.
+  expect_near(triple("TYPE snoise(float x)", {1.37f}), {0.404237f, 0.558718f, 0.332139f}, 1e-6f);
+  expect_near(triple("TYPE snoise(float x, float y)", {1.37f, -2.21f}), {-0.123012f, 0.58238f, -0.722636f}, 1e-6f);
+  expect_near(triple("TYPE snoise(point p, float t)", {point(1.37f, -2.21f, 0.64f), 3.13f}),
+              {-0.0845915f, -0.342004f, 0.230586f}, 1e-6f);
   // Zero at lattice points, also negative and large ones.
   for (const float x : {0.0f, -7.0f, 123456.0f}) {
     EXPECT_EQ(number("TYPE snoise(float x)", {x}), 0);

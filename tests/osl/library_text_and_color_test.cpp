@@ -2,6 +2,7 @@
 
 #include "call_library.h"
 #include "osl/library/closures.h"
+#include "osl/library/conversions.h"
 
 namespace etendue::osl::test {
 
@@ -204,6 +205,63 @@ TEST(OslTextures, OptionsReachTheRenderer) {
   EXPECT_EQ(pink.as<Triple>(), Triple(1, 0, 1));
   call(world, signature, Base::color, {"a.png", 0.0f, 0.0f});
   EXPECT_EQ(world.failed, "no such file");
+}
+
+TEST(OslDictionaries, AreSearchedWithXPath) {
+  World world;
+  const char* document = "<shop><cup size='2.5' n='7'>blue</cup><cup c='1, 2 3'/><cup c='1 2'/></shop>";
+  const auto find = [&](const char* query) {
+    return call(world, "int dict_find(string dictionary, string query)", Base::int_, {document, query}).as<int>();
+  };
+  constexpr const char* value = "int dict_value(int node, string attribute, output ANY value)";
+  const int first = find("//cup");
+  ASSERT_GT(first, 0);
+  EXPECT_EQ(find("//cup"), first);
+  std::vector<Value> a{first, "size", Value(Type(Base::float_))}, b{first, "", Value(Type(Base::string))},
+      n{first, "n", Value(Type(Base::int_))}, wrong{first, "", Value(Type(Base::int_))};
+  EXPECT_EQ(call(world, value, Base::int_, false, a).as<int>(), 1);
+  EXPECT_EQ(a[2].as<float>(), 2.5f);
+  EXPECT_EQ(call(world, value, Base::int_, false, b).as<int>(), 1);
+  EXPECT_EQ(b[2].as<const String*>()->text(), "blue");
+  EXPECT_EQ(call(world, value, Base::int_, false, n).as<int>(), 1);
+  EXPECT_EQ(n[2].as<int>(), 7);
+  EXPECT_EQ(call(world, value, Base::int_, false, wrong).as<int>(), 0);
+  const int second = call(world, "int dict_next(int node)", Base::int_, {first}).as<int>();
+  std::vector<Value> color{second, "c", Value(Type(Base::color), true)};
+  EXPECT_EQ(call(world, value, Base::int_, false, color).as<int>(), 1);
+  EXPECT_EQ(color[2].as<Triple>(), Triple(1, 2, 3));
+  const int third = call(world, "int dict_next(int node)", Base::int_, {second}).as<int>();
+  std::vector<Value> two{third, "c", Value(Type(Base::color))};
+  EXPECT_EQ(call(world, value, Base::int_, false, two).as<int>(), 0);
+  EXPECT_EQ(call(world, "int dict_next(int node)", Base::int_, {third}).as<int>(), 0);
+  EXPECT_EQ(call(world, "int dict_find(int node, string query)", Base::int_, {third, "../cup"}).as<int>() > 0, true);
+  EXPECT_EQ(find("//saucer"), 0);
+  EXPECT_EQ(world.failed, "");
+  EXPECT_EQ(find("//["), 0);
+  EXPECT_NE(world.failed, "");
+  EXPECT_EQ(call(world, "int dict_find(string dictionary, string query)", Base::int_, {"<shop", "//cup"}).as<int>(), -1);
+  EXPECT_EQ(call(world, "int dict_find(string dictionary, string query)", Base::int_, {"/dev/none.xml", "//cup"}).as<int>(),
+            -1);
+}
+
+TEST(OslAttributes, AreConverted) {
+  const auto convert = [](const Value& from, Value to) {
+    const bool done = convert_value(from.type, from.derivatives, from.bytes.data(), to.type, to.derivatives, to.bytes.data());
+    return done ? std::optional<Value>(to) : std::nullopt;
+  };
+  EXPECT_EQ(convert(3, Value(Type(Base::float_)))->as<float>(), 3);
+  EXPECT_EQ(convert(-3.7f, Value(Type(Base::int_)))->as<int>(), -3);
+  EXPECT_EQ(convert(NAN, Value(Type(Base::int_)))->as<int>(), std::numeric_limits<int>::min());
+  EXPECT_EQ(convert(2.0f, Value(Type(Base::normal)))->as<Triple>(), Triple(2));
+  EXPECT_EQ(convert(color(1, 2, 3), Value(Type(Base::vector)))->as<Triple>(), Triple(1, 2, 3));
+  EXPECT_EQ(convert(Value::array(Base::float_, std::vector<float>{4, 5}), Value(Type(Base::point)))->as<Triple>(),
+            Triple(4, 5, 0));
+  EXPECT_EQ(convert(5, Value(Type(Base::float_, 2)))->at<float>(1), 5);
+  EXPECT_FALSE(convert(color(1, 2, 3), Value(Type(Base::float_))));
+  EXPECT_FALSE(convert("text", Value(Type(Base::float_))));
+  const auto d = convert(Dual<float>(1, 2, 3), Value(Type(Base::color), true));
+  EXPECT_EQ(d->at<Triple>(2), Triple(3));
+  EXPECT_EQ(convert(1.0f, Value(Type(Base::color), true))->at<Triple>(1), Triple(0));
 }
 
 }  // namespace etendue::osl::test

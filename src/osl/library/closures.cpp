@@ -32,6 +32,9 @@ constexpr ClosureSignature signatures[] = {
     {"closure color debug(string tag)"},
     {"closure color holdout()"},
     {"closure color subsurface(float eta, float g, color mfp, color albedo)"},
+    {"closure color isotropic()"},
+    {"closure color henyey_greenstein(float g)"},
+    {"closure color absorption()"},
     // MaterialX
     {"closure color oren_nayar_diffuse_bsdf(normal N, color albedo, float roughness)", "int energy_compensation"},
     {"closure color burley_diffuse_bsdf(normal N, color albedo, float roughness)"},

@@ -18,6 +18,7 @@ std::span<const Row> spline_rows();
 std::span<const Row> derivative_rows();
 std::span<const Row> string_rows();
 std::span<const Row> world_rows();
+std::span<const Row> dictionary_rows();
 std::span<const Row> texture_rows();
 std::span<const Row> closure_rows();
 std::span<const Row> spectrum_rows();

@@ -6,6 +6,7 @@
 // fills a value gets its type and its address; `derivatives` says that the two blocks of derivatives follow and must be set,
 // too.
 
+#include <string>
 #include <string_view>
 
 #include "color_system.h"
@@ -114,6 +115,9 @@ class Services {
   virtual bool texture_info(const String* /*file*/, const float* /*at*/, const String* /*name*/, const Type&, void* /*out*/) {
     return false;
   }
+
+  /// dict_find: the text of an XML file. Throws Error with the reason. The default reads a regular file of this name.
+  virtual std::string dictionary(const String* file);
 
   // Text
 

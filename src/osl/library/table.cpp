@@ -13,7 +13,8 @@ std::span<const Row> library_rows() {
     std::vector<Row> all;
     for (const std::span<const Row> part :
          {constructor_rows(), mathematics_rows(), geometry_rows(), transform_rows(), color_rows(), step_rows(), noise_rows(),
-          spline_rows(), derivative_rows(), string_rows(), world_rows(), texture_rows(), closure_rows(), spectrum_rows()})
+          spline_rows(), derivative_rows(), string_rows(), world_rows(), dictionary_rows(), texture_rows(), closure_rows(),
+          spectrum_rows()})
       all.insert(all.end(), part.begin(), part.end());
     return all;
   }();

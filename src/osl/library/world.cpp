@@ -26,8 +26,8 @@ template <bool object, bool index>
 void get_attribute(const Call& c) {
   constexpr int name = object ? 1 : 0;
   const int value = c.count() - 1;
-  c.give(int(c.services.attribute(object ? c.string(0) : nullptr, c.string(name), index ? c.at<int>(name + 1) : -1,
-                                  c.type(value), c.derivatives(value), c.arguments[value])));
+  c.give(int(c.services.attribute(object && !c.string(0)->view().empty() ? c.string(0) : nullptr, c.string(name),
+                                  index ? c.at<int>(name + 1) : -1, c.type(value), c.derivatives(value), c.arguments[value])));
 }
 
 void set_message(const Call& c) {
@@ -57,8 +57,6 @@ void array_length(const Call& c) { c.give(c.type(0).array); }
 constexpr Derivatives none = Derivatives::none, taken = Derivatives::taken;
 
 constexpr const char* no_points = "point clouds are not supported: Étendue has no point cloud files";
-constexpr const char* no_dictionary = "dictionaries (XML) are not supported: give the values as parameters";
-
 constexpr Row rows[] = {
     {"int raytype(string name)", always<ray_type>, none, 0, nullptr, false},
     {"int backfacing()", always<backfacing>, none, 0, nullptr, false},
@@ -94,10 +92,6 @@ constexpr Row rows[] = {
     {"int pointcloud_get(string file, int indices[], int count, string attribute, output ...)", nullptr, none, 0, no_points,
      false},
     {"int pointcloud_write(string file, point at, ...)", nullptr, none, 0, no_points, false},
-    {"int dict_find(string dictionary, string query)", nullptr, none, 0, no_dictionary, false},
-    {"int dict_find(int node, string query)", nullptr, none, 0, no_dictionary, false},
-    {"int dict_next(int node)", nullptr, none, 0, no_dictionary, false},
-    {"int dict_value(int node, string name, output ANY value)", nullptr, none, 0, no_dictionary, false},
 };
 
 }  // namespace
