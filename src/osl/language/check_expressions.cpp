@@ -246,16 +246,10 @@ ExpressionPointer Checker::list(const syntax::Expression& e, const Type& given) 
 void Checker::must_be_writable(const Expression& e) {
   const Symbol* root = e.root();
   if (!root) refuse(e.place, "only a variable, or a part of one, can be written");
-  const bool displacement = shader_->kind == Shader::Kind::displacement || shader_->kind == Shader::Kind::shader;
   switch (root->role) {
     case Symbol::Role::parameter:
     case Symbol::Role::argument:
       refuse(e.place, fmt::format("'{}' cannot be written: it is a parameter without 'output'", root->name));
-    case Symbol::Role::global:
-      if (root->global != Global::Ci && !(displacement && (root->global == Global::P || root->global == Global::N)))
-        refuse(e.place,
-               fmt::format("the global variable '{}' cannot be written in a {} shader", root->name, name_of(shader_->kind)));
-      break;
     default: break;
   }
   const_cast<Symbol*>(root)->written = true;

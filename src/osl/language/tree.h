@@ -46,8 +46,8 @@ struct Metadatum {
   Constant value;
 };
 
-/// The variables that the renderer sets (doc: "global variables"). All but Ci and, in displacement shaders, P and N are read
-/// only; the checker refuses to write the others.
+/// The variables that the renderer sets. A shader may write all of them: of Ci, and of P and N of displacement shaders, the
+/// renderer takes the new value.
 enum class Global : unsigned char { P, I, N, Ng, dPdu, dPdv, Ps, u, v, time, dtime, dPdtime, Ci };
 inline constexpr int global_count = 13;
 
