@@ -67,9 +67,10 @@ Table make_table() {
   for (const ClosureSignature& closure : closures()) {
     Signature s = make(*parse_signature(closure.signature), Base::void_);
     s.closure = index++;
-    if (*closure.keywords)
-      for (const syntax::Declarator& k : parse_signature(std::string("void keywords(") + closure.keywords + ")")->parameters)
-        s.keywords.emplace_back(k.name, type_of(k.type, Base::void_));
+    if (*closure.keywords) {
+      const auto keywords = parse_signature(std::string("void keywords(") + closure.keywords + ")");
+      for (const syntax::Declarator& k : keywords->parameters) s.keywords.emplace_back(k.name, type_of(k.type, Base::void_));
+    }
     table[s.name].push_back(std::move(s));
   }
   return table;
