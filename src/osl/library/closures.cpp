@@ -118,7 +118,7 @@ const ClosureNode* make_component(const Call& c, const ClosureShape& shape) {
   component->shape = &shape;
   component->arguments = nullptr;
   if (shape.size == 0) return component;
-  auto* memory = static_cast<std::byte*>(c.services.allocate(shape.size, 8));
+  auto* memory = static_cast<std::byte*>(c.services.allocate(shape.size, alignof(Spectrum)));
   component->arguments = memory;
   int from = 0;
   for (const ClosureShape::Argument& a : shape.arguments) {

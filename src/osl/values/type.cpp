@@ -33,6 +33,7 @@ std::size_t Type::size() const {
 std::size_t Type::alignment() const {
   if (closure || base == Base::string) return alignof(void*);
   if (base == Base::structure) return structure->alignment;
+  if (base == Base::spectrum) return alignof(Spectrum);  // one vector register
   return alignof(float);
 }
 
