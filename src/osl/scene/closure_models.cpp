@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <unordered_map>
 
@@ -387,19 +388,71 @@ void Gathering::add_component(const ClosureComponent& c) {
   if (m && m->gather) m->gather(*this, c);
 }
 
+namespace {
+
+/// Calls a function for each expression of a shader.
+template <class F>
+class Visit {
+ public:
+  Visit(const Shader& shader, const F& f) : f_(f) {
+    for (const auto& symbol : shader.symbols) expression(symbol->initial.get());
+    for (const auto& function : shader.functions) statement(function->body.get());
+    statement(shader.body.get());
+  }
+
+ private:
+  void expression(const Expression* e) {
+    if (!e) return;
+    f_(*e);
+    for (const auto& operand : e->operands) expression(operand.get());
+  }
+  void statement(const Statement* s) {
+    if (!s) return;
+    expression(s->expression.get());
+    expression(s->step.get());
+    for (const auto& inner : s->statements) statement(inner.get());
+    statement(s->body.get());
+    statement(s->otherwise.get());
+  }
+  const F& f_;
+};
+
+/// Whether an operand is known to be zero.
+bool zero(const Expression& call, size_t i) {
+  const Expression* e = i < call.operands.size() ? call.operands[i].get() : nullptr;
+  if (!e || e->kind != Expression::Kind::constant) return false;
+  return std::all_of(e->constant.bytes.begin(), e->constant.bytes.end(), [](std::byte b) { return b == std::byte{0}; });
+}
+
+/// The lobes of a call of a closure: without those that its constant arguments exclude.
+Lobes lobes_of_call(const Model& m, const Expression& call) {
+  const std::string_view name = m.name;
+  constexpr auto reflects = Lobes(~transmission_lobes), transmits = Lobes(~reflection_lobes);
+  Lobes lobes = m.lobes;
+  if (name == "dielectric_bsdf" || name == "generalized_schlick_bsdf") {
+    if (zero(call, 2)) lobes &= transmits;
+    if (zero(call, 3)) lobes &= reflects;
+  }
+  if (name == "microfacet" && (zero(call, 6) || (call.operands.size() < 7 && zero(call, 4)))) lobes &= reflects;
+  return lobes;
+}
+
+}  // namespace
+
 ClosureUses uses_of(const Shader& shader) {
   ClosureUses uses;
-  for (const auto& shape : shader.shapes) {
-    const Model* m = model_of(shape->name);
-    if (!m) throw Error(fmt::format("the closure '{}' is not known here", shape->name->text()), shader.place);
-    uses.lobes |= m->lobes;
+  const auto note = [&](const Expression& e) {
+    if (e.kind != Expression::Kind::closure) return;
+    const Model* m = model_of(e.shape->name);
+    if (!m) throw Error(fmt::format("the closure '{}' is not known here", e.shape->name->text()), e.place);
+    uses.lobes |= lobes_of_call(*m, e);
     uses.scatters |= m->gather && m->gather != nothing;
     uses.emits |= !m->gather;
     uses.layers |= m->gather == layer;
-    // Thin sheets (translucent) and index-matched boundaries have no refracting body inside; null scattering still lets paths
-    // enter the object's interior.
-    uses.interior |= (m->lobes & (specular_transmission | glossy_transmission | null_scattering)) != 0;
-  }
+  };
+  Visit<decltype(note)>(shader, note);
+  // Thin sheets (translucent) have no body inside; null scattering lets paths enter the object's interior.
+  uses.interior = (uses.lobes & (specular_transmission | glossy_transmission | null_scattering)) != 0;
   return uses;
 }
 
