@@ -127,7 +127,8 @@ class Runner:
             return 124, (late.stdout or b"").decode("utf-8", "replace") + f"\nTIMEOUT after {self.options.seconds} s\n"
 
     def shade(self, words, folder, defines):
-        return self.run([self.program, "shade", "-I", folder.parent, *defines, *words], folder)
+        standard = self.options.suite.parent / "src" / "shaders"  # oslutil.h and the like
+        return self.run([self.program, "shade", "-I", folder.parent, "-I", standard, *defines, *words], folder)
 
     def command(self, line, folder, defines):
         """The status and the text of one command of a recipe."""

@@ -21,8 +21,11 @@ class GroupReader {
       if (word == "param" || word == "parameter")
         pending.push_back(parameter(at));
       else if (word == "shader") {
-        std::string shader = needed("the shader's name"), layer = needed("the layer's name");
-        finish();
+        std::string shader = needed("the shader's name"), layer = next();
+        if (ends_statement(layer) && !quoted_)
+          layer = fmt::format("{}_{}", shader, group.layers.size());
+        else
+          finish();
         group.layers.push_back({std::move(shader), std::move(layer), std::move(pending), at});
         pending.clear();
       } else if (word == "connect") {

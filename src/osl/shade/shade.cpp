@@ -33,7 +33,8 @@ class Shaders {
 
   std::shared_ptr<const Shader> load(const std::string& name) {
     const auto [entry, is_new] = loaded_.try_emplace(name);
-    if (is_new) entry->second = compile(compile_file(path_of(name), options_));
+    if (is_new)
+      if (const std::string path = path_of(name); !path.empty()) entry->second = compile(compile_file(path, options_));
     return entry->second;
   }
   void add(const std::string& name, const std::string& text) { loaded_[name] = compile(compile_text(text, name, options_)); }
