@@ -160,24 +160,28 @@ void Checker::declare_function(const std::shared_ptr<syntax::FunctionDeclaration
   }
   // A function with the same parameters that was only declared before is defined here.
   bool replaces = false;
+  std::string previous;
   if (const auto same = scope_->names.find(d->name); same != scope_->names.end())
     for (const Scope::Entry& e : same->second) {
       if (!same_parameters(*e.function, f) || !(e.function->result == f.result)) continue;
       if (!d->body && !f.closure) return;  // declared once more
       if (!e.function->declaration->body && !e.function->definition) e.function->definition = &f;
-      if (e.function->declaration->body) replaces = true;
+      if (!e.function->declaration->body) continue;
+      replaces = true;
+      const Location& at = e.function->declaration->place;
+      previous = fmt::format("\n    {}:{}", at.file, at.line) + previous;
     }
-  if (d->body && scope_->parent == nullptr) {
-    if (!replaces)
-      for (const Signature& s : library_signatures(d->name)) {
-        const bool same =
-            !s.variadic && std::equal(s.parameters.begin(), s.parameters.end(), f.parameters.begin(), f.parameters.end(),
-                                      [](const auto& x, const auto& y) { return !x.any && x.type == y.type; });
-        if (same && s.result == f.result) replaces = true;
-      }
-  }
+  if (d->body && scope_->parent == nullptr)
+    for (const Signature& builtin : library_signatures(d->name)) {
+      const bool same = builtin.result == f.result &&
+                        std::equal(builtin.parameters.begin(), builtin.parameters.end(), f.parameters.begin(),
+                                   f.parameters.end(), [](const auto& x, const auto& y) { return !x.any && x.type == y.type; });
+      if (same) previous += "\n    built-in";
+      if (same) replaces = true;
+    }
   if (replaces && d->body)
-    diagnostics_.warning(d->place, fmt::format("Function '{}' redefined in the same scope", signature_text(f)));
+    diagnostics_.warning(d->place, fmt::format("Function '{}' redefined in the same scope\n  Previous definitions:{}",
+                                               signature_text(f), previous));
   entries_.push_back(std::move(entry));
   if (!d->body) {
     f.number = number_ + 1;

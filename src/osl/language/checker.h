@@ -77,7 +77,6 @@ class Checker {
   void declarations(const std::vector<syntax::StatementPointer>&);
   void declare_structure(const syntax::StructDeclaration&);
   void declare_function(const std::shared_ptr<syntax::FunctionDeclaration>&);
-  void warn_of_redefinition(const FunctionEntry&);
   Type type_of(const syntax::TypeName&);
   Type type_of(const syntax::Declarator&);
   int array_length(const syntax::Declarator&);

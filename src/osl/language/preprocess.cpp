@@ -8,6 +8,7 @@
 #include <boost/wave/cpplexer/cpp_lex_iterator.hpp>
 #include <boost/wave/cpplexer/cpp_lex_token.hpp>
 #include <cctype>
+#include <filesystem>
 
 #include "lexer.h"
 #include "source_files.h"
@@ -182,10 +183,35 @@ bool is_space(wave::token_id id) {
   return (unsigned(id) & unsigned(wave::TokenTypeMask)) == unsigned(wave::WhiteSpaceTokenType);
 }
 
-Location place_of(const WaveToken& token) {
-  const auto& position = token.get_position();
-  return {intern(position.get_file().c_str()), int(position.get_line()), int(position.get_column())};
-}
+/// Wave makes file names absolute; messages show them as they were given.
+class Places {
+ public:
+  explicit Places(const std::string& name) {
+    const std::filesystem::path given(name);
+    std::error_code failed;
+    whole_ = std::filesystem::absolute(given, failed).parent_path().lexically_normal().string() + "/";
+    shown_ = given.parent_path().string();
+    if (!shown_.empty() && shown_.back() != '/') shown_ += '/';
+  }
+
+  Location place(const std::string& file, std::size_t line, std::size_t column) {
+    if (file != last_file_) {
+      last_file_ = file;
+      const std::string normal = std::filesystem::path(file).lexically_normal().string();
+      last_ = intern(normal.starts_with(whole_) ? shown_ + normal.substr(whole_.size()) : normal);
+    }
+    return {last_, int(line), int(column)};
+  }
+  Location place(const WaveToken& token) {
+    const auto& position = token.get_position();
+    return place(position.get_file().c_str(), position.get_line(), position.get_column());
+  }
+  Location place(const wave::cpp_exception& e) { return place(e.file_name(), e.line_no(), e.column_no()); }
+
+ private:
+  std::string whole_, shown_, last_file_;
+  const char* last_ = "";
+};
 
 /// What a `#pragma` line says; only `error` and `warning` have an effect.
 void obey_pragma(const std::string& line, Location at, Diagnostics& diagnostics) {
@@ -197,7 +223,7 @@ void obey_pragma(const std::string& line, Location at, Diagnostics& diagnostics)
   word == "error" ? diagnostics.error(at, text) : diagnostics.warning(at, text);
 }
 
-void run(Context& context, State& state, std::vector<Token>& out) {
+void run(Context& context, State& state, Places& places, std::vector<Token>& out) {
   Diagnostics& diagnostics = state.diagnostics;
   std::string pragma;
   bool in_pragma = false;
@@ -217,16 +243,16 @@ void run(Context& context, State& state, std::vector<Token>& out) {
         }
         const std::string text(token.get_value().begin(), token.get_value().end());
         if (id == wave::T_PP_PRAGMA) {
-          in_pragma = true, pragma.clear(), pragma_place = place_of(token);
+          in_pragma = true, pragma.clear(), pragma_place = places.place(token);
         } else if (in_pragma) {
           if (!pragma.empty() || !is_space(id)) pragma += text;
         } else if (!is_space(id) && id != wave::T_PP_LINE) {
-          append_token(text, place_of(token), out, diagnostics);
+          append_token(text, places.place(token), out, diagnostics);
           if (out.size() > most_tokens) throw TooMuch{fmt::format("more than {} tokens", most_tokens)};
         }
       }
     } catch (const wave::cpp_exception& e) {
-      const Location at{intern(e.file_name()), int(e.line_no()), int(e.column_no())};
+      const Location at = places.place(e);
       const auto* preprocessing = dynamic_cast<const wave::preprocess_exception*>(&e);
       if (preprocessing && preprocessing->get_severity() <= wave::util::severity_warning) {
         // A missing line's end and the like, which the language does not care about.
@@ -246,6 +272,7 @@ std::vector<Token> preprocess(const std::string& text, const std::string& name, 
                               std::vector<std::string>& files, Diagnostics& diagnostics) {
   State state(name, options, files, diagnostics);
   std::vector<Token> out;
+  Places places(name);
   const Location whole{intern(name), 0, 0};
   State* const outer = std::exchange(LoadAllowed::state, &state);
   struct Restore {
@@ -262,7 +289,7 @@ std::vector<Token> preprocess(const std::string& text, const std::string& name, 
     context.set_language(wave::language_support(wave::support_c99 | wave::support_option_emit_pragma_directives |
                                                 wave::support_option_single_line));
     define(context, options);
-    run(context, state, out);
+    run(context, state, places, out);
   } catch (const TooMuch& e) {
     diagnostics.error(out.empty() ? whole : out.back().place, e.reason);
     throw Diagnostics::Stop{};
@@ -270,10 +297,10 @@ std::vector<Token> preprocess(const std::string& text, const std::string& name, 
     diagnostics.error(whole, e.what());
     throw Diagnostics::Stop{};
   } catch (const wave::cpp_exception& e) {
-    diagnostics.error({intern(e.file_name()), int(e.line_no()), int(e.column_no())}, e.description());
+    diagnostics.error(places.place(e), e.description());
     throw Diagnostics::Stop{};
   } catch (const wave::cpplexer::cpplexer_exception& e) {
-    diagnostics.error({intern(e.file_name()), int(e.line_no()), int(e.column_no())}, e.description());
+    diagnostics.error(places.place(e.file_name(), e.line_no(), e.column_no()), e.description());
     throw Diagnostics::Stop{};
   } catch (const std::exception& e) {
     diagnostics.error(whole, fmt::format("the preprocessor gives up: {}", e.what()));
