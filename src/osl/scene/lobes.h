@@ -180,6 +180,7 @@ class SchlickModel final : public ScatterModel<SchlickModel> {
     if (!(out.z * in.z > 0)) return {};
     const Vector3 m = reflection_half_vector(out, in);
     const float missing = multiple_reflection_.missing(out), multiple = probability_of_multiple(missing);
+    if (std::abs(out.z * in.z) < 1e-7f) return {};  // along the surface
     return {fresnel_.at(std::abs(dot(out, m))) * (distribution_.D(m) * distribution_.visibility(out, in)) +
                 multiple_ * multiple_reflection_.value(missing, multiple_reflection_.missing(in)),
             (1 - multiple) * distribution_.visible_pdf(out, m) * reflection_jacobian(dot(out, m)) +

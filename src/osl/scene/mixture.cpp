@@ -36,12 +36,13 @@ Spectrum Mixture::factor(const MixturePart& part, const Vector3& v, const Cover*
   return w;
 }
 
-bool Mixture::probabilities(const Vector3& out, Lobes lobes, float* p) const {
+bool Mixture::probabilities(const Vector3& out, ScatterContext context, float* p) const {
   float sum = 0;
   for (int k = 0; k < count_; ++k) {
     const MixturePart& part = parts_[k];
-    const Lobes own = Lobes(lobes & part.lobes);
-    p[k] = own ? promise(part.scatter, factor(part, out).average(), out, own) : 0;
+    const Lobes own = Lobes(context.lobes & part.lobes);
+    const Spectrum share = context.transport == Transport::radiance ? factor(part, out) : part.weight;
+    p[k] = own ? promise(part.scatter, share.average(), out, own) : 0;
     sum += p[k];
   }
   if (!(sum > 0)) return false;
@@ -52,7 +53,7 @@ bool Mixture::probabilities(const Vector3& out, Lobes lobes, float* p) const {
 ScatterValue Mixture::world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext context) const {
   float p[most_parts];
   ScatterValue sum;
-  if (!probabilities(out, context.lobes, p)) return sum;
+  if (!probabilities(out, context, p)) return sum;
   const Vector3& leaves = context.transport == Transport::radiance ? out : in;
   for (int k = 0; k < count_; ++k) {
     const MixturePart& part = parts_[k];
@@ -76,7 +77,7 @@ std::optional<ScatterSample> Mixture::world_sample(const Vector3& out, float cho
     return straight_on(out, sum, 1);
   }
   float p[most_parts];
-  if (!probabilities(out, context.lobes, p)) return std::nullopt;
+  if (!probabilities(out, context, p)) return std::nullopt;
   int k = 0;
   float below = 0;
   while (k + 1 < count_ && (choice >= below + p[k] || p[k] == 0)) below += p[k++];

@@ -43,8 +43,9 @@ class Mixture final : public Scatter {
 
   /// w_k T_k for light that leaves in direction v; of the layers over the part only those before `until` count.
   Spectrum factor(const MixturePart&, const Vector3& v, const Cover* until = nullptr) const;
-  /// Sets P_k of all parts for requested lobes; false: no part has any of them.
-  bool probabilities(const Vector3& out, Lobes lobes, float* p) const;
+  /// Sets P_k of all parts for requested lobes; false: no part has any of them. The layers over a part count for radiance only:
+  /// for importance they depend on the direction that is sampled.
+  bool probabilities(const Vector3& out, ScatterContext, float* p) const;
 
   const MixturePart* parts_;
   int count_;
