@@ -60,9 +60,10 @@ inline Dual<float> floor_mod(const Dual<float>& a, const Dual<float>& b) {
   return {a.value - b.value * n, a.dx - b.dx * n, a.dy - b.dy * n};
 }
 
+// Of equal numbers, minimum takes the first and maximum the second, with its derivatives, as the reference implementation does.
 template <class N>
 N minimum(const N& a, const N& b) {
-  return value_of(a) < value_of(b) ? a : b;
+  return value_of(a) <= value_of(b) ? a : b;
 }
 template <class N>
 N maximum(const N& a, const N& b) {
