@@ -254,14 +254,15 @@ void run(Context& context, State& state, Places& places, std::vector<Token>& out
     } catch (const wave::cpp_exception& e) {
       const Location at = places.place(e);
       const auto* preprocessing = dynamic_cast<const wave::preprocess_exception*>(&e);
-      if (preprocessing && preprocessing->get_severity() <= wave::util::severity_warning) {
-        // A missing line's end and the like, which the language does not care about.
-        if (preprocessing->get_errorcode() == wave::preprocess_exception::warning_directive)
-          diagnostics.warning(at, e.description());
-      } else {
+      const bool recoverable = wave::is_recoverable(e);
+      const bool line_end =
+          preprocessing && preprocessing->get_errorcode() == wave::preprocess_exception::last_line_not_terminated;
+      if (recoverable && line_end) continue;
+      if (recoverable && preprocessing && preprocessing->get_severity() <= wave::util::severity_warning)
+        diagnostics.warning(at, e.description());
+      else
         diagnostics.error(at, e.description());
-      }
-      if (!wave::is_recoverable(e)) throw Diagnostics::Stop{};
+      if (!recoverable) throw Diagnostics::Stop{};
     }
   }
 }

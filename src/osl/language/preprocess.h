@@ -29,7 +29,7 @@ struct Token {
 /// Limits of what one shader may be. Beyond them compilation ends with an error.
 inline constexpr std::size_t most_source_bytes = std::size_t(64) << 20;  ///< of all files together
 inline constexpr std::size_t most_tokens = 4'000'000;                    ///< after the preprocessor
-inline constexpr std::size_t most_expanded_tokens = 16'000'000;          ///< made by macros on the way
+inline constexpr std::size_t most_expanded_tokens = 4'000'000;           ///< made by macros on the way
 inline constexpr int most_include_depth = 64;
 
 /// The tokens of a text, the last of kind `end`. `name` is the file's name in messages; includes are searched from its folder.

@@ -408,6 +408,7 @@ const Node* GroupBuilder::start_of(int layer, LayerBuilder& builder, const Symbo
 
 void GroupBuilder::build_layer(int i) {
   ShaderGroup::Layer& layer = group_->layers_[std::size_t(i)];
+  group_->layout_.keep_apart();
   LayerBuilder builder(*layer.shader, plans_[std::size_t(i)].symbols, group_->layout_, group_->nodes_);
   for (const Symbol* parameter : layer.shader->parameters)
     if (const Node* start = start_of(i, builder, *parameter)) layer.defaults.push_back(start);

@@ -40,6 +40,9 @@ class MemoryLayout {
   Memory temporary(const Type&, bool derivatives);
   std::size_t mark() const { return live_.size(); }
   void release(std::size_t mark);
+  /// Later temporaries use no place of earlier ones. Each layer has its own, as it may run in the middle of another's
+  /// statement.
+  void keep_apart() { free_.clear(); }
 
   std::span<std::byte> at(const Memory& m) { return std::span(image_).subspan(m.offset, m.type.size()); }
   const std::vector<std::byte>& image() const { return image_; }

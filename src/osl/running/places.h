@@ -7,7 +7,7 @@
 
 namespace etendue::osl {
 
-/// "marble.osl:12": the file's name as it was given, and the line.
+/// "marble.osl:12": the file's name without its folder, and the line.
 std::string place_text(const Location&);
 
 }  // namespace etendue::osl

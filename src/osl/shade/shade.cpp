@@ -147,8 +147,9 @@ GroupOptions group_options(const ShadeArguments& a, Shaders& shaders) {
 bool report(const std::vector<GroupProblem>& problems) {
   std::fflush(stdout);
   for (const GroupProblem& problem : problems) {
-    if (problem.at.line > 0) fmt::print(stderr, "{}:{}:{}: ", problem.at.file, problem.at.line, problem.at.column);
     fmt::print(stderr, "{}: {}\n", problem.warning ? "WARNING" : "ERROR", problem.text);
+    if (problem.at.line > 0)
+      fmt::print(stderr, "        place: {}:{}:{}\n", problem.at.file, problem.at.line, problem.at.column);
   }
   return std::none_of(problems.begin(), problems.end(), [](const GroupProblem& p) { return !p.warning; });
 }
