@@ -44,11 +44,14 @@ Spectrum Gathering::reflectance(const Triple& c) const {
   Triple rgb = c * weight_;
   bool cut = false;
   for (int i = 0; i < 3; ++i) {
-    if (rgb[i] > 1.0005f || !(rgb[i] > -1e-6f)) cut = true;
-    rgb[i] = rgb[i] > 0 ? std::min(rgb[i], 1.0f) : 0;
+    if (rgb[i] * spectral_weight_[0] > 1.0005f || !(rgb[i] > -1e-6f)) cut = true;
+    rgb[i] = rgb[i] > 0 ? std::min(rgb[i], 1e6f) : 0;
   }
-  if (cut) warn("a closure would reflect more than all light, or less than none, and is limited to that");
-  return clamp(color(rgb, ColorUse::reflectance) * spectral_weight_, 0, 1);
+  // Where the color alone exceeds 1 its scale is a factor, too: `2 * color * 0.3 * diffuse(N)`.
+  const float scale = std::max({rgb.x, rgb.y, rgb.z, 1.0f});
+  const Spectrum all = color(rgb * (1 / scale), ColorUse::reflectance) * scale * spectral_weight_;
+  if (cut || all.minimum() < 0) warn("a closure would reflect more than all light, or less than none, and is limited to that");
+  return clamp(all, 0, 1);
 }
 
 Spectrum Gathering::color(const Triple& c, ColorUse use) const {
@@ -101,7 +104,12 @@ void Gathering::add_closure(const ClosureNode* node) {
       const auto& p = *static_cast<const ClosureProduct*>(node);
       const Triple weight = weight_;
       const Spectrum spectral = spectral_weight_;
-      weight_ = weight_ * p.weight;
+      // Weights without colour stay factors of the spectra: then spectra of weights that sum to 1 sum to at most 1.
+      const Triple w = p.weight;
+      if (w.x == w.y && w.y == w.z)
+        spectral_weight_ *= w.x;
+      else
+        weight_ = weight_ * w;
       if (p.spectrum) spectral_weight_ *= *p.spectrum;
       add_closure(p.closure);
       weight_ = weight;

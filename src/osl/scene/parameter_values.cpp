@@ -83,6 +83,12 @@ bool is_color(const Constant& c) {
 
 etendue::Value value_of(const Constant& c, const Member& m) {
   if (!m.list) return value_at(c, m, 0);
+  if (m.kind == Kind::number || m.kind == Kind::integer || m.kind == Kind::vector3 || m.kind == Kind::point3) {
+    std::vector<double> all;  // row after row
+    for (size_t i = 0; i < c.bytes.size() / sizeof(float); ++i)
+      all.push_back(m.kind == Kind::integer ? double(c.at<int>(i)) : double(c.at<float>(i)));
+    return etendue::Value(Numbers{all, 1, Dimension::none});
+  }
   etendue::Value::List list;
   for (size_t i = 0; i < size_t(c.type.elements()); ++i) list.push_back(value_at(c, m, i));
   return etendue::Value(std::move(list));
