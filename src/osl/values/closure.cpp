@@ -59,6 +59,11 @@ void append_component(std::string& text, const ClosureComponent& c, const Triple
     if (a.keyword) text += "\"" + a.keyword->text() + "\", ";
     append_value(text, a.type, c.arguments + a.offset);
   }
+  // The reference implementation gives these an empty label where a call gives none.
+  static const String *const label = intern_string("label"), *const diffuse = intern_string("diffuse"),
+                             *const phong = intern_string("phong");
+  const String* name = c.shape->name;
+  if ((name == diffuse || name == phong) && !c.shape->find(label)) text += ", \"label\", \"\"";
   text += ")";
 }
 
