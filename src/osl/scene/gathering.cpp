@@ -84,9 +84,7 @@ void Gathering::add_layers(const ClosureNode* top, const ClosureNode* base) {
   const int begin = count_;
   add_closure(top);
   const Cover* const outside = covers_;
-  Spectrum outer =
-      color({std::max(weight_.x, 0.0f), std::max(weight_.y, 0.0f), std::max(weight_.z, 0.0f)}, ColorUse::coefficient) *
-      spectral_weight_;
+  const Spectrum outer = reflectance(Triple(1));
   covers_ = arena().make<Cover>(Cover{begin, count_, outer, outside});
   add_closure(base);
   covers_ = outside;
