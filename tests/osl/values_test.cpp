@@ -102,6 +102,13 @@ TEST(OslClosures, AreShownAsSums) {
       to_text(&twice),
       "(1, 0.5, 0.5) * phong ((0, 0, 1), 20, \"label\", \"coat\")\n\t+ (2, 1, 1) * phong ((0, 0, 1), 20, \"label\", \"coat\")");
   EXPECT_EQ(to_text(nullptr), "");
+  ClosureShape plain;
+  plain.name = intern_string("emission");
+  phong.shape = &plain;
+  EXPECT_EQ(to_text(&phong), "(1, 1, 1) * emission ()");
+  plain.add(Base::normal);
+  plain.name = intern_string("diffuse");
+  EXPECT_EQ(to_text(&phong), "(1, 1, 1) * diffuse ((0, 0, 1), \"label\", \"\")");
 }
 
 }  // namespace etendue::osl

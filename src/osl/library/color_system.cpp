@@ -56,7 +56,7 @@ Triple blackbody_xyz(double kelvin) {
   for (int i = 0; i < table_size; ++i) {
     const double metres = (380 + 5 * i) * 1e-9;
     const double exitance = 3.74183e-16 * std::pow(metres, -5) / std::expm1(1.4388e-2 / (metres * kelvin));
-    sum += float(exitance * 5e-9) * matching_functions()[std::size_t(i)];
+    sum += float(exitance) * 5e-9f * matching_functions()[std::size_t(i)];
   }
   return sum;
 }
@@ -89,7 +89,7 @@ ColorSystem::ColorSystem(Chromaticity red, Chromaticity green, Chromaticity blue
       from_xyz_[i][j] = float(from[std::size_t(i)][std::size_t(j)]);
     }
   for (int i = 0;; ++i) {
-    const float kelvin = spacing * std::pow(float(i), 1.5f) + coldest;
+    const float root = std::sqrt(float(i)), kelvin = root * root * root * spacing + coldest;
     const Triple c = clamped_to_zero(from_xyz(blackbody_xyz(double(kelvin))));
     blackbodies_.push_back({std::pow(c.x, 0.2f), std::pow(c.y, 0.2f), std::pow(c.z, 0.2f)});
     if (kelvin > hottest_of_table) break;
@@ -145,7 +145,8 @@ Triple ColorSystem::blackbody(float kelvin) const {
   if (kelvin >= hottest_of_table) return clamped_to_zero(from_xyz(blackbody_xyz(double(kelvin))));
   const float root = std::cbrt((kelvin - coldest) / spacing), at = root * root;
   const std::size_t i = std::min(std::size_t(at), blackbodies_.size() - 2);
-  const Triple c = blackbodies_[i] + (at - float(i)) * (blackbodies_[i + 1] - blackbodies_[i]);
+  const float t = at - float(i);
+  const Triple c = (1 - t) * blackbodies_[i] + t * blackbodies_[i + 1];
   const Triple square = c * c;
   return square * square * c;
 }

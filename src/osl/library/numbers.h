@@ -75,13 +75,11 @@ N clamped(const N& x, const N& low, const N& high) {
 }
 
 /// The unit vector, zero for zero.
-inline Triple normalized(const Triple& v) { return v * inversesqrt_or_zero(dot(v, v)); }
-inline Dual<Triple> normalized(const Dual<Triple>& v) {
-  const Dual<float> square = dot(v, v);
-  if (!(square.value > 0)) return {};
-  const float inverse = inversesqrt_or_zero(square.value);
-  return chain(inverse, -0.5f * inverse * inverse * inverse, square) * v;
-}
+inline Triple normalized(const Triple& v) { return v / Triple(length(v)); }
 inline Dual<float> length(const Dual<Triple>& v) { return sqrt_or_zero(dot(v, v)); }
+inline Dual<Triple> normalized(const Dual<Triple>& v) {
+  const Dual<float> size = length(v);
+  return v / make_triple(size, size, size);
+}
 
 }  // namespace etendue::osl

@@ -89,7 +89,7 @@ void matrix_in(const Call& c) {
   static const String* const common = intern_string("common");
   Matrix m;
   matrix_between(c, c.string(0), common, m);
-  c.give(from_numbers(c, 1) * m);
+  c.give(m * from_numbers(c, 1));  // in this order, as the reference implementation has it
 }
 
 void matrix_from_to(const Call& c) {

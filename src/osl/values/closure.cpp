@@ -13,6 +13,12 @@ void ClosureShape::add(const Type& type, const String* keyword) {
   size = offset + type.size();
 }
 
+const ClosureShape::Argument* ClosureShape::find(const String* keyword) const {
+  for (std::size_t i = arguments.size(); i-- > 0;)
+    if (arguments[i].keyword == keyword) return &arguments[i];
+  return nullptr;
+}
+
 namespace {
 
 void append_triple(std::string& text, const Triple& t) { text += fmt::format("({:.6g}, {:.6g}, {:.6g})", t.x, t.y, t.z); }
@@ -47,11 +53,17 @@ void append_component(std::string& text, const ClosureComponent& c, const Triple
   text += " * " + c.shape->name->text() + " (";
   bool first = true;
   for (const ClosureShape::Argument& a : c.shape->arguments) {
+    if (a.keyword && c.shape->find(a.keyword) != &a) continue;
     if (!first) text += ", ";
     first = false;
     if (a.keyword) text += "\"" + a.keyword->text() + "\", ";
     append_value(text, a.type, c.arguments + a.offset);
   }
+  // The reference implementation gives these an empty label where a call gives none.
+  static const String *const label = intern_string("label"), *const diffuse = intern_string("diffuse"),
+                             *const phong = intern_string("phong");
+  const String* name = c.shape->name;
+  if ((name == diffuse || name == phong) && !c.shape->find(label)) text += ", \"label\", \"\"";
   text += ")";
 }
 

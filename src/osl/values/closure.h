@@ -28,6 +28,8 @@ struct ClosureShape {
 
   /// Appends an argument behind the others, with natural alignment.
   void add(const Type&, const String* keyword = nullptr);
+  /// The optional argument of this name, or null; of several, the last counts.
+  const Argument* find(const String* keyword) const;
 };
 
 struct ClosureNode {
