@@ -1,5 +1,7 @@
 #include "parameter_values.h"
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <cstring>
 
@@ -14,7 +16,7 @@ namespace {
 etendue::Value value_at(const Constant& c, const Member& m, size_t i) {
   const auto floats = [&](size_t n) {
     std::vector<double> f;
-    for (size_t k = 0; k < n; ++k) f.push_back(double(c.at<float>(n * i + k)));
+    for (size_t k = 0; k < n; ++k) f.push_back(std::stod(fmt::format("{}", c.at<float>(n * i + k))));  // 0.1f as 0.1
     return f;
   };
   switch (c.type.base) {
