@@ -59,6 +59,9 @@ void append_component(std::string& text, const ClosureComponent& c, const Triple
     if (a.keyword) text += "\"" + a.keyword->text() + "\", ";
     append_value(text, a.type, c.arguments + a.offset);
   }
+  // reflection(N) is reflection(N, 0) there.
+  static const String* const reflection = intern_string("reflection");
+  if (c.shape->name == reflection && c.shape->arguments.size() == 1) text += ", 0";
   // The reference implementation gives these an empty label where a call gives none.
   static const String *const label = intern_string("label"), *const diffuse = intern_string("diffuse"),
                              *const phong = intern_string("phong");
