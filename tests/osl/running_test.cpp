@@ -168,7 +168,7 @@ TEST(OslRunning, MessagesPassFromLayerToLayer) {
 
 TEST(OslRunning, ClosuresAreSumsOfProducts) {
   EXPECT_EQ(printed("Ci = 0.5 * diffuse(N) * color(1, 0.5, 0) + 0 * emission() + emission(); printf(\"%s\", Ci);"),
-            "(0.5, 0.25, 0) * diffuse ((0, 0, 1))\n\t+ (1, 1, 1) * emission ()");
+            "(0.5, 0.25, 0) * diffuse ((0, 0, 1), \"label\", \"\")\n\t+ (1, 1, 1) * emission ()");
 }
 
 TEST(OslRunning, AnEndlessLoopStopsWithTheRender) {
