@@ -221,7 +221,7 @@ def image_difference(ours, theirs, threshold, percent):
             raise ValueError(image.geterror())
         values = numpy.asarray(image.get_pixels(OpenImageIO.FLOAT))
         # The reference writes an int output as 32-bit integers, which are read as fractions of the largest one.
-        return values * 2147483647.0 if str(image.spec().format) == "int32" else values
+        return values * 2147483647.0 if str(image.spec().format) in ("int", "int32") else values
 
     a, b = pixels(ours), pixels(theirs)
     if a.shape != b.shape:
