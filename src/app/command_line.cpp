@@ -99,6 +99,12 @@ CommandOption Command::flag(const std::string& name, bool& variable, const std::
   return CommandOption(*app_->add_flag(name, variable, description));
 }
 
+void Command::words(std::vector<std::string>& variable) {
+  app_->prefix_command();
+  app_->set_help_flag();
+  app_->parse_complete_callback([app = app_, &variable] { variable = app->remaining(); });
+}
+
 void Command::footer(const std::string& text) { app_->footer(text); }
 
 void Command::runs(Run run) {

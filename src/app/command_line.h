@@ -58,6 +58,8 @@ class Command {
   template <typename T>
   CommandOption option(const std::string& form, T& variable, const std::string& description);
   CommandOption flag(const std::string& name, bool& variable, const std::string& description);
+  /// All words behind the command's name, which has its own options and help.
+  void words(std::vector<std::string>& variable);
   /// Text below the list of options in the help.
   void footer(const std::string&);
 

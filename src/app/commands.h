@@ -29,5 +29,6 @@ void add_conform_command(Command& program);
 void add_measure_command(Command& program);
 void add_cluster_command(Command& program);
 void add_studio_command(Command& program);
+void add_shade_command(Command& program);
 
 }  // namespace etendue

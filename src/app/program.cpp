@@ -55,6 +55,7 @@ int run_program(int argument_count, char** arguments) {
   add_measure_command(program);
   add_cluster_command(program);
   add_studio_command(program);
+  add_shade_command(program);
   return command_line.run(argument_count, arguments);
 }
 

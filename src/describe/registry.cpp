@@ -13,6 +13,7 @@
 #include "faults.h"
 #include "files/format_library.h"
 #include "files/input_files.h"
+#include "files/shading_library.h"
 #include "guard.h"
 #include "plugin.h"
 #include "words.h"
@@ -321,12 +322,21 @@ void Registry::load_plugin(const std::string& path) {
   }
   const std::string file = find_plugin(path);
   note_input(file);
+  // A shader's file may have changed since: its reader compares.
+  const bool shading = file.ends_with(".osl");
   {
     const std::lock_guard lock(state_->mutex);
-    if (state_->plugins.contains(file)) return;
+    if (state_->plugins.contains(file) && !shading) return;
     if (const auto known = state_->refused.find(file); known != state_->refused.end()) throw Error(known->second);
   }
   const auto named = [&] { return Error("plugin '" + file + "': " + thrown_text()); };
+  if (shading) {
+    try {
+      load_shading_library();
+    } catch (const Error& e) {
+      throw Error("plugin '" + file + "': " + e.what());
+    }
+  }
   if (const auto read = state_->reader_of(file)) {
     try {
       read(file);

@@ -1,0 +1,498 @@
+#include "operations.h"
+
+#include <cstdint>
+
+#include "etendue/core/spectrum.h"
+#include "osl/library/closures.h"
+
+namespace etendue::osl {
+namespace {
+
+// ---- operators, by functors for numbers with and without derivatives
+// ---------------------------------------------------------
+
+struct Add {
+  template <class A, class B>
+  auto operator()(const A& a, const B& b) const {
+    return a + b;
+  }
+  int operator()(int a, int b) const { return int(unsigned(a) + unsigned(b)); }
+};
+struct Subtract {
+  template <class A, class B>
+  auto operator()(const A& a, const B& b) const {
+    return a - b;
+  }
+  int operator()(int a, int b) const { return int(unsigned(a) - unsigned(b)); }
+};
+struct Multiply {
+  template <class A, class B>
+  auto operator()(const A& a, const B& b) const {
+    return a * b;
+  }
+  int operator()(int a, int b) const { return int(unsigned(a) * unsigned(b)); }
+  Matrix operator()(float a, const Matrix& b) const { return b * a; }
+};
+/// What is divided by zero is zero.
+struct Divide {
+  template <class A, class B>
+  auto operator()(const A& a, const B& b) const {
+    return a / b;
+  }
+  float operator()(float a, float b) const { return safe_divide(a, b); }
+  int operator()(int a, int b) const { return b == 0 ? 0 : (b == -1 ? int(0u - unsigned(a)) : a / b); }
+  Matrix operator()(float a, const Matrix& b) const { return Matrix::diagonal(a) / b; }
+  Spectrum operator()(const Spectrum& a, const Spectrum& b) const {
+    Spectrum r;
+    for (int i = 0; i < spectrum_size; ++i) r.set(i, safe_divide(a[i], b[i]));
+    return r;
+  }
+};
+struct Modulus {
+  int operator()(int a, int b) const { return b == 0 || b == -1 ? 0 : a % b; }
+};
+struct ShiftLeft {
+  int operator()(int a, int b) const { return int(unsigned(a) << (b & 31)); }
+};
+struct ShiftRight {
+  int operator()(int a, int b) const { return a >> (b & 31); }
+};
+struct BitAnd {
+  int operator()(int a, int b) const { return a & b; }
+};
+struct BitOr {
+  int operator()(int a, int b) const { return a | b; }
+};
+struct BitXor {
+  int operator()(int a, int b) const { return a ^ b; }
+};
+struct Equal {
+  template <class T>
+  int operator()(const T& a, const T& b) const {
+    return a == b;
+  }
+  int operator()(const Spectrum& a, const Spectrum& b) const {
+    for (int i = 0; i < spectrum_size; ++i)
+      if (a[i] != b[i]) return 0;
+    return 1;
+  }
+};
+struct Unequal {
+  template <class T>
+  int operator()(const T& a, const T& b) const {
+    return !Equal()(a, b);
+  }
+};
+struct Less {
+  template <class T>
+  int operator()(const T& a, const T& b) const {
+    return a < b;
+  }
+};
+struct LessEqual {
+  template <class T>
+  int operator()(const T& a, const T& b) const {
+    return a <= b;
+  }
+};
+struct Greater {
+  template <class T>
+  int operator()(const T& a, const T& b) const {
+    return a > b;
+  }
+};
+struct GreaterEqual {
+  template <class T>
+  int operator()(const T& a, const T& b) const {
+    return a >= b;
+  }
+};
+struct Negate {
+  template <class T>
+  auto operator()(const T& a) const {
+    return -a;
+  }
+  int operator()(int a) const { return int(0u - unsigned(a)); }
+  Matrix operator()(const Matrix& a) const { return a * -1.0f; }
+};
+struct Complement {
+  int operator()(int a) const { return ~a; }
+};
+
+// ---- nodes
+// -------------------------------------------------------------------------------------------------------------------
+
+template <class A, class B, class Op>
+class Binary final : public Node {
+ public:
+  Binary(const Value& a, const Value& b, const Memory& out) : a_(a), b_(b), out_(out) {}
+  Flow run(RunState& run) const override {
+    a_.evaluate(run);
+    b_.evaluate(run);
+    store(run, out_, Op()(load<A>(run, a_.memory), load<B>(run, b_.memory)));
+    return Flow::next;
+  }
+
+ private:
+  Value a_, b_;
+  Memory out_;
+};
+
+template <class A, class B, class Op>
+class DualBinary final : public Node {
+ public:
+  DualBinary(const Value& a, const Value& b, const Memory& out) : a_(a), b_(b), out_(out) {}
+  Flow run(RunState& run) const override {
+    a_.evaluate(run);
+    b_.evaluate(run);
+    store(run, out_, Op()(load_dual<A>(run, a_.memory), load_dual<B>(run, b_.memory)));
+    return Flow::next;
+  }
+
+ private:
+  Value a_, b_;
+  Memory out_;
+};
+
+template <class A, class Op>
+class Unary final : public Node {
+ public:
+  Unary(const Value& a, const Memory& out) : a_(a), out_(out) {}
+  Flow run(RunState& run) const override {
+    a_.evaluate(run);
+    store(run, out_, Op()(load<A>(run, a_.memory)));
+    return Flow::next;
+  }
+
+ private:
+  Value a_;
+  Memory out_;
+};
+
+template <class A, class Op>
+class DualUnary final : public Node {
+ public:
+  DualUnary(const Value& a, const Memory& out) : a_(a), out_(out) {}
+  Flow run(RunState& run) const override {
+    a_.evaluate(run);
+    store(run, out_, Op()(load_dual<A>(run, a_.memory)));
+    return Flow::next;
+  }
+
+ private:
+  Value a_;
+  Memory out_;
+};
+
+template <class T, class Op>
+const Node* numeric(NodeStore& nodes, const Value& a, const Value& b, const Memory& out) {
+  if (out.stride) return nodes.make<DualBinary<T, T, Op>>(a, b, out);
+  return nodes.make<Binary<T, T, Op>>(a, b, out);
+}
+
+/// + - * / of the types that have them all.
+template <class Op>
+const Node* arithmetic(NodeStore& nodes, const Value& a, const Value& b, const Memory& out) {
+  const Type &ta = a.type(), &tb = b.type();
+  if (ta.is_int() && tb.is_int()) return nodes.make<Binary<int, int, Op>>(a, b, out);
+  if (ta.is_float() && tb.is_float()) return numeric<float, Op>(nodes, a, b, out);
+  if (ta.is_triple() && tb.is_triple()) return numeric<Triple, Op>(nodes, a, b, out);
+  if (ta.base == Base::spectrum && tb.base == Base::spectrum) return nodes.make<Binary<Spectrum, Spectrum, Op>>(a, b, out);
+  return nullptr;
+}
+
+template <class Op>
+const Node* matrix_arithmetic(NodeStore& nodes, const Value& a, const Value& b, const Memory& out) {
+  const Type &ta = a.type(), &tb = b.type();
+  if (ta.is_matrix() && tb.is_matrix()) return nodes.make<Binary<Matrix, Matrix, Op>>(a, b, out);
+  if (ta.is_matrix() && tb.is_float()) return nodes.make<Binary<Matrix, float, Op>>(a, b, out);
+  if (ta.is_float() && tb.is_matrix()) return nodes.make<Binary<float, Matrix, Op>>(a, b, out);
+  return arithmetic<Op>(nodes, a, b, out);
+}
+
+template <class Op>
+const Node* equality(NodeStore& nodes, const Value& a, const Value& b, const Memory& out) {
+  const Type& t = a.type();
+  if (t.is_int()) return nodes.make<Binary<int, int, Op>>(a, b, out);
+  if (t.is_float()) return nodes.make<Binary<float, float, Op>>(a, b, out);
+  if (t.is_triple()) return nodes.make<Binary<Triple, Triple, Op>>(a, b, out);
+  if (t.is_matrix()) return nodes.make<Binary<Matrix, Matrix, Op>>(a, b, out);
+  if (t.is_string()) return nodes.make<Binary<const String*, const String*, Op>>(a, b, out);
+  if (t.base == Base::spectrum) return nodes.make<Binary<Spectrum, Spectrum, Op>>(a, b, out);
+  return nullptr;
+}
+
+template <class Op>
+const Node* order(NodeStore& nodes, const Value& a, const Value& b, const Memory& out) {
+  if (a.type().is_int()) return nodes.make<Binary<int, int, Op>>(a, b, out);
+  if (a.type().is_float()) return nodes.make<Binary<float, float, Op>>(a, b, out);
+  return nullptr;
+}
+
+template <class Op>
+const Node* whole(NodeStore& nodes, const Value& a, const Value& b, const Memory& out) {
+  return nodes.make<Binary<int, int, Op>>(a, b, out);
+}
+
+// ---- closures
+// ----------------------------------------------------------------------------------------------------------------
+
+class AddClosures final : public Node {
+ public:
+  AddClosures(const Value& a, const Value& b, const Memory& out) : a_(a), b_(b), out_(out) {}
+  Flow run(RunState& run) const override {
+    a_.evaluate(run);
+    b_.evaluate(run);
+    const auto* a = load<const ClosureNode*>(run, a_.memory);
+    const auto* b = load<const ClosureNode*>(run, b_.memory);
+    value_at<const ClosureNode*>(run, out_.offset) = make_sum(run.services, a, b);
+    return Flow::next;
+  }
+
+ private:
+  Value a_, b_;
+  Memory out_;
+};
+
+/// A closure times a float, a color or a spectrum. The operands are evaluated in the order of the text.
+class WeighClosure final : public Node {
+ public:
+  WeighClosure(const Value& closure, const Value& weight, bool weight_first, const Memory& out)
+      : closure_(closure), weight_(weight), weight_first_(weight_first), out_(out) {}
+  Flow run(RunState& run) const override {
+    (weight_first_ ? weight_ : closure_).evaluate(run);
+    (weight_first_ ? closure_ : weight_).evaluate(run);
+    const auto* closure = load<const ClosureNode*>(run, closure_.memory);
+    value_at<const ClosureNode*>(run, out_.offset) = closure ? product(run, closure) : nullptr;
+    return Flow::next;
+  }
+
+ private:
+  const ClosureNode* product(RunState& run, const ClosureNode* closure) const {
+    const Type& type = weight_.type();
+    if (type.base == Base::spectrum) return make_product(run.services, load<Spectrum>(run, weight_.memory), closure);
+    return make_product(
+        run.services, type.is_float() ? Triple(load<float>(run, weight_.memory)) : load<Triple>(run, weight_.memory), closure);
+  }
+
+  Value closure_, weight_;
+  bool weight_first_;
+  Memory out_;
+};
+
+// ---- conversions
+// ---------------------------------------------------------------------------------------------------------------
+
+/// Towards zero. Numbers beyond the range, and not-a-number, give the least int, as the processor's own instruction does.
+int whole_number(float f) { return f > -2147483904.0f && f < 2147483648.0f ? int(f) : INT32_MIN; }
+
+struct IntToFloat {
+  float operator()(int a) const { return float(a); }
+};
+struct FloatToInt {
+  int operator()(float a) const { return whole_number(a); }
+};
+struct IntToTriple {
+  Triple operator()(int a) const { return Triple(float(a)); }
+};
+struct FloatToTriple {
+  Triple operator()(float a) const { return Triple(a); }
+  Dual<Triple> operator()(const Dual<float>& a) const { return {Triple(a.value), Triple(a.dx), Triple(a.dy)}; }
+};
+struct IntToMatrix {
+  Matrix operator()(int a) const { return Matrix::diagonal(float(a)); }
+};
+struct FloatToMatrix {
+  Matrix operator()(float a) const { return Matrix::diagonal(a); }
+};
+struct IntToSpectrum {
+  Spectrum operator()(int a) const { return Spectrum(float(a)); }
+};
+struct FloatToSpectrum {
+  Spectrum operator()(float a) const { return Spectrum(a); }
+};
+
+/// The closure that does nothing, of a null.
+class NoClosure final : public Node {
+ public:
+  NoClosure(const Value& from, const Memory& out) : from_(from), out_(out) {}
+  Flow run(RunState& run) const override {
+    from_.evaluate(run);
+    value_at<const ClosureNode*>(run, out_.offset) = nullptr;
+    return Flow::next;
+  }
+
+ private:
+  Value from_;
+  Memory out_;
+};
+
+class Copy final : public Node {
+ public:
+  Copy(const Value& from, const Memory& to) : from_(from), to_(to), size_(std::min(from.type().size(), to.type.size())) {}
+  Flow run(RunState& run) const override {
+    from_.evaluate(run);
+    copy_value(run.memory + to_.offset, to_.stride, run.memory + from_.memory.offset, from_.memory.stride, size_);
+    return Flow::next;
+  }
+
+ private:
+  Value from_;
+  Memory to_;
+  std::size_t size_;
+};
+
+/// The same for one number or address, or a triple.
+struct Same {
+  template <class T>
+  const T& operator()(const T& a) const {
+    return a;
+  }
+};
+
+template <class T>
+const Node* copy_of(NodeStore& nodes, const Value& from, const Memory& to) {
+  if (to.stride) return nodes.make<DualUnary<T, Same>>(from, to);
+  return nodes.make<Unary<T, Same>>(from, to);
+}
+
+// ---- truth
+// -------------------------------------------------------------------------------------------------------------------
+
+struct IsTrue {
+  int operator()(int a) const { return a != 0; }
+  int operator()(float a) const { return a != 0; }
+  int operator()(const Triple& a) const { return a.x != 0 || a.y != 0 || a.z != 0; }
+  int operator()(const Matrix& a) const {
+    for (const auto& row : a.m)
+      for (const float x : row)
+        if (x != 0) return 1;
+    return 0;
+  }
+  int operator()(const Spectrum& a) const { return Unequal()(a, Spectrum()); }
+  int operator()(const String* a) const { return !a->text().empty(); }
+  int operator()(const ClosureNode* a) const { return a != nullptr; }
+};
+struct IsFalse {
+  template <class T>
+  int operator()(const T& a) const {
+    return !IsTrue()(a);
+  }
+};
+
+template <class Op>
+const Node* truth_of(NodeStore& nodes, const Value& a, const Memory& out) {
+  const Type& t = a.type();
+  if (t.is_closure()) return nodes.make<Unary<const ClosureNode*, Op>>(a, out);
+  if (t.is_int()) return nodes.make<Unary<int, Op>>(a, out);
+  if (t.is_float()) return nodes.make<Unary<float, Op>>(a, out);
+  if (t.is_triple()) return nodes.make<Unary<Triple, Op>>(a, out);
+  if (t.is_matrix()) return nodes.make<Unary<Matrix, Op>>(a, out);
+  if (t.is_string()) return nodes.make<Unary<const String*, Op>>(a, out);
+  if (t.base == Base::spectrum) return nodes.make<Unary<Spectrum, Op>>(a, out);
+  return nullptr;
+}
+
+class MakeTriple final : public Node {
+ public:
+  MakeTriple(const Value& x, const Value& y, const Value& z, const Memory& out) : x_(x), y_(y), z_(z), out_(out) {}
+  Flow run(RunState& run) const override {
+    x_.evaluate(run);
+    y_.evaluate(run);
+    z_.evaluate(run);
+    if (out_.stride)
+      store(run, out_,
+            make_triple(load_dual<float>(run, x_.memory), load_dual<float>(run, y_.memory), load_dual<float>(run, z_.memory)));
+    else
+      store(run, out_, Triple(load<float>(run, x_.memory), load<float>(run, y_.memory), load<float>(run, z_.memory)));
+    return Flow::next;
+  }
+
+ private:
+  Value x_, y_, z_;
+  Memory out_;
+};
+
+}  // namespace
+
+// ---- which node
+// --------------------------------------------------------------------------------------------------------------
+
+const Node* binary_node(NodeStore& nodes, Operator operation, const Value& a, const Value& b, const Memory& out) {
+  if (a.type().is_closure() && b.type().is_closure()) return nodes.make<AddClosures>(a, b, out);
+  if (a.type().is_closure()) return nodes.make<WeighClosure>(a, b, false, out);
+  if (b.type().is_closure()) return nodes.make<WeighClosure>(b, a, true, out);
+  switch (operation) {
+    case Operator::add: return arithmetic<Add>(nodes, a, b, out);
+    case Operator::subtract: return arithmetic<Subtract>(nodes, a, b, out);
+    case Operator::multiply: return matrix_arithmetic<Multiply>(nodes, a, b, out);
+    case Operator::divide: return matrix_arithmetic<Divide>(nodes, a, b, out);
+    case Operator::modulus: return whole<Modulus>(nodes, a, b, out);
+    case Operator::shift_left: return whole<ShiftLeft>(nodes, a, b, out);
+    case Operator::shift_right: return whole<ShiftRight>(nodes, a, b, out);
+    case Operator::bit_and: return whole<BitAnd>(nodes, a, b, out);
+    case Operator::bit_or: return whole<BitOr>(nodes, a, b, out);
+    case Operator::bit_xor: return whole<BitXor>(nodes, a, b, out);
+    case Operator::equal: return equality<Equal>(nodes, a, b, out);
+    case Operator::unequal: return equality<Unequal>(nodes, a, b, out);
+    case Operator::less: return order<Less>(nodes, a, b, out);
+    case Operator::less_equal: return order<LessEqual>(nodes, a, b, out);
+    case Operator::greater: return order<Greater>(nodes, a, b, out);
+    case Operator::greater_equal: return order<GreaterEqual>(nodes, a, b, out);
+    case Operator::none:
+    case Operator::negate:
+    case Operator::complement: break;
+  }
+  return nullptr;
+}
+
+const Node* unary_node(NodeStore& nodes, Operator operation, const Value& a, const Memory& out) {
+  const Type& t = a.type();
+  if (operation == Operator::complement) return nodes.make<Unary<int, Complement>>(a, out);
+  if (t.is_closure()) return nullptr;
+  if (t.is_int()) return nodes.make<Unary<int, Negate>>(a, out);
+  if (t.is_float() && out.stride) return nodes.make<DualUnary<float, Negate>>(a, out);
+  if (t.is_float()) return nodes.make<Unary<float, Negate>>(a, out);
+  if (t.is_triple() && out.stride) return nodes.make<DualUnary<Triple, Negate>>(a, out);
+  if (t.is_triple()) return nodes.make<Unary<Triple, Negate>>(a, out);
+  if (t.is_matrix()) return nodes.make<Unary<Matrix, Negate>>(a, out);
+  if (t.base == Base::spectrum) return nodes.make<Unary<Spectrum, Negate>>(a, out);
+  return nullptr;
+}
+
+const Node* conversion_node(NodeStore& nodes, const Value& a, const Memory& out) {
+  const Type &from = a.type(), &to = out.type;
+  if (to.is_closure()) return from.is_closure() ? copy_node(nodes, a, out) : nodes.make<NoClosure>(a, out);
+  if (from.is_int() && to.is_float()) return nodes.make<Unary<int, IntToFloat>>(a, out);
+  if (from.is_float() && to.is_int()) return nodes.make<Unary<float, FloatToInt>>(a, out);
+  if (from.is_int() && to.is_triple()) return nodes.make<Unary<int, IntToTriple>>(a, out);
+  if (from.is_float() && to.is_triple() && out.stride) return nodes.make<DualUnary<float, FloatToTriple>>(a, out);
+  if (from.is_float() && to.is_triple()) return nodes.make<Unary<float, FloatToTriple>>(a, out);
+  if (from.is_int() && to.is_matrix()) return nodes.make<Unary<int, IntToMatrix>>(a, out);
+  if (from.is_float() && to.is_matrix()) return nodes.make<Unary<float, FloatToMatrix>>(a, out);
+  if (from.is_int() && to.base == Base::spectrum) return nodes.make<Unary<int, IntToSpectrum>>(a, out);
+  if (from.is_float() && to.base == Base::spectrum) return nodes.make<Unary<float, FloatToSpectrum>>(a, out);
+  return copy_node(nodes, a, out);
+}
+
+const Node* truth_node(NodeStore& nodes, const Value& a, bool expected, const Memory& out) {
+  return expected ? truth_of<IsTrue>(nodes, a, out) : truth_of<IsFalse>(nodes, a, out);
+}
+
+const Node* copy_node(NodeStore& nodes, const Value& from, const Memory& to) {
+  const Type& t = to.type;
+  if (!t.is_array() && !from.type().is_array()) {
+    if (t.is_closure()) return copy_of<const ClosureNode*>(nodes, from, to);
+    if (t.is_int()) return copy_of<int>(nodes, from, to);
+    if (t.is_float()) return copy_of<float>(nodes, from, to);
+    if (t.is_triple()) return copy_of<Triple>(nodes, from, to);
+    if (t.is_string()) return copy_of<const String*>(nodes, from, to);
+  }
+  return nodes.make<Copy>(from, to);
+}
+
+const Node* triple_node(NodeStore& nodes, const Value& x, const Value& y, const Value& z, const Memory& out) {
+  return nodes.make<MakeTriple>(x, y, z, out);
+}
+
+}  // namespace etendue::osl

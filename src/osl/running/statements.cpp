@@ -1,0 +1,162 @@
+// Translation of statements.
+
+#include "layer_builder.h"
+#include "operations.h"
+#include "references.h"
+
+namespace etendue::osl {
+namespace {
+
+class Block final : public Node {
+ public:
+  explicit Block(std::vector<const Node*> statements) : statements_(std::move(statements)) {}
+  Flow run(RunState& run) const override {
+    for (const Node* statement : statements_)
+      if (const Flow flow = statement->run(run); flow != Flow::next) return flow;
+    return Flow::next;
+  }
+
+ private:
+  std::vector<const Node*> statements_;
+};
+
+class Branch final : public Node {
+ public:
+  Branch(const Value& condition, const Node* yes, const Node* no) : condition_(condition), yes_(yes), no_(no) {}
+  Flow run(RunState& run) const override {
+    condition_.evaluate(run);
+    const Node* taken = load<int>(run, condition_.memory) ? yes_ : no_;
+    return taken ? taken->run(run) : Flow::next;
+  }
+
+ private:
+  Value condition_;
+  const Node *yes_, *no_;
+};
+
+/// for, while, and do-while (`body_first`).
+class Loop final : public Node {
+ public:
+  Loop(const Node* begin, bool has_condition, const Value& condition, const Node* step, const Node* body, bool body_first)
+      : begin_(begin),
+        has_condition_(has_condition),
+        condition_(condition),
+        step_(step),
+        body_(body),
+        body_first_(body_first) {}
+  Flow run(RunState& run) const override {
+    if (begin_) begin_->run(run);
+    for (bool first = body_first_;; first = false) {
+      // A shader that never ends is stopped with its render.
+      if ((++run.steps & 0xff) == 0 && run.abort && run.abort->load(std::memory_order_relaxed)) throw RunAborted();
+      if (has_condition_ && !first) {
+        condition_.evaluate(run);
+        if (!load<int>(run, condition_.memory)) return Flow::next;
+      }
+      const Flow flow = body_ ? body_->run(run) : Flow::next;
+      if (flow == Flow::break_loop) return Flow::next;
+      if (flow == Flow::leave || flow == Flow::exit) return flow;
+      if (step_) step_->run(run);
+    }
+  }
+
+ private:
+  const Node* begin_;
+  bool has_condition_;
+  Value condition_;
+  const Node *step_, *body_;
+  bool body_first_;
+};
+
+class Jump final : public Node {
+ public:
+  Jump(const Node* before, Flow flow) : before_(before), flow_(flow) {}
+  Flow run(RunState& run) const override {
+    if (before_) before_->run(run);
+    return flow_;
+  }
+
+ private:
+  const Node* before_;
+  Flow flow_;
+};
+
+}  // namespace
+
+const Node* LayerBuilder::body() { return shader_.body ? statement(*shader_.body) : nullptr; }
+
+const Node* LayerBuilder::default_value(const Symbol& parameter) {
+  const std::size_t mark = layout_.mark();
+  const Place to = variable(parameter);
+  const Value from = value(*parameter.initial, to.memory.derivatives());
+  const Node* node = copy_node(nodes_, from, to.memory);
+  layout_.release(mark);
+  return node;
+}
+
+const Node* LayerBuilder::sequence(const std::vector<StatementPointer>& statements) {
+  std::vector<const Node*> nodes;
+  for (const auto& s : statements)
+    if (s)
+      if (const Node* node = statement(*s)) nodes.push_back(node);
+  if (nodes.empty()) return nullptr;
+  return nodes.size() == 1 ? nodes[0] : nodes_.make<Block>(std::move(nodes));
+}
+
+const Node* LayerBuilder::declaration(const Statement& s) {
+  const Place to = variable(*s.symbol);
+  // A variable without an initial value begins as zero, so that no value of another point's run is seen.
+  if (!s.symbol->initial) return clear_node(nodes_, to.memory);
+  const Expression& initial = *s.symbol->initial;
+  const Memory* into = initial.type.size() == to.memory.type.size() ? &to.memory : nullptr;
+  const Value from = value(initial, to.memory.derivatives(), into);
+  if (from.compute && from.memory.offset == to.memory.offset && from.memory.stride == to.memory.stride) return from.compute;
+  const Node* copy = copy_node(nodes_, from, to.memory);
+  return from.type().size() < to.memory.type.size() ? both(nodes_, clear_node(nodes_, to.memory), copy) : copy;
+}
+
+/// Null for a statement that does nothing.
+const Node* LayerBuilder::statement(const Statement& s) {
+  using Kind = Statement::Kind;
+  const std::size_t mark = layout_.mark();
+  const Node* result = nullptr;
+  switch (s.kind) {
+    case Kind::nothing: break;
+    case Kind::expression: result = s.expression ? value(*s.expression, false).compute : nullptr; break;
+    case Kind::declaration: result = declaration(s); break;
+    case Kind::block: result = sequence(s.statements); break;
+    case Kind::branch: {
+      const Value condition = value(*s.expression, false);
+      const Node* yes = s.body ? statement(*s.body) : nullptr;
+      const Node* no = s.otherwise ? statement(*s.otherwise) : nullptr;
+      result = nodes_.make<Branch>(condition, yes, no);
+      break;
+    }
+    case Kind::loop:
+    case Kind::do_loop: {
+      const Node* begin = sequence(s.statements);
+      const Value condition = s.expression ? value(*s.expression, false) : Value();
+      const Node* step = s.step ? value(*s.step, false).compute : nullptr;
+      const Node* body = s.body ? statement(*s.body) : nullptr;
+      result = nodes_.make<Loop>(begin, s.expression != nullptr, condition, step, body, s.kind == Kind::do_loop);
+      break;
+    }
+    case Kind::break_loop: result = nodes_.make<Jump>(nullptr, Flow::break_loop); break;
+    case Kind::continue_loop: result = nodes_.make<Jump>(nullptr, Flow::continue_loop); break;
+    case Kind::leave: {
+      const Node* before = nullptr;
+      if (s.expression) {
+        const bool function = !calls_.empty() && !calls_.back().result.type.is_void();
+        const Value v = value(*s.expression, function && calls_.back().result.derivatives());
+        before = function ? copy_node(nodes_, v, calls_.back().result) : v.compute;
+      }
+      result = nodes_.make<Jump>(before, Flow::leave);
+      break;
+    }
+    case Kind::exit: result = nodes_.make<Jump>(nullptr, Flow::exit); break;
+  }
+  layout_.release(mark);
+  return result;
+}
+
+}  // namespace etendue::osl

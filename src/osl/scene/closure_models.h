@@ -1,0 +1,43 @@
+#pragma once
+// Closures as scatter models: what each of the language's closures is here, and the BSDF of a closure that a shader made.
+
+#include "etendue/shader.h"
+#include "osl/language/tree.h"
+#include "osl/values/closure.h"
+
+namespace etendue {
+struct RgbSpace;
+}
+
+namespace etendue::osl {
+
+/// The point at which a closure was made.
+struct ClosurePlace {
+  const SurfacePoint& point;
+  const Wavelengths& wavelengths;
+  Arena& arena;
+  const RgbSpace& space;    ///< of the colours
+  bool from_behind;         ///< the point was seen from behind, so that N points to the back of the surface
+  const std::string& name;  ///< of the class, for messages
+};
+
+/// The BSDF of a closure; null: all light is absorbed. Its parts of emission and of volumes are left out.
+const Scatter* scatter_of(const ClosureNode*, const ClosurePlace&);
+
+/// The light that a closure emits or, with `background`, sends from infinity [W m^-2 sr^-1 nm^-1].
+Spectrum light_of(const ClosureNode*, const RgbSpace&, const Wavelengths&);
+
+/// The index of refraction inside of the object, as the first component says that refracts; 1: none does.
+float refracting_index(const ClosureNode*);
+
+/// What the closures that a shader's text names may do.
+struct ClosureUses {
+  Lobes lobes = no_lobes;
+  bool scatters = false, emits = false;
+  bool layers = false;    ///< layer() occurs: the scattering is not reciprocal
+  bool interior = false;  ///< light may go through the surface into the body
+};
+/// Throws Error with the place of a closure that is not known here.
+ClosureUses uses_of(const Shader&);
+
+}  // namespace etendue::osl

@@ -1,0 +1,47 @@
+#pragma once
+// OslClass: a class of the description that is a shader in the language, and the objects of such classes.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "closure_models.h"
+#include "etendue/describe/declared_class.h"
+#include "osl/language/tree.h"
+#include "osl/running/shader_group.h"
+
+namespace etendue::osl {
+
+/// What a class is made from, in ClassInfo::declared.
+struct OslClass {
+  enum class Role : unsigned char { surface, emission, map };
+  /// A member of the class that is a parameter of the shader. Their names differ only where the description has the name for
+  /// something else.
+  struct Parameter {
+    const Symbol* symbol;
+    std::string member;
+  };
+
+  std::shared_ptr<const Shader> shader;
+  std::string file;
+  Role role = Role::surface;
+  ClosureUses uses;
+  std::vector<Parameter> parameters;
+  std::vector<std::string> outputs;  ///< of a map: the parameters that can be its value; of a displacement: "displacement"
+};
+
+/// The classes of a compiled shader: one for each thing that it can be. Throws Error with the place.
+std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shader>, const std::string& file);
+
+/// Makes an object of a class. One function for each role, in the file of that role.
+Ref<Component> make_surface(const ClassInfo&);
+Ref<Component> make_emission(const ClassInfo&);
+Ref<Component> make_map(const ClassInfo&);
+
+/// The value of a parameter as it lies in memory, from that of its member.
+Constant constant_of(const Type&, const Member&, const etendue::Value&);
+
+/// Declares the classes of a file, or those that changed since the last call. Throws Error with the faults of its text.
+void declare_file(const std::string& file);
+
+}  // namespace etendue::osl

@@ -1,0 +1,293 @@
+#include "render_services.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cstring>
+#include <mutex>
+#include <shared_mutex>
+#include <sstream>
+#include <unordered_map>
+
+#include "components/maps/footprint.h"
+#include "components/maps/image_texture.h"
+#include "etendue/mesh_facts.h"
+
+namespace etendue::osl {
+
+namespace {
+
+Triple triple(const Vector3& v) { return {v.x, v.y, v.z}; }
+Triple triple(const Normal3& v) { return {v.x, v.y, v.z}; }
+
+/// A shader may print or warn at each point of a picture: only so many texts of a process are printed.
+bool may_speak() {
+  static std::atomic<int> left = 200;
+  const int before = left.fetch_sub(1);
+  if (before == 0) etendue::warn("shaders print more than is shown: the rest is left out");
+  return before > 0;
+}
+
+/// Something that is looked up by a string's address and made once.
+template <class T>
+class Cache {
+ public:
+  template <class F>
+  T get(const String* key, const F& make) {
+    {
+      const std::shared_lock lock(mutex_);
+      if (const auto found = made_.find(key); found != made_.end()) return found->second;
+    }
+    const T made = make();
+    const std::unique_lock lock(mutex_);
+    return made_.try_emplace(key, made).first->second;
+  }
+
+ private:
+  std::shared_mutex mutex_;
+  std::unordered_map<const String*, T> made_;
+};
+
+struct OpenedTexture {
+  std::shared_ptr<const ImageTexture> image;
+  const String* fault = nullptr;
+};
+OpenedTexture opened(const String* file) {
+  static auto* cache = new Cache<OpenedTexture>;  // never destroyed: used until the program ends
+  return cache->get(file, [&]() -> OpenedTexture {
+    try {
+      return {ImageTexture::open(file->text(), "linear", ""), nullptr};
+    } catch (const Error& e) {
+      return {nullptr, intern_string(e.what())};
+    }
+  });
+}
+
+Wrap wrap_named(const String* name) {
+  const std::string_view text = name ? name->view() : std::string_view();
+  if (text == "periodic") return Wrap::repeat;
+  if (text == "clamp") return Wrap::clamp;
+  if (text == "mirror") return Wrap::mirror;
+  return Wrap::black;
+}
+
+Color spectrum_named(const std::string& text) {
+  std::istringstream words(text);
+  std::string kind, name, part;
+  words >> kind;
+  std::getline(words >> std::ws, name);
+  if (kind == "metal") {
+    const bool imaginary = name.ends_with(" k");
+    if (imaginary || name.ends_with(" n")) name.resize(name.size() - 2);
+    const Color index = metal_index(name);
+    return imaginary ? index->imaginary() : index;
+  }
+  if (kind == "glass") return glass_index(name);
+  if (kind == "illuminant") return illuminant_spectrum(name);
+  return file_spectrum({text, {}});
+}
+
+const RgbSpace& shading_space() {
+  static const RgbSpace& space = rgb_space("srgb");
+  return space;
+}
+
+}  // namespace
+
+Globals globals_of(const SurfacePoint& given, bool& from_behind) {
+  SurfacePoint p = given;
+  with_tangents(p);
+  Globals g;
+  const DoublePoint3 world = world_position(p);
+  Vector3 i = p.ray_direction;
+  if (i == Vector3{}) i = -Vector3(p.normal);
+  from_behind = dot(i, p.normal) > 0;
+  const float side = from_behind ? -1.0f : 1.0f;
+  g.P = Dual<Triple>(Triple(float(world.x), float(world.y), float(world.z)));
+  g.u = Dual<float>(p.uv.x);
+  g.v = Dual<float>(p.uv.y);
+  if (p.footprint > 0) {
+    const Footprint f = footprint_of(p);
+    g.P.dx = triple(f.longer);
+    g.P.dy = triple(f.shorter);
+    const UvFootprint uv = uv_footprint(p);
+    g.u.dx = uv.longer.x, g.u.dy = uv.shorter.x;
+    g.v.dx = uv.longer.y, g.v.dy = uv.shorter.y;
+  }
+  g.I = Dual<Triple>(triple(i));
+  g.N = Dual<Triple>(side * triple(p.shading_normal));
+  g.Ng = Dual<Triple>(side * triple(p.normal));
+  g.dPdu = Dual<Triple>(triple(p.dpdu));
+  g.dPdv = Dual<Triple>(triple(p.dpdv));
+  g.time = Dual<float>(p.time);
+  g.backfacing = from_behind;
+  g.flipped_handedness = false;
+  g.surface_area = 0;
+  if (p.object && p.object->extent() == Extent::bounded) g.surface_area = p.object->area(p.time);
+  return g;
+}
+
+bool RenderServices::to_common(const String* space, Matrix& out) {
+  const std::string_view name = space->view();
+  if (name == "world") {
+    out = Matrix::identity();
+    return true;
+  }
+  if (name != "object" && name != "shader") return false;
+  // From object space to rendering space, whose origin lies at rendering_origin in world space.
+  Transform scratch;
+  const Transform& t = placement(point_, scratch);
+  const DoublePoint3 origin = point_.object ? point_.object->rendering_origin() : DoublePoint3{};
+  const double shift[3] = {origin.x, origin.y, origin.z};
+  out = Matrix::identity();
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t k = 0; k < 4; ++k) out.m[k][r] = float(t.exact()[4 * r + k] + (k == 3 ? shift[r] : 0));
+  // The translation follows from the point itself, as object space may have an origin of its own.
+  const DoublePoint3 world = world_position(point_);
+  const double at[3] = {world.x, world.y, world.z};
+  for (size_t r = 0; r < 3; ++r) {
+    double turned = 0;
+    const double o[3] = {double(point_.object_position.x), double(point_.object_position.y), double(point_.object_position.z)};
+    for (size_t k = 0; k < 3; ++k) turned += t.exact()[4 * r + k] * o[k];
+    out.m[3][r] = float(at[r] - turned);
+  }
+  return true;
+}
+
+bool RenderServices::attribute(const String* object, const String* name, int index, const Type& type, bool derivatives,
+                               void* out) {
+  if (object && !object->view().empty()) return false;
+  const auto give = [&](const auto& v) {
+    std::memcpy(out, &v, sizeof v);
+    if (derivatives) std::memset(static_cast<std::byte*>(out) + type.size(), 0, 2 * type.size());
+    return true;
+  };
+  if (type.is_string()) {
+    if (name->view() != "object:name" && name->view() != "geom:name") return false;
+    return give(intern_string(point_.object && point_.object->origin ? point_.object->origin->name : std::string()));
+  }
+  const MeshFacts* facts = point_.object ? point_.object->mesh_facts() : nullptr;
+  if (!facts || index >= 0 || !(type.is_float() || type.is_triple())) return false;
+  static auto* numbers = new Cache<int>;
+  const int number = numbers->get(name, [&] {
+    const std::string_view text = name->view();
+    return attribute_number(std::string(text.starts_with("geom:") ? text.substr(5) : text));
+  });
+  float values[4] = {};
+  const int count = facts->attribute(number, point_, values);
+  if (count == 0) return false;
+  if (type.is_float()) return count == 1 && give(values[0]);
+  return count >= 3 && give(Triple(values[0], values[1], values[2]));
+}
+
+std::string_view RenderServices::texture(const String* file, const Dual<float>& s, const Dual<float>& t,
+                                         const TextureOptions& options, TextureLookup& lookup) {
+  const OpenedTexture texture = opened(file);
+  if (texture.fault) return texture.fault->view();
+  const Wraps wraps(wrap_named(options.wrap[0]), wrap_named(options.wrap[1]));
+  // t is 0 at the top of an image, and v at its bottom.
+  const auto sample = [&](float x, float y, float* out) {
+    const UvFootprint f{{s.dx * options.width[0], -t.dx * options.width[1]},
+                        {s.dy * options.width[0], -t.dy * options.width[1]}};
+    const bool closest = options.interpolation && options.interpolation->view() == "closest";
+    if (closest)
+      texture.image->nearest({x, 1 - y}, wraps, out);
+    else if (f.longer == Vector2{} && f.shorter == Vector2{})
+      texture.image->bilinear({x, 1 - y}, wraps, out);
+    else
+      texture.image->mean({x, 1 - y}, f, wraps, out);
+  };
+  float texel[4] = {};
+  const int channels = texture.image->channels();
+  sample(s.value, t.value, texel);
+  const auto channel = [&](const float* from, int i) {
+    const int k = options.first_channel + i;
+    if (k < channels) return from[k];
+    return channels == 1 && i < 3 && options.first_channel == 0 ? from[0] : options.fill;
+  };
+  const int wanted = lookup.channels + (lookup.wants_alpha ? 1 : 0);
+  for (int i = 0; i < wanted; ++i) lookup.value[i] = i == lookup.channels && channels < 4 ? 1.0f : channel(texel, i);
+  if (lookup.wants_derivatives) {
+    constexpr float step = 1.0f / 1024;
+    float next[4] = {};
+    sample(s.value + step, t.value, next);
+    for (int i = 0; i < wanted; ++i) lookup.by_s[i] = (channel(next, i) - channel(texel, i)) / step;
+    sample(s.value, t.value + step, next);
+    for (int i = 0; i < wanted; ++i) lookup.by_t[i] = (channel(next, i) - channel(texel, i)) / step;
+  }
+  return {};
+}
+
+// Latitude and longitude with y upwards: s = 1/2 + atan2(x, z) / (2 pi), t = acos(y) / pi.
+std::string_view RenderServices::environment(const String* file, const Dual<Triple>& direction, const TextureOptions& options,
+                                             TextureLookup& lookup) {
+  const Triple d = direction.value;
+  const float l = length(d);
+  const Dual<float> s(l > 0 ? 0.5f + std::atan2(d.x, d.z) / (2 * pi) : 0), t(l > 0 ? std::acos(clamp(d.y / l, -1, 1)) / pi : 0);
+  TextureOptions wrapped = options;
+  wrapped.wrap[0] = intern_string("periodic");
+  wrapped.wrap[1] = intern_string("clamp");
+  const bool wants = lookup.wants_derivatives;
+  lookup.wants_derivatives = false;
+  const std::string_view fault = texture(file, s, t, wrapped, lookup);
+  lookup.wants_derivatives = wants;
+  return fault;
+}
+
+bool RenderServices::texture_info(const String* file, const float*, const String* name, const Type& type, void* out) {
+  const OpenedTexture texture = opened(file);
+  const auto give = [&](int x) {
+    if (!type.is_int()) return false;
+    std::memcpy(out, &x, sizeof x);
+    return true;
+  };
+  if (name->view() == "exists") return give(texture.image ? 1 : 0);
+  if (name->view() == "channels") return texture.image && give(texture.image->channels());
+  return false;
+}
+
+void RenderServices::print(std::string_view text) {
+  if (may_speak()) fmt::print(stderr, "{}", text);
+}
+void RenderServices::warn(std::string_view text, Location at) {
+  if (may_speak()) etendue::warn(fmt::format("{}: {}", class_name_, text), at);
+}
+void RenderServices::error(std::string_view text, Location at) {
+  if (may_speak()) etendue::warn(fmt::format("{}: error in the shader: {}", class_name_, text), at);
+}
+
+bool RenderServices::transform_color(const String* from, const String* to, const Triple& c, Triple& out) {
+  try {
+    const RgbSpace &a = rgb_space(from->text()), &b = rgb_space(to->text());
+    double xyz[3], in[3] = {double(c.x), double(c.y), double(c.z)};
+    for (size_t i = 0; i < 3; ++i) xyz[i] = a.to_xyz[3 * i] * in[0] + a.to_xyz[3 * i + 1] * in[1] + a.to_xyz[3 * i + 2] * in[2];
+    for (size_t i = 0; i < 3; ++i)
+      out[int(i)] = float(b.from_xyz[3 * i] * xyz[0] + b.from_xyz[3 * i + 1] * xyz[1] + b.from_xyz[3 * i + 2] * xyz[2]);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+const Wavelengths& RenderServices::wavelengths() const { return wavelengths_ ? *wavelengths_ : Services::wavelengths(); }
+
+bool RenderServices::named_spectrum(const String* words, Spectrum& out) {
+  static auto* cache = new Cache<Color>;
+  const Color c = cache->get(words, [&]() -> Color {
+    try {
+      return spectrum_named(words->text());
+    } catch (const Error& e) {
+      etendue::warn(fmt::format("{}: spectrum(\"{}\"): {}", class_name_, words->view(), e.what()));
+      return nullptr;
+    }
+  });
+  if (!c) return false;
+  out = c->evaluate(wavelengths(), ColorUse::coefficient);
+  return true;
+}
+
+Spectrum RenderServices::color_spectrum(const Triple& c, bool light) {
+  return rgb_spectrum(shading_space(), c.x, c.y, c.z, light ? ColorUse::radiance : ColorUse::reflectance, wavelengths());
+}
+
+}  // namespace etendue::osl

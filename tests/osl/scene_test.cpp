@@ -1,0 +1,110 @@
+// Shaders as classes of the description: what is declared, and that it renders.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "etendue/describe/color.h"
+#include "etendue/object_map.h"
+#include "etendue/shader.h"
+#include "osl/scene/osl_class.h"
+
+namespace etendue::osl {
+namespace {
+
+SurfacePoint front() {
+  SurfacePoint p;
+  p.normal = p.shading_normal = Normal3{0, 0, 1};
+  p.dpdu = {1, 0, 0};
+  p.dpdv = {0, 1, 0};
+  p.uv = {0.25f, 0.5f};
+  return p;
+}
+Wavelengths visible() {
+  std::array<float, spectrum_size> lambda, pdf;
+  for (size_t i = 0; i < spectrum_size; ++i) {
+    lambda[i] = 400 + 40 * float(i);
+    pdf[i] = 1 / 470.0f;
+  }
+  return Wavelengths(lambda, pdf);
+}
+
+std::string written(const std::string& name, const std::string& text) {
+  const std::string path = testing::TempDir() + name;
+  std::ofstream(path) << text;
+  return path;
+}
+
+TEST(OslClasses, HaveTheParametersOfTheShader) {
+  Registry::instance().load_plugin(written("test_gloss.osl", R"(
+surface test_gloss [[ string help = "Gloss." ]] (
+    color paint = color(0.6, 0.1, 0.05) [[ string help = "the paint" ]],
+    float polish = 0.25 [[ string help = "how rough", float min = 0, float max = 1 ]],
+    int many = 3, string mode = "a" [[ string widget = "popup", string options = "a|b" ]],
+    float list[3] = {1, 2, 3}, point at = P)
+{ Ci = diffuse(N) * paint * polish; })"));
+  const ClassInfo* info = Registry::instance().find("TestGloss");
+  ASSERT_TRUE(info);
+  EXPECT_EQ(info->summary, "Gloss.");
+  ASSERT_TRUE(info->find("polish"));
+  EXPECT_EQ(info->find("polish")->text, "how rough");
+  EXPECT_EQ(info->find("polish")->range->high, 1);
+  EXPECT_EQ(info->find("mode")->choices.size(), 2u);
+  EXPECT_TRUE(info->find("list")->list);
+  const Ref<etendue::Shader> shader = ref_cast<etendue::Shader>(info->create());
+  EXPECT_THROW(set(*shader, "polish", etendue::Value(Number{2.0})), Error);
+  set(*shader, "polish", etendue::Value(Number{0.5}));
+  set(*shader, "paint", etendue::Value(rgb_color("srgb", 0.4, 0.4, 0.4)));
+  prepare_tree(*shader);
+  Arena arena;
+  const Scatter* s = shader->bind(front(), visible(), arena);
+  ASSERT_TRUE(s);
+  EXPECT_NEAR(s->albedo({0, 0, 1})[0], 0.2f, 1e-4f);
+}
+
+TEST(OslClasses, OutputsAreMaps) {
+  Registry::instance().load_plugin(written("test_pattern.osl",
+                                           "shader test_pattern(float k = 2, output float a = 0, output color c = 0) "
+                                           "{ a = k * u; c = color(v, 0, 0); }"));
+  const Ref<ObjectMap> map = ref_cast<ObjectMap>(Registry::instance().create("TestPattern"));
+  prepare_tree(*map);
+  EXPECT_FLOAT_EQ(map->scalar(front()), 0.5f);
+  set(*map, "output", etendue::Value(std::string("c")));
+  prepare_tree(*map);
+  EXPECT_NEAR(map->scalar(front()), 0.5f / 3, 1e-6f);
+}
+
+TEST(OslClasses, AreReadAgainWhenTheirFileChanges) {
+  const std::string first = "shader test_edited(output float a = 0) { a = 1; }",
+                    second = "shader test_edited(float more = 5, output float a = 0) { a = more; }";
+  const std::string file = written("test_edited.osl", first);
+  Registry::instance().load_plugin(file);
+  EXPECT_FALSE(Registry::instance().find("TestEdited")->find("more"));
+  written("test_edited.osl", second);
+  Registry::instance().load_plugin(file);
+  EXPECT_TRUE(Registry::instance().find("TestEdited")->find("more"));
+}
+
+TEST(OslClasses, FaultsHaveTheirPlace) {
+  const std::string file = written("test_fault.osl", "surface test_fault()\n{\n  Ci = diffuse(Q);\n}\n");
+  try {
+    Registry::instance().load_plugin(file);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("test_fault.osl:3"), std::string::npos) << e.what();
+  }
+}
+
+TEST(OslClasses, SumsOfSaturatedColoursReflectNoMoreThanAllLight) {
+  Registry::instance().load_plugin(ETENDUE_SOURCE_DIR "/scenes/osl/car_paint.osl");
+  const Ref<etendue::Shader> shader = ref_cast<etendue::Shader>(Registry::instance().create("CarPaint"));
+  prepare_tree(*shader);
+  Arena arena;
+  const Scatter* s = shader->bind(front(), visible(), arena);
+  ASSERT_TRUE(s);
+  EXPECT_LE(s->albedo({0, 0, 1}).maximum(), 1.001f);
+}
+
+}  // namespace
+}  // namespace etendue::osl
