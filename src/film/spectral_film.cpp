@@ -37,7 +37,8 @@ class SpectralFilm final : public ImageBuffer, public HasBands {
                                       "bands, low and high hold")
         .member<&SpectralFilm::responses>("responses", "1",
                                           "response curves, such as those of a sensor, in place of bands with edges: the value "
-                                          "is the mean of the radiance, weighted by the curve")
+                                          "is the mean of the radiance, weighted by the curve",
+                                          Meaning::coefficient)
         .member<&SpectralFilm::response_names>("response_names", "",
                                                "the names of the response curves; empty: 1, 2, 3 and so on");
   }

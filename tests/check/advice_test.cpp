@@ -41,7 +41,7 @@ TEST(AdviceText, a_path_tracer_loses_caustics_of_a_point_light_through_glass) {
   ASSERT_EQ(lines.size(), 2u);  // caustics, and caustics seen in mirrors
   EXPECT_TRUE(lines[0].starts_with("PathTracer cannot find ")) << lines[0];
   for (const char* part : {"caustics", "'lamp'", "'ball'"}) EXPECT_TRUE(has(lines[0], part)) << lines[0];
-  EXPECT_TRUE(has(lines[0], "; BidirectionalPathTracer") && lines[0].ends_with(" can")) << lines[0];
+  EXPECT_TRUE(has(lines[0], "; Automatic, BidirectionalPathTracer") && lines[0].ends_with(" can")) << lines[0];
   EXPECT_FALSE(has(lines[0], " Renderer ")) << "an interface is no renderer: " << lines[0];
   const SceneTraits traits = scene_traits(*job->scene, *job->camera);
   for (const std::string& name : renderers_that_find_all(traits)) {
