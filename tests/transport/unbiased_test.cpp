@@ -279,11 +279,16 @@ TEST(Unbiased, MapsAreFilteredOnRequestByOneWidth) {
   // A mirror, so that maps are also evaluated at later vertices.
   const std::string more =
       "Rectangle { corner: [-1, -1, 6], edge_u: [0, 2, 0], edge_v: [2, 0, 0], shader: PerfectSpecular {} }";
-  // Light subpaths evaluate maps without a filter.
-  const std::vector<std::string> from_both_ends = {
-      "BidirectionalPathTracer", "InstantRadiosity",       "ManyLights",
-      "MultiplexedMetropolis",   "PhotonMapper",           "PrimarySampleMetropolis",
-      "ProgressivePhotonMapper", "VertexConnectionMerging"};
+  // Light subpaths evaluate maps without a filter; so do those that Automatic tries.
+  const std::vector<std::string> from_both_ends = {"Automatic",
+                                                   "BidirectionalPathTracer",
+                                                   "InstantRadiosity",
+                                                   "ManyLights",
+                                                   "MultiplexedMetropolis",
+                                                   "PhotonMapper",
+                                                   "PrimarySampleMetropolis",
+                                                   "ProgressivePhotonMapper",
+                                                   "VertexConnectionMerging"};
   for (const std::string& name : renderers_for_it()) {
     if (name == "AmbientOcclusionRenderer") continue;  // evaluates no map
     const std::string show = name == "FeatureRenderer" ? ", feature: albedo" : "";
