@@ -205,7 +205,7 @@ TEST(Closures, ACoatSeenFromInsideReflectsTotally) {
     const ClosurePlace at{place.p, place.w, place.arena, rgb_space("srgb"), false, place.name, false};
     const Scatter* s = scatter_of(coat, at);
     ASSERT_TRUE(s);
-    const Vector3 out = normalize(Vector3{-0.7f, -0.2f, -0.64f});
+    const Vector3 out = normalize(Vector3{0.7f, 0.2f, -0.64f});
     EXPECT_NEAR(s->albedo(out).average(), 1, 1e-5f);
     for (const float choice : {0.1f, 0.9f}) {
       const auto sample = s->sample(out, choice, {0.5f, 0.5f});

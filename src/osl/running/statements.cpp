@@ -4,7 +4,6 @@
 
 #include "layer_builder.h"
 #include "operations.h"
-#include "places.h"
 #include "references.h"
 #include "shader_group.h"
 
@@ -70,8 +69,8 @@ class Loop final : public Node {
   void look_up(RunState& run) const {
     if (run.abort && run.abort->load(std::memory_order_relaxed)) throw RunAborted();
     if (run.steps < RunState::most_steps) return;
-    throw Error(fmt::format("{}: shader {}: this loop, or one around it, does not end: {} steps at one point",
-                            place_text(place_), run.group->shader_name(run.layer)->text(), RunState::most_steps),
+    throw Error(fmt::format("shader {}: this loop, or one around it, does not end: {} steps at one point",
+                            run.group->shader_name(run.layer)->text(), RunState::most_steps),
                 place_);
   }
 
