@@ -60,7 +60,7 @@ INTENDED = {
 
 # Lines that the reference's compiler, optimizer or harness add; they state no result of a shader.
 REMARKS = re.compile(
-    r"Compiled \S+ -> \S+$|Connect \S+ to \S+$|Output \S+ to \S+$|\S+: warning: |WARNING: Optimization warning|"
+    r"WARNING: the option '[^']*' has no effect$|Compiled \S+ -> \S+$|Connect \S+ to \S+$|Output \S+ to \S+$|\S+: warning: |WARNING: Optimization warning|"
     r"  (group|layer|source|issue): |        (group|place): |.*\.oso\b.*could be found|Dump of |\(node \w+\)|Entry (layers|outputs): "
 )
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
