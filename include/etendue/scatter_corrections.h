@@ -205,7 +205,10 @@ class ScatterCorrections {
     for (int i = 0; i < light.count; ++i)
       if (const Vector3& w = light.at[i]; asked(o, w, lobes))
         sum += radiance ? m.local_pdf(o, w, lobes) : m.local_pdf(w, o, lobes);
-    return radiance || sum == 0 ? sum : sum * (apart ? 0.5f : 1) / float(light.count * seers(m, o).count);
+    if (radiance || sum == 0) return sum;
+    // Along the surface no direction may be left by rounding, and then none is sampled.
+    const int to = seers(m, o).count;
+    return to == 0 ? 0 : sum * (apart ? 0.5f : 1) / float(light.count * to);
   }
 
   static ScatterValue value_and_pdf(const Model& m, const Vector3& out, const Vector3& in, ScatterContext context) {

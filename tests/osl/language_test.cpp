@@ -243,6 +243,7 @@ TEST(OslPreprocessor, IncludesComeFromAllowedFoldersOnly) {
   EXPECT_NE(failed("\"../outside.h\"", true).find("outside the shader's folder"), std::string::npos);
   EXPECT_NE(failed("\"/dev/zero\"", false).find("not a regular file"), std::string::npos);
   EXPECT_NE(failed("\"/etc/passwd\"", false).find("outside the shader's folder"), std::string::npos);
+  EXPECT_NE(failed("\"missing.h\"\n", false).find("s.osl:1:"), std::string::npos) << failed("\"missing.h\"", false);
   // An error in an included file has its place there.
   write("inside/wrong.h", "\nint wrong = ;\n");
   EXPECT_NE(failed("\"wrong.h\"", false).find("wrong.h:2:"), std::string::npos) << failed("\"wrong.h\"", false);
@@ -254,6 +255,32 @@ TEST(OslPreprocessor, MacrosAndConditionals) {
       constant<int>("\n#define TWICE(a) ((a) * 2)\n#if OSL_VERSION >= 11000 && defined(M_PI)\nint x = TWICE(3);\n#endif\n"), 6);
   EXPECT_EQ(constant<int>("\n#define GLUE(a, b) a##b\nint GLUE(x, ) = 4;\n"), 4);
   EXPECT_NE(errors_of("#error no\nshader s() {}").find("no"), std::string::npos);
+  EXPECT_EQ(errors_of("float f() { return 1; }\n\n  #include <missing.h>\nshader s() {}").substr(0, 2), "3:");
+}
+
+TEST(OslPreprocessor, BlanksAroundArgumentsAreNoPartOfThem) {
+  const std::string macros = "\n#define TEXT(a, b) #a #b\n#define INNER(f, a) TEXT(f(a),   a)\n#define ALL(...) #__VA_ARGS__\n";
+  EXPECT_EQ(constant<const String*>(macros + "string x = TEXT( p  q , r);\n")->view(), "p qr");
+  EXPECT_EQ(constant<const String*>(macros + "string x = INNER( g,  h (1) );\n")->view(), "g(h (1))h (1)");
+  EXPECT_EQ(constant<const String*>(macros + "string x = ALL( a, b );\n")->view(), "a, b");
+}
+
+TEST(OslPreprocessor, HeadersOfOurOwnStandInForMissingOnes) {
+  for (const char* type : {"color2", "vector2", "color4", "vector4"}) {
+    const std::string t = type;
+    const std::string value = t == "color4" ? "color(1), 2" : (t == "vector4" ? "1, 2, 3, 4" : "1, 2");
+    good("#include <" + t + ".h>\n#include \"" + t + ".h\"\nshader s() { " + t + " a = " + t + "(" + value +
+         "), b = 2 * -a + a / 2.0; if (a != b) b = clamp(pow(min(a, 1), b), 0, 1); }");
+  }
+  good("#include \"matrix33.h\"\nshader s() { matrix33 m = 2 * matrix44To33(matrix(1)); vector v = transform(m, vector(1)); }");
+  EXPECT_EQ(errors_of("#include \"oslutil.h\"\nshader s() {\n float x = wireframe();\n}").substr(0, 2), "3:");
+  // A file of the name has precedence.
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "etendue_osl_own_header";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "color2.h") << "struct color2 { float grey; };\n";
+  const std::string text = "#include \"color2.h\"\nshader s() { color2 c = color2(1); float x = c.grey; }";
+  EXPECT_EQ(to_text(compile_text(text, (folder / "s.osl").string()).diagnostics), "");
+  std::filesystem::remove_all(folder);
 }
 
 // ---- hostile texts

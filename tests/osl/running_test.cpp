@@ -176,12 +176,39 @@ TEST(OslRunning, AnEndlessLoopStopsWithTheRender) {
   std::vector<GroupProblem> problems;
   const auto group = network.build(problems);
   ASSERT_TRUE(group);
-  std::atomic<bool> abort = false;
-  std::thread other([&] { abort = true; });
+  const std::atomic<bool> abort = true;
   Recorder recorder;
   Globals globals = point();
   EXPECT_FALSE(group->execution().run(globals, recorder, &abort));
-  other.join();
+}
+
+TEST(OslRunning, AnEndlessLoopIsAnErrorAtItsPlace) {
+  Network network{{{"test", "shader test(float k = 0)\n{\n  for (int i = 0; i < 10 + k; i++)\n    while (1) { }\n}"}},
+                  "shader test layer;",
+                  {}};
+  std::vector<GroupProblem> problems;
+  const auto group = network.build(problems);
+  ASSERT_TRUE(group);
+  Recorder recorder;
+  Globals globals = point();
+  try {
+    group->execution().run(globals, recorder);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.location.line, 4);
+  }
+}
+
+TEST(OslRunning, StepsOfLoopsAreCountedForEachRunAlone) {
+  Network network{{{"test", "shader test() { for (int i = 0; i < 3000000; i++) { } }"}}, "shader test layer;", {}};
+  std::vector<GroupProblem> problems;
+  const auto group = network.build(problems);
+  ASSERT_TRUE(group);
+  Recorder recorder;
+  for (int i = 0; i < 4; ++i) {
+    Globals globals = point();
+    EXPECT_TRUE(group->execution().run(globals, recorder));
+  }
 }
 
 TEST(OslRunning, EndlessSumsOfClosuresAreAnError) {

@@ -75,6 +75,30 @@ TEST(OslClasses, OutputsAreMaps) {
   EXPECT_NEAR(map->scalar(front()), 0.5f / 3, 1e-6f);
 }
 
+TEST(OslClasses, MapsAreFinite) {
+  Registry::instance().load_plugin(
+      written("test_overflow.osl", "shader test_overflow(output float a = 0) { a = sin(1e30 * 1e30 * (1 + u)); }"));
+  const Ref<ObjectMap> map = ref_cast<ObjectMap>(Registry::instance().create("TestOverflow"));
+  prepare_tree(*map);
+  EXPECT_EQ(map->scalar(front()), 0);
+  EXPECT_EQ(map->color(front(), visible(), ColorUse::reflectance)[0], 0);
+}
+
+// The render that is asked to end must not wait for a point that never does.
+TEST(OslClasses, AnEndlessShaderIsAnErrorAtItsLoop) {
+  Registry::instance().load_plugin(
+      written("test_endless.osl", "surface test_endless(int k = 1)\n{\n  while (k > 0) { }\n  Ci = diffuse(N);\n}\n"));
+  const Ref<etendue::Shader> shader = ref_cast<etendue::Shader>(Registry::instance().create("TestEndless"));
+  prepare_tree(*shader);
+  Arena arena;
+  try {
+    shader->bind(front(), visible(), arena);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.location.line, 3);
+  }
+}
+
 TEST(OslClasses, AreReadAgainWhenTheirFileChanges) {
   const std::string first = "shader test_edited(output float a = 0) { a = 1; }",
                     second = "shader test_edited(float more = 5, output float a = 0) { a = more; }";

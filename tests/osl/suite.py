@@ -47,7 +47,10 @@ EXCLUDED = {
 }
 
 INTENDED = {
+    "blackbody": "of 192,000 half numbers, up to thousands, none differs by more than one step of half; the threshold is absolute",
     "bug-array-heapoffsets": "textures are filtered by our own filter, over the ellipse of the derivatives",
+    "compassign-bool": "varying_le.osl and varying_lt.osl declare each other's names, by which the reference finds what it compiled; "
+    "shaders are found by their files' names here",
     "debugnan": "a check of values for not-a-number after each operation is an option of the reference, not of the language",
     "derivs": "pow(0, 0) is 1 with and without derivatives; the reference gives 0 where it computes derivatives",
     "error-malformed": "the reason why a file cannot be opened is told in words of our own",
@@ -60,7 +63,7 @@ INTENDED = {
 
 # Lines that the reference's compiler, optimizer or harness add; they state no result of a shader.
 REMARKS = re.compile(
-    r"Compiled \S+ -> \S+$|Connect \S+ to \S+$|Output \S+ to \S+$|\S+: warning: |WARNING: Optimization warning|"
+    r"WARNING: the option '[^']*' has no effect$|Compiled \S+ -> \S+$|Connect \S+ to \S+$|Output \S+ to \S+$|\S+: warning: |WARNING: Optimization warning|"
     r"  (group|layer|source|issue): |        (group|place): |.*\.oso\b.*could be found|Dump of |\(node \w+\)|Entry (layers|outputs): "
 )
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")

@@ -23,34 +23,72 @@ using WaveToken = wave::cpplexer::lex_token<>;
 using WaveIterator = wave::cpplexer::lex_iterator<WaveToken>;
 class Hooks;
 
+/// Wave makes file names absolute; messages show them as they were given.
+class Places {
+ public:
+  explicit Places(const std::string& name) {
+    const std::filesystem::path given(name);
+    std::error_code failed;
+    whole_ = std::filesystem::absolute(given, failed).parent_path().lexically_normal().string() + "/";
+    shown_ = given.parent_path().string();
+    if (!shown_.empty() && shown_.back() != '/') shown_ += '/';
+  }
+
+  Location place(const std::string& file, std::size_t line, std::size_t column) {
+    if (file != last_file_) {
+      last_file_ = file;
+      const std::string normal = std::filesystem::path(file).lexically_normal().string();
+      last_ = intern(normal.starts_with(whole_) ? shown_ + normal.substr(whole_.size()) : normal);
+    }
+    return {last_, int(line), int(column)};
+  }
+  Location place(const wave::util::file_position_type& position) {
+    return place(position.get_file().c_str(), position.get_line(), position.get_column());
+  }
+  Location place(const WaveToken& token) { return place(token.get_position()); }
+  Location place(const wave::cpp_exception& e) { return place(e.file_name(), e.line_no(), e.column_no()); }
+
+ private:
+  std::string whole_, shown_, last_file_;
+  const char* last_ = "";
+};
+
 /// Ends the preprocessor from within a hook.
 struct TooMuch {
   std::string reason;
+  Location place{};  ///< unless it is that of the last token
 };
 
 /// What the hooks and the reading of included files share.
 struct State {
   State(const std::string& name, const CompileOptions& options, std::vector<std::string>& list, Diagnostics& d)
-      : files(name, options.include_folders), read(list), diagnostics(d) {}
+      : places(name), files(name, options.include_folders), read(list), diagnostics(d) {}
 
+  Places places;
   SourceFiles files;
   std::vector<std::string>& read;
   Diagnostics& diagnostics;
   std::size_t bytes = 0, expanded = 0;
-  Location directive;  ///< where the last include stands
+  Location directive{};  ///< where the last include stands
 
   /// The text of a file for Wave, which needs a line's end at the end.
   std::string load(const std::string& path) {
     std::string text;
     if (const auto standard = SourceFiles::standard_header(path)) {
       text = *standard;
+    } else if (const auto own = SourceFiles::built_in(path)) {
+      text = *own;
     } else {
-      text = SourceFiles::read(path);
+      try {
+        text = SourceFiles::read(path);
+        check_source(text);
+      } catch (const Error& e) {
+        throw TooMuch{fmt::format("#include \"{}\": {}", path, e.what()), directive};
+      }
       read.push_back(path);
     }
     bytes += text.size();
-    if (bytes > most_source_bytes) throw TooMuch{fmt::format("more than {} bytes of source", most_source_bytes)};
-    check_source(text);
+    if (bytes > most_source_bytes) throw TooMuch{fmt::format("more than {} bytes of source", most_source_bytes), directive};
     if (text.empty() || text.back() != '\n') text += '\n';
     return text;
   }
@@ -105,24 +143,51 @@ thread_local State* LoadAllowed::state = nullptr;
 
 using Context = wave::context<std::string::const_iterator, WaveIterator, LoadAllowed, Hooks>;
 
+bool is_space(wave::token_id id) {
+  return (unsigned(id) & unsigned(wave::TokenTypeMask)) == unsigned(wave::WhiteSpaceTokenType);
+}
+
 class Hooks : public wave::context_policies::eat_whitespace<WaveToken> {
  public:
   template <class C>
   bool locate_include_file(C& context, std::string& file, bool is_system, const char* current_name, std::string& folder,
                            std::string& native) {
     State& state = LoadAllowed::current();
+    state.directive = state.places.place(context.get_main_pos());
     if (context.get_iteration_depth() >= std::size_t(most_include_depth))
-      throw TooMuch{fmt::format("#include \"{}\": files include each other more than {} deep", file, most_include_depth)};
+      throw TooMuch{fmt::format("#include \"{}\": files include each other more than {} deep", file, most_include_depth),
+                    state.directive};
     (void)current_name;
     if (SourceFiles::standard_header(file)) {
       native = folder = file;
       return true;
     }
     const std::string including = context.get_main_pos().get_file().c_str();
-    const SourceFiles::Found found = state.files.find(file, !is_system, including);
-    if (found.path.empty()) throw TooMuch{fmt::format("#include \"{}\": {}", file, found.reason)};
+    SourceFiles::Found found = state.files.find(file, !is_system, including);
+    if (found.missing) found.path = SourceFiles::built_in_path(file);
+    if (found.path.empty()) throw TooMuch{fmt::format("#include \"{}\": {}", file, found.reason), state.directive};
     native = folder = found.path;
     return true;
+  }
+
+  /// Blanks around an argument are no part of it. Wave removes them for `#` and `##` of this macro only, so that a `#` of a
+  /// macro further in would see them; the arguments are a local variable of Wave's that it reads again after this call. Those
+  /// of `...` are one argument, with its commas and the blanks around them.
+  template <class C, class Token, class Container, class Iterator>
+  bool expanding_function_like_macro(const C&, const Token&, const std::vector<Token>& parameters, const Container&,
+                                     const Token&, const std::vector<Container>& arguments, const Iterator&, const Iterator&) {
+    auto& trimmed = const_cast<std::vector<Container>&>(arguments);
+    const bool open = !parameters.empty() && wave::token_id(parameters.back()) == wave::T_ELLIPSIS;
+    const std::size_t rest = open ? parameters.size() - 1 : arguments.size();  // where those of `...` begin
+    const auto blank = [](const Token& token) { return is_space(wave::token_id(token)); };
+    for (std::size_t i = 0; i < trimmed.size(); ++i) {
+      Container& argument = trimmed[i];
+      if (i <= rest)
+        while (argument.size() > 1 && blank(argument.front())) argument.pop_front();
+      if (i < rest || i + 1 == trimmed.size())
+        while (argument.size() > 1 && blank(argument.back())) argument.pop_back();
+    }
+    return false;
   }
 
   template <class C, class Container>
@@ -179,40 +244,6 @@ void define(Context& context, const CompileOptions& options) {
   for (const std::string& name : options.removed_definitions) context.remove_macro_definition(name, false);
 }
 
-bool is_space(wave::token_id id) {
-  return (unsigned(id) & unsigned(wave::TokenTypeMask)) == unsigned(wave::WhiteSpaceTokenType);
-}
-
-/// Wave makes file names absolute; messages show them as they were given.
-class Places {
- public:
-  explicit Places(const std::string& name) {
-    const std::filesystem::path given(name);
-    std::error_code failed;
-    whole_ = std::filesystem::absolute(given, failed).parent_path().lexically_normal().string() + "/";
-    shown_ = given.parent_path().string();
-    if (!shown_.empty() && shown_.back() != '/') shown_ += '/';
-  }
-
-  Location place(const std::string& file, std::size_t line, std::size_t column) {
-    if (file != last_file_) {
-      last_file_ = file;
-      const std::string normal = std::filesystem::path(file).lexically_normal().string();
-      last_ = intern(normal.starts_with(whole_) ? shown_ + normal.substr(whole_.size()) : normal);
-    }
-    return {last_, int(line), int(column)};
-  }
-  Location place(const WaveToken& token) {
-    const auto& position = token.get_position();
-    return place(position.get_file().c_str(), position.get_line(), position.get_column());
-  }
-  Location place(const wave::cpp_exception& e) { return place(e.file_name(), e.line_no(), e.column_no()); }
-
- private:
-  std::string whole_, shown_, last_file_;
-  const char* last_ = "";
-};
-
 /// What a `#pragma` line says; only `error` and `warning` have an effect.
 void obey_pragma(const std::string& line, Location at, Diagnostics& diagnostics) {
   const std::size_t quote = line.find('"');
@@ -223,7 +254,8 @@ void obey_pragma(const std::string& line, Location at, Diagnostics& diagnostics)
   word == "error" ? diagnostics.error(at, text) : diagnostics.warning(at, text);
 }
 
-void run(Context& context, State& state, Places& places, std::vector<Token>& out) {
+void run(Context& context, State& state, std::vector<Token>& out) {
+  Places& places = state.places;
   Diagnostics& diagnostics = state.diagnostics;
   std::string pragma;
   bool in_pragma = false;
@@ -273,7 +305,7 @@ std::vector<Token> preprocess(const std::string& text, const std::string& name, 
                               std::vector<std::string>& files, Diagnostics& diagnostics) {
   State state(name, options, files, diagnostics);
   std::vector<Token> out;
-  Places places(name);
+  Places& places = state.places;
   const Location whole{intern(name), 0, 0};
   State* const outer = std::exchange(LoadAllowed::state, &state);
   struct Restore {
@@ -290,9 +322,9 @@ std::vector<Token> preprocess(const std::string& text, const std::string& name, 
     context.set_language(wave::language_support(wave::support_c99 | wave::support_option_emit_pragma_directives |
                                                 wave::support_option_single_line));
     define(context, options);
-    run(context, state, places, out);
+    run(context, state, out);
   } catch (const TooMuch& e) {
-    diagnostics.error(out.empty() ? whole : out.back().place, e.reason);
+    diagnostics.error(e.place.known() ? e.place : (out.empty() ? whole : out.back().place), e.reason);
     throw Diagnostics::Stop{};
   } catch (const Error& e) {
     diagnostics.error(whole, e.what());

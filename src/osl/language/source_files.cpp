@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "etendue/core/error.h"
+#include "headers/headers.h"
 #include "preprocess.h"
 
 namespace etendue::osl {
@@ -39,7 +40,8 @@ SourceFiles::Found SourceFiles::find(const std::string& name, bool quoted, const
   std::vector<fs::path> places;
   if (quoted) places.push_back(fs::path(including_file).parent_path());
   for (const std::string& folder : folders_) places.emplace_back(folder);
-  std::string reason = "there is no such file";
+  const char* const none = "there is no such file";
+  std::string reason = none;
   for (const fs::path& folder : places) {
     const fs::path path = folder / name;
     std::error_code failed;
@@ -53,7 +55,8 @@ SourceFiles::Found SourceFiles::find(const std::string& name, bool quoted, const
       return {path.lexically_normal().string(), {}};
     }
   }
-  return {{}, reason};
+  const bool missing = reason == none;
+  return {{}, std::move(reason), missing};
 }
 
 std::string SourceFiles::read(const std::string& path) {
@@ -71,6 +74,32 @@ std::string SourceFiles::read(const std::string& path) {
 
 std::optional<std::string> SourceFiles::standard_header(const std::string& name) {
   if (fs::path(name).filename() == "stdosl.h") return std::string();
+  return std::nullopt;
+}
+
+namespace {
+
+constexpr std::string_view built_in_folder = "(built in)/";
+
+using HeaderText = std::string (*)();
+constexpr std::pair<std::string_view, HeaderText> headers[] = {
+    {"color2.h", color2_header},   {"color4.h", color4_header},     {"vector2.h", vector2_header},
+    {"vector4.h", vector4_header}, {"matrix33.h", matrix33_header}, {"oslutil.h", oslutil_header},
+};
+
+}  // namespace
+
+std::string SourceFiles::built_in_path(const std::string& name) {
+  const std::string last = fs::path(name).filename().string();
+  for (const auto& [header, text] : headers)
+    if (last == header) return std::string(built_in_folder) + last;
+  return {};
+}
+
+std::optional<std::string> SourceFiles::built_in(const std::string& path) {
+  if (path.starts_with(built_in_folder))
+    for (const auto& [header, text] : headers)
+      if (path.substr(built_in_folder.size()) == header) return text();
   return std::nullopt;
 }
 

@@ -104,8 +104,9 @@ class Services {
                                    const TextureOptions&, TextureLookup&) {
     return "there are no textures here";
   }
+  static constexpr std::string_view no_solid_textures = "texture3d() is not supported: there are no textures of volumes";
   virtual std::string_view texture3d(const String* /*file*/, const Dual<Triple>& /*p*/, const TextureOptions&, TextureLookup&) {
-    return "there are no textures here";
+    return no_solid_textures;
   }
   virtual std::string_view environment(const String* /*file*/, const Dual<Triple>& /*direction*/, const TextureOptions&,
                                        TextureLookup&) {

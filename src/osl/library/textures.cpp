@@ -91,13 +91,22 @@ Pairs::Pairs(const Call& c, int first) {
   }
 }
 
-/// Writes what a lookup found, or its failure. `chain` gives the derivatives of a value by those of the coordinates.
+/// A file's images but the first are not read. Asking for another is refused, not answered by the first.
+constexpr std::string_view no_subimages = "the option \"subimage\" is not supported: only the first image of a file is read";
+std::string_view other_part(const TextureOptions& options) {
+  const String* name = options.subimage_name;
+  return options.subimage == 0 && (!name || name->view().empty()) ? std::string_view() : no_subimages;
+}
+
+/// Writes what a lookup found, or its failure. A color for missing files does not hide what is not supported. `chain` gives the
+/// derivatives of a value by those of the coordinates.
 template <bool D, class Chain>
 void give(const Call& c, const Pairs& pairs, TextureLookup& found, std::string_view fault, Chain&& chain) {
   static const String* const unknown = intern_string("unknown texture error");
   if (!fault.empty()) {
     for (int k = 0; k < 4; ++k) found.value[k] = found.by_s[k] = found.by_t[k] = found.by_r[k] = 0;
-    if (pairs.options.has_missing_color) {
+    const bool refused = fault == no_subimages || fault == Services::no_solid_textures;
+    if (pairs.options.has_missing_color && !refused) {
       for (int k = 0; k < found.channels; ++k) found.value[k] = pairs.options.missing_color[k];
       found.value[found.channels] = pairs.options.missing_alpha;
       fault = {};
@@ -134,7 +143,8 @@ struct Texture {
     if (given) s.dx = c.at<float>(3), t.dx = c.at<float>(4), s.dy = c.at<float>(5), t.dy = c.at<float>(6);
     const Pairs pairs(c, given ? 7 : 3);
     TextureLookup found = lookup_for(c, pairs, D);
-    const std::string_view fault = c.services.texture(c.string(0), s, t, pairs.options, found);
+    std::string_view fault = other_part(pairs.options);
+    if (fault.empty()) fault = c.services.texture(c.string(0), s, t, pairs.options, found);
     give<D>(c, pairs, found, fault, [&](int k) { return chain(found.value[k], found.by_s[k], s, found.by_t[k], t); });
   }
 };
@@ -149,8 +159,10 @@ struct Texture3d {
     if (given) p.dx = c.at<Triple>(2), p.dy = c.at<Triple>(3);
     const Pairs pairs(c, !given ? 2 : (solid ? 5 : 4));
     TextureLookup found = lookup_for(c, pairs, D);
-    const std::string_view fault = solid ? c.services.texture3d(c.string(0), p, pairs.options, found)
-                                         : c.services.environment(c.string(0), p, pairs.options, found);
+    std::string_view fault = other_part(pairs.options);
+    if (fault.empty())
+      fault = solid ? c.services.texture3d(c.string(0), p, pairs.options, found)
+                    : c.services.environment(c.string(0), p, pairs.options, found);
     give<D>(c, pairs, found, fault, [&](int k) {
       return chain(found.value[k], found.by_s[k], p[0], found.by_t[k], p[1]) + chain(0, found.by_r[k], p[2]);
     });

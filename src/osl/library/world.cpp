@@ -92,6 +92,9 @@ constexpr Row rows[] = {
     {"int pointcloud_get(string file, int indices[], int count, string attribute, output ...)", nullptr, none, 0, no_points,
      false},
     {"int pointcloud_write(string file, point at, ...)", nullptr, none, 0, no_points, false},
+    {"float wireframe(...)", nullptr, none, 0, "the vertices of the polygon around a point are not known to shaders", false},
+    {"float draw_string(string text, float s, float t, int wrap_s, int wrap_t, int jitter)", nullptr, none, 0,
+     "there is no font for it here: use a texture with the text", false},
 };
 
 }  // namespace

@@ -76,15 +76,17 @@ std::shared_ptr<const ShaderGroup> GroupBuilder::build() {
   find_needed_derivatives();
   find_lazy_layers();
   if (failed()) return nullptr;
+  int layer = -1;  // which is built: errors without a place get its shader's
   try {
     std::uint32_t flags = std::uint32_t(plans_.size());
     for (const LayerPlan& plan : plans_) flags += std::uint32_t(plan.symbols.size());
     group_->flags_ = group_->layout_.bytes(flags, 1);
     group_->flag_count_ = flags;
     for (int i = 0; i < int(plans_.size()); ++i) place_symbols(i);
-    for (int i = 0; i < int(plans_.size()); ++i) build_layer(i);
+    for (layer = 0; layer < int(plans_.size()); ++layer) build_layer(layer);
   } catch (const Error& e) {
-    error(e.what(), e.location);
+    const bool placed = e.location.known() || layer < 0;
+    error(e.what(), placed ? e.location : group_->layers_[std::size_t(layer)].shader->place);
     return nullptr;
   }
   return group_;

@@ -125,6 +125,13 @@ bool RunServices::transform_color(const String* from, const String* to, const Tr
 const Wavelengths& RunServices::wavelengths() const { return run_->world->wavelengths(); }
 bool RunServices::named_spectrum(const String* words, Spectrum& out) { return run_->world->named_spectrum(words, out); }
 Spectrum RunServices::color_spectrum(const Triple& color, bool light) { return run_->world->color_spectrum(color, light); }
-void* RunServices::allocate(std::size_t size, std::size_t alignment) { return run_->world->allocate(size, alignment); }
+void* RunServices::allocate(std::size_t size, std::size_t alignment) {
+  try {
+    return run_->world->allocate(size, alignment);
+  } catch (const Error& e) {  // the limit of a point's closures
+    if (e.location.known()) throw;
+    throw Error(e.what(), run_->group->shader(run_->layer).place);
+  }
+}
 
 }  // namespace etendue::osl

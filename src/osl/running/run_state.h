@@ -65,7 +65,9 @@ struct RunState {
   int layer = 0;               ///< which runs now
   bool speaks_itself = false;  ///< a call of error() or warning() runs: the text is the shader's, not a fault
   const std::atomic<bool>* abort = nullptr;
-  unsigned steps = 0;  ///< of loops, to look at `abort` now and then
+  unsigned steps = 0;  ///< of all loops of this run
+  /// A run with more steps of its loops than this is taken for endless: a second of empty steps at the most, for one point.
+  static constexpr unsigned most_steps = 10'000'000;
   RunServices services{*this};
 
   RunState() = default;

@@ -94,6 +94,7 @@ bool Execution::run(Globals& globals, Services& services, std::span<const int> l
   std::memset(state_.memory + group_->flags_, 0, group_->flag_count_);
   state_.world = &services;
   state_.abort = abort;
+  state_.steps = 0;
   state_.messages.clear();
   state_.layer = 0;
   bool complete = true;

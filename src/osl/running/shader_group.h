@@ -99,7 +99,8 @@ class Execution {
   explicit Execution(const ShaderGroup&);
 
   /// Shades one point: `globals` is what the renderer knows, and afterwards what the shaders made of it. Closures and other
-  /// memory come from services.allocate. Returns false if `abort` was set meanwhile; the results are then undefined.
+  /// memory come from services.allocate. Returns false if `abort` was set meanwhile; the results are then undefined. Throws
+  /// Error at the place of a loop that seems to be endless (RunState::most_steps).
   bool run(Globals& globals, Services& services, const std::atomic<bool>* abort = nullptr);
   /// Runs some layers alone, by their numbers, in this order. All needed layers run as well, each once.
   bool run(Globals& globals, Services& services, std::span<const int> layers, const std::atomic<bool>* abort = nullptr);

@@ -1,8 +1,11 @@
 // Translation of statements.
 
+#include <fmt/format.h>
+
 #include "layer_builder.h"
 #include "operations.h"
 #include "references.h"
+#include "shader_group.h"
 
 namespace etendue::osl {
 namespace {
@@ -37,8 +40,10 @@ class Branch final : public Node {
 /// for, while, and do-while (`body_first`).
 class Loop final : public Node {
  public:
-  Loop(const Node* begin, bool has_condition, const Value& condition, const Node* step, const Node* body, bool body_first)
-      : begin_(begin),
+  Loop(const Location& place, const Node* begin, bool has_condition, const Value& condition, const Node* step, const Node* body,
+       bool body_first)
+      : place_(place),
+        begin_(begin),
         has_condition_(has_condition),
         condition_(condition),
         step_(step),
@@ -47,8 +52,7 @@ class Loop final : public Node {
   Flow run(RunState& run) const override {
     if (begin_) begin_->run(run);
     for (bool first = body_first_;; first = false) {
-      // A shader that never ends is stopped with its render.
-      if ((++run.steps & 0xff) == 0 && run.abort && run.abort->load(std::memory_order_relaxed)) throw RunAborted();
+      if ((++run.steps & 0xff) == 0) look_up(run);
       if (has_condition_ && !first) {
         condition_.evaluate(run);
         if (!load<int>(run, condition_.memory)) return Flow::next;
@@ -61,6 +65,16 @@ class Loop final : public Node {
   }
 
  private:
+  /// Now and then: a shader that never ends is stopped with its render, or as a fault.
+  void look_up(RunState& run) const {
+    if (run.abort && run.abort->load(std::memory_order_relaxed)) throw RunAborted();
+    if (run.steps < RunState::most_steps) return;
+    throw Error(fmt::format("shader {}: this loop, or one around it, does not end: {} steps at one point",
+                            run.group->shader_name(run.layer)->text(), RunState::most_steps),
+                place_);
+  }
+
+  Location place_;
   const Node* begin_;
   bool has_condition_;
   Value condition_;
@@ -138,7 +152,7 @@ const Node* LayerBuilder::statement(const Statement& s) {
       const Value condition = s.expression ? value(*s.expression, false) : Value();
       const Node* step = s.step ? value(*s.step, false).compute : nullptr;
       const Node* body = s.body ? statement(*s.body) : nullptr;
-      result = nodes_.make<Loop>(begin, s.expression != nullptr, condition, step, body, s.kind == Kind::do_loop);
+      result = nodes_.make<Loop>(s.place, begin, s.expression != nullptr, condition, step, body, s.kind == Kind::do_loop);
       break;
     }
     case Kind::break_loop: result = nodes_.make<Jump>(nullptr, Flow::break_loop); break;

@@ -171,7 +171,11 @@ void add_boundary(Gathering& g, const Boundary& b) {
   Lobes lobes = reflection_lobes | transmission_lobes;
   if (v.colors[0].black()) lobes &= Lobes(~reflection_lobes);
   if (v.colors[1].black()) lobes &= Lobes(~transmission_lobes);
-  if (lobes)
+  if (!lobes) return;
+  if (!(lobes & transmission_lobes) && !g.refracts() && MicrofacetDistribution(b.kind, b.roughness_x, b.roughness_y).smooth())
+    g.add(g.arena().make<CoatModel>(g.at(b.normal), v.colors[0], b.relative ? v.index : v.index / g.index_outside()),
+          specular_reflection);
+  else
     g.add(*models[b.kind == MicrofacetDistribution::beckmann ? 1 : 0][b.relative ? 1 : 0], v, g.at(b.normal, b.tangent), lobes);
 }
 

@@ -19,6 +19,7 @@ struct ClosurePlace {
   const RgbSpace& space;    ///< of the colours
   bool from_behind;         ///< the point was seen from behind, so that N points to the back of the surface
   const std::string& name;  ///< of the class, for messages
+  bool refracts = true;     ///< some closure of the shader may refract without facets, so that its sums may be whole boundaries
 };
 
 /// The BSDF of a closure; null: all light is absorbed. Its parts of emission and of volumes are left out.

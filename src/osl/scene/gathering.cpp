@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "components/shaders/tangent_frame.h"
+#include "etendue/transport/medium_stack.h"
 
 namespace etendue::osl {
 
@@ -38,6 +39,12 @@ SurfacePoint Gathering::at(const Triple& normal, const Triple& tangent) const {
 bool Gathering::points_back(const Triple& normal) const {
   const float side = dot(vector(normal), place_.point.normal);
   return side != 0 ? side < 0 : place_.from_behind;
+}
+
+Spectrum Gathering::index_outside() const {
+  const SurfacePoint& p = place_.point;
+  const SceneObject* outside = p.media && p.object ? p.media->outside_of(*p.object) : nullptr;
+  return outside ? MediumStack::index(outside, place_.wavelengths) : Spectrum(1.0f);
 }
 
 Spectrum Gathering::reflectance(const Triple& c) const {
@@ -134,7 +141,11 @@ const Scatter* Gathering::scatter() const {
   else
     kept = arena().make<Kept>()->parts;
   std::copy(parts_, parts_ + count_, kept);
-  return arena().make<Mixture>(place_.point, kept, count_);
+  auto* const mixture = arena().make<Mixture>(place_.point, kept, count_);
+  // One part alone is limited by its reflectance.
+  if (count_ > 1 && mixture->limit() > 1.01f)
+    warn("the closures' sum would reflect more than all light, and is scaled down: the weights should sum to at most 1");
+  return mixture;
 }
 
 const Scatter* scatter_of(const ClosureNode* node, const ClosurePlace& place) {

@@ -28,6 +28,10 @@ class Gathering {
   SurfacePoint at(const Triple& normal, const Triple& tangent = {}) const;
   /// Whether a closure's normal points to the back of the surface.
   bool points_back(const Triple& normal) const;
+  /// See ClosurePlace.
+  bool refracts() const { return place_.refracts; }
+  /// The index of the medium around the object, as the path knows it.
+  Spectrum index_outside() const;
   /// A colour, times the weight, as a reflectance: at most 1, with a warning if it is cut.
   Spectrum reflectance(const Triple& color) const;
   /// A colour as a spectrum, without the weight.

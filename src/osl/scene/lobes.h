@@ -1,6 +1,7 @@
 #pragma once
 // The scatter models of closures that no shader of the house has.
 
+#include "components/shaders/fresnel.h"
 #include "components/shaders/half_vector.h"
 #include "components/shaders/layered/sheen.h"
 #include "components/shaders/microfacet/microfacet.h"
@@ -158,6 +159,37 @@ class MirrorModel final : public ScatterModel<MirrorModel> {
 
  private:
   SchlickFresnel fresnel_;
+};
+
+// The reflection of a smooth dielectric boundary through which no light goes: a coat, of which only the reflection is wanted.
+// It is not the house's dielectric without its refraction, as that sees facets of the opposite tilt under total internal
+// reflection, to let trapped light out (scatter_corrections.h): here they would lose light.
+class CoatModel final : public ScatterModel<CoatModel> {
+ public:
+  static constexpr bool uses_choice = false;
+  /// eta: the index behind the surface over that in front.
+  CoatModel(const SurfacePoint& p, Spectrum color, Spectrum eta)
+      : ScatterModel(p, specular_reflection), color_(color), eta_(eta) {}
+  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return {}; }
+  float local_pdf(const Vector3&, const Vector3&, Lobes) const { return 0; }
+  bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const {
+    s.in = {-out.x, -out.y, out.z};
+    s.value = reflectance(out);
+    s.pdf = 1;
+    s.lobe = specular_reflection;
+    return true;
+  }
+  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
+    return lobes & specular_reflection ? reflectance(out) : Spectrum();
+  }
+
+ private:
+  Spectrum reflectance(const Vector3& out) const {
+    Spectrum r;
+    for (int i = 0; i < spectrum_size; ++i) r.set(i, fresnel_dielectric(std::abs(out.z), out.z > 0 ? eta_[i] : 1 / eta_[i]));
+    return color_ * r;
+  }
+  Spectrum color_, eta_;
 };
 
 // Facets with that reflectance: f = F D G2 / (4 |out.z in.z|) [1/sr] and multiple scattering, as of a metal (conductor.cpp).

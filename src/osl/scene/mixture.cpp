@@ -25,6 +25,24 @@ Mixture::Mixture(const SurfacePoint& p, const MixturePart* parts, int count)
   if (count > 0) frame_ = parts[0].scatter->frame();
 }
 
+// The albedos of rough boundaries are estimates, exact to 0.05: reflection and refraction as two parts may seem to sum to more
+// than 1 by that.
+float Mixture::limit() {
+  const float tolerance = lobes_ & glossy_transmission ? 0.05f : 0;
+  Spectrum most;
+  for (const float side : {1.0f, -1.0f}) {
+    if (side < 0 && !(lobes_ & transmission_lobes)) break;
+    for (const float cosine : {1.0f, 0.5f, 0.2f}) {
+      const Vector3 local{safe_sqrt(1 - cosine * cosine), 0, side * cosine};
+      const Spectrum seen = world_albedo(Frame(normal_).to_world(local), lobes_);
+      for (int i = 0; i < spectrum_size; ++i) most.set(i, std::max(most[i], seen[i]));
+    }
+  }
+  for (int i = 0; i < spectrum_size; ++i)
+    if (most[i] > 1 + tolerance) scale_.set(i, 1 / most[i]);
+  return most.maximum() > 1 + tolerance ? most.maximum() : 1;
+}
+
 Spectrum Mixture::factor(const MixturePart& part, const Vector3& v, const Cover* until) const {
   Spectrum w = part.weight;
   for (const Cover* c = part.covers; c != until; c = c->next) {
@@ -63,6 +81,7 @@ ScatterValue Mixture::world_value_and_pdf(const Vector3& out, const Vector3& in,
     if (!v.value.black()) sum.value += factor(part, leaves) * v.value;
     sum.pdf += p[k] * v.pdf;
   }
+  sum.value *= scale_;
   return sum;
 }
 
@@ -74,7 +93,7 @@ std::optional<ScatterSample> Mixture::world_sample(const Vector3& out, float cho
       if (parts_[k].lobes & null_scattering)
         sum += factor(parts_[k], context.transport == Transport::radiance ? out : -out) *
                straight_fraction(parts_[k].scatter, out, context.transport);
-    return straight_on(out, sum, 1);
+    return straight_on(out, sum * scale_, 1);
   }
   float p[most_parts];
   if (!probabilities(out, context, p)) return std::nullopt;
@@ -88,7 +107,7 @@ std::optional<ScatterSample> Mixture::world_sample(const Vector3& out, float cho
   if (!s) return s;
   const Vector3& leaves = context.transport == Transport::radiance ? out : s->direction;
   if (s->specular()) {
-    s->weight *= factor(part, leaves) / p[k];
+    s->weight *= factor(part, leaves) * scale_ / p[k];
     s->pdf *= p[k];
     return s;
   }
@@ -102,7 +121,7 @@ std::optional<ScatterSample> Mixture::world_sample(const Vector3& out, float cho
     pdf += p[j] * v.pdf;
   }
   if (!(pdf > 0)) return std::nullopt;
-  s->weight = value / pdf;
+  s->weight = value * scale_ / pdf;
   s->pdf = pdf;
   return s;
 }
@@ -113,7 +132,7 @@ Spectrum Mixture::world_albedo(const Vector3& out, Lobes lobes) const {
     const Lobes own = Lobes(lobes & parts_[k].lobes);
     if (parts_[k].scatter->has(own)) sum += factor(parts_[k], out) * parts_[k].scatter->albedo(out, own);
   }
-  return sum;
+  return sum * scale_;
 }
 
 }  // namespace etendue::osl

@@ -26,6 +26,9 @@ struct MixturePart {
 /// language's specification names for layer(); it is not reciprocal, and `transport` tells which of the directions is v, so
 /// that the scattering of importance is the adjoint of that of radiance.
 ///
+/// Parts may sum to more than all light, as weights are the author's: then f is that sum times `scale`, which depends on the
+/// wavelength alone, so that what is reciprocal stays so.
+///
 /// Sampling: a part is chosen with the probability P_k, in proportion to w_k T_k times its albedo (see `promise` in
 /// components/shaders/part_choice.h), and samples a direction. All parts could have sampled it, so the pdf is the sum of P_k
 /// p_k, and the weight f |cos| over that sum: the balance heuristic. A specular sample has its part's own weight over P_k.
@@ -35,6 +38,9 @@ class Mixture final : public Scatter {
 
   /// `parts`: in memory that lives as long as the mixture; at most most_parts.
   Mixture(const SurfacePoint&, const MixturePart* parts, int count);
+
+  /// Scales the sum so that its albedo is at most 1, as seen from some directions. Returns the largest albedo before.
+  float limit();
 
  private:
   ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext) const override;
@@ -49,6 +55,7 @@ class Mixture final : public Scatter {
 
   const MixturePart* parts_;
   int count_;
+  Spectrum scale_ = Spectrum(1.0f);
 };
 
 }  // namespace etendue::osl

@@ -22,18 +22,24 @@ class OslMap final : public ObjectMap, public OslPart {
 
   Spectrum color(const SurfacePoint& p, const Wavelengths& w, ColorUse use) const override {
     const Run run(*this, p, &w);
-    const Triple c = value(run);
+    const Triple c = finite(value(run));
     if (single()) return Spectrum(use == ColorUse::reflectance ? clamp(c.x, 0, 1) : c.x);
     return rgb_spectrum(space(), positive(c.x), positive(c.y), positive(c.z), use, w);
   }
   float scalar(const SurfacePoint& p) const override {
     const Run run(*this, p, nullptr);
-    const Triple c = value(run);
+    const Triple c = finite(value(run));
     return single() ? c.x : (c.x + c.y + c.z) / 3;
   }
 
  private:
   static float positive(float x) { return x > 0 ? x : 0; }
+  /// What a shader computes without a number, of points far away for example, is 0.
+  static Triple finite(Triple c) {
+    for (int i = 0; i < 3; ++i)
+      if (!std::isfinite(c[i])) c[i] = 0;
+    return c;
+  }
   bool single() const { return displaces_ || !output().type.is_triple(); }
 
   Triple value(const Run& run) const {

@@ -32,7 +32,8 @@ class OslSurface final : public etendue::Shader, public OslPart {
     if (!run.Ci()) return nullptr;
     SurfacePoint with = p;
     with.dpdu = {run.globals().dPdu.value.x, run.globals().dPdu.value.y, run.globals().dPdu.value.z};
-    const ClosurePlace place{with, w, arena, space(), run.from_behind(), info().name};
+    const bool refracts = (osl_class().uses.lobes & specular_transmission) != 0;
+    const ClosurePlace place{with, w, arena, space(), run.from_behind(), info().name, refracts};
     return scatter_of(run.Ci(), place);
   }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -49,6 +51,16 @@ class ArgumentReader {
     return int(value);
   }
 
+  /// For options of the reference that change no result here; nothing is accepted in silence.
+  void no_effect(const std::string& option) { a_.warnings.push_back(fmt::format("the option '{}' has no effect", option)); }
+
+  void data_type() {
+    const std::string& type = next();
+    if (type != "uint8" && type != "uint16" && type != "half" && type != "float")
+      throw Error(fmt::format("'{}' needs uint8, uint16, half or float, not '{}'", words_[option_], type));
+    a_.data_type = type;
+  }
+
   void shader(const std::string& name, std::string layer) {
     if (layer.empty()) layer = std::exchange(layer_, "");
     const std::string bare = std::filesystem::path(name).stem().string();
@@ -63,7 +75,10 @@ class ArgumentReader {
       const std::size_t end = std::min(option.find(':', begin + 1), option.size());
       const std::string hint = option.substr(begin + 1, end - begin - 1);
       if (hint.starts_with("type=")) p.type = hint.substr(5);
-      if (hint == "lockgeom=0" || hint == "interpolated=1") p.interpolated = true;
+      if (hint == "lockgeom=0" || hint == "interpolated=1")
+        p.interpolated = true;
+      else if (!hint.starts_with("type=") && hint != "lockgeom=1" && hint != "interpolated=0")
+        no_effect(hint);
       begin = end;
     }
     p.name = next();
@@ -86,6 +101,9 @@ class ArgumentReader {
       const std::size_t end = std::min(text.find(',', begin), text.size());
       const std::string item = text.substr(begin, end - begin);
       const std::size_t equal = item.find('=');
+      const std::string_view name = std::string_view(item).substr(0, equal);
+      if (!item.empty() && name != "lazyglobals" && name != "lazyerror" && name != "lazytrace" && name != "error_repeats")
+        no_effect(item);
       a_.options.emplace_back(item.substr(0, equal), equal == std::string::npos ? "1" : item.substr(equal + 1));
       begin = end + 1;
     }
@@ -110,7 +128,7 @@ class ArgumentReader {
     if (name == "param" || name.starts_with("param:")) return parameter(name);
     if (name.size() > 1 && name[0] == 'I') return a_.folders.push_back(name.substr(1));
     if (name.size() > 1 && name[0] == 'D') return definition(name.substr(1));
-    if (name.size() == 2 && name[0] == 'O') return;  // the optimizer of the reference
+    if (name.size() == 2 && name[0] == 'O') return no_effect(word);
     const std::map<std::string, std::function<void()>> table = {
         {"g", [&] { a_.width = whole(1 << 15), a_.height = whole(1 << 15); }},
         {"res", [&] { a_.width = whole(1 << 15), a_.height = whole(1 << 15); }},
@@ -119,9 +137,9 @@ class ArgumentReader {
            const std::string variable = next();
            a_.outputs.push_back({variable, next()});
          }},
-        {"od", [&] { a_.data_type = next(); }},
-        {"d", [&] { a_.data_type = next(); }},
-        {"t", [&] { next(); }},
+        {"od", [&] { data_type(); }},
+        {"d", [&] { data_type(); }},
+        {"t", [&] { next(), no_effect(word); }},
         {"layer", [&] { layer_ = next(); }},
         {"shader",
          [&] {
@@ -135,7 +153,7 @@ class ArgumentReader {
         {"entry", [&] { a_.group.entries.push_back(next()); }},
         {"entryoutput", [&] { a_.entry_outputs.push_back(next()); }},
         {"options", [&] { options(next()); }},
-        {"texoptions", [&] { next(); }},
+        {"texoptions", [&] { next(), no_effect(word); }},
         {"center", [&] { a_.centers = true; }},
         {"vary_pdxdy", [&] { a_.vary_point = true; }},
         {"vary_udxdy", [&] { a_.vary_u = true; }},
@@ -146,7 +164,6 @@ class ArgumentReader {
         {"offsetst", [&] { a_.u_offset = number(), a_.v_offset = number(); }},
         {"iters", [&] { a_.repetitions = whole(1 << 20); }},
         {"raytype", [&] { a_.ray_type = next(); }},
-        {"raytype_opt", [&] {}},
         {"colorspace", [&] { a_.color_space = next(); }},
         {"print", [&] { a_.print = true; }},
         {"p", [&] { a_.print = true; }},
@@ -160,21 +177,13 @@ class ArgumentReader {
         {"path", [&] { a_.folders.push_back(next()); }},
         {"shaderpath", [&] { a_.folders.push_back(next()); }},
         {"D", [&] { definition(next()); }},
-        // What concerns the reference's compilation and statistics alone.
-        {"inbuffer", [] {}},
-        {"groupoutputs", [] {}},
-        {"debug", [] {}},
-        {"debug2", [] {}},
-        {"debugnan", [] {}},
-        {"debuguninit", [] {}},
-        {"runstats", [] {}},
-        {"stats", [] {}},
-        {"profile", [] {}},
-        {"batched", [] {}},
-        {"no-output-placement", [] {}},
-        {"shadeimage", [] {}},
-        {"noshadeimage", [] {}},
-        {"llvm_opt", [&] { next(); }}};
+        {"llvm_opt", [&] { next(), no_effect(word); }}};
+    // What concerns the reference's compilation, checks and statistics alone.
+    static constexpr std::array without_effect = {"raytype_opt", "inbuffer",     "groupoutputs", "debug",
+                                                  "debug2",      "debugnan",     "debuguninit",  "runstats",
+                                                  "stats",       "profile",      "batched",      "no-output-placement",
+                                                  "shadeimage",  "noshadeimage", "debug_nan",    "debug_uninit"};
+    if (std::ranges::find(without_effect, name) != without_effect.end()) return no_effect(word);
     const auto row = table.find(name);
     if (row == table.end()) {
       std::vector<std::string> known;
@@ -223,6 +232,8 @@ The results
   -o OUTPUT FILE               writes an output parameter as an image
   -od TYPE                     its numbers: uint8, uint16, half or float
   --print                      prints the outputs instead
+
+Options of the reference's testshade that concern its compiler, checks and statistics are accepted with a warning.
 )";
 }
 

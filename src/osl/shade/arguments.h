@@ -31,8 +31,9 @@ struct ShadeArguments {
   int width = 1, height = 1, repetitions = 1;
   float u_scale = 1, v_scale = 1, u_offset = 0, v_offset = 0;
   bool centers = false, vary_point = false, vary_u = false, vary_v = false;
-  bool print = false, verbose = false, query = false, userdata_is_connected = false, output_derivatives = false;
+  bool print = false, verbose = false, query = false, userdata_is_connected = false;
   std::vector<std::string> messages;  ///< what the reference prints for its arguments, before the run
+  std::vector<std::string> warnings;  ///< options that have no effect
 };
 
 /// Throws Error for what is not understood.

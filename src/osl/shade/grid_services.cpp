@@ -188,16 +188,17 @@ void GridServices::print_to(const String* file, std::string_view text) {
 }
 
 /// Errors go to the standard error stream, in order with what is printed. Each is reported once.
-void GridServices::report(const char* kind, std::string_view text) {
+void GridServices::report(const char* kind, std::string_view text, Location at) {
   const std::string line = fmt::format("{}: {}\n", kind, text);
   if (!repeats_errors_ && !reported_.insert(line).second) return;
   std::fflush(stdout);
   std::fwrite(line.data(), 1, line.size(), stderr);
+  if (at.line > 0) fmt::print(stderr, "        place: {}:{}:{}\n", at.file, at.line, at.column);
   std::fflush(stderr);
 }
-void GridServices::warn(std::string_view text, Location) { report("WARNING", text); }
-void GridServices::error(std::string_view text, Location) {
-  report("ERROR", text);
+void GridServices::warn(std::string_view text, Location at) { report("WARNING", text, at); }
+void GridServices::error(std::string_view text, Location at) {
+  report("ERROR", text, at);
   failed_ = true;
 }
 

@@ -49,7 +49,7 @@ class GridServices final : public Services {
  private:
   bool camera_attribute(std::string_view name, int index, const Type&, void* out) const;
   bool geometry_data(std::string_view name, const Type&, bool derivatives, void* out) const;
-  void report(const char* kind, std::string_view);
+  void report(const char* kind, std::string_view, Location);
 
   const ShadeArguments& arguments_;
   const ColorSystem* color_system_;

@@ -177,9 +177,12 @@ std::vector<Picture> find_outputs(const ShadeArguments& a, const ShaderGroup& gr
 /// The layers whose outputs are asked for one by one.
 std::vector<int> entry_layers(const ShadeArguments& a, const ShaderGroup& group) {
   std::vector<int> layers;
-  for (const std::string& output : a.entry_outputs)
+  for (const std::string& output : a.entry_outputs) {
+    const std::size_t before = layers.size();
     for (int i = 0; i < group.layer_count(); ++i)
       if (group.layer_name(i)->view() == std::string_view(output).substr(0, output.find('.'))) layers.push_back(i);
+    if (layers.size() == before) throw Error(fmt::format("--entryoutput: there is no layer of the output '{}'", output));
+  }
   return layers;
 }
 
@@ -234,6 +237,7 @@ int shade(std::span<const std::string> words) {
       return done;
     }
     ShadeArguments arguments = parse_shade_arguments(words);
+    for (const std::string& warning : arguments.warnings) fmt::print(stderr, "WARNING: {}\n", warning);
     return run(arguments);
   } catch (const Error& error) {
     std::fflush(stdout);
