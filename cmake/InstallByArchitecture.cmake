@@ -2,7 +2,7 @@
 # prefix. A folder named by the architecture holds what has to be compiled alike, as spectra are passed in its registers: the
 # library, what it loads, the program, the Python extension. Everything else is there once.
 #
-#   PREFIX/x86-64-v3/               etendue, libetendue.so.0.2, libetendue_app.so, libetendue_formats.so, libetendue_openimageio.so, _core.….so
+#   PREFIX/x86-64-v3/               etendue, libetendue.so.0.2 and the libraries that it loads, _core.….so
 #   PREFIX/lib/                     libraries of others, where the package brings them
 #   PREFIX/libexec/etendue/         programs that read files of other programs
 #   PREFIX/share/etendue/           the studio's page; what chooses an architecture
@@ -18,7 +18,7 @@ set_property(TARGET etendue_program APPEND PROPERTY INSTALL_RPATH "$ORIGIN")
 install(TARGETS etendue EXPORT etendueByArchitecture
   LIBRARY DESTINATION ${own} COMPONENT by_architecture EXCLUDE_FROM_ALL NAMELINK_SKIP)
 install(TARGETS etendue_options EXPORT etendueByArchitecture)
-install_part(TARGETS etendue_app etendue_formats LIBRARY DESTINATION ${own})
+install_part(TARGETS etendue_app etendue_formats etendue_osl LIBRARY DESTINATION ${own})
 install_part(TARGETS etendue_program RUNTIME DESTINATION ${own})
 if(ETENDUE_BUNDLED_OPENIMAGEIO)
   set_property(TARGET etendue_bundled_openimageio PROPERTY INSTALL_RPATH "$ORIGIN:$ORIGIN/../lib")

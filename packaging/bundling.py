@@ -75,10 +75,10 @@ def locate(file: pathlib.Path, prefix: pathlib.Path, renamed: dict[str, str]) ->
     """Sets where a file looks for libraries, and their new names."""
     libraries = "$ORIGIN/" + os.path.relpath(prefix / "lib", file.parent)
     folders = ["$ORIGIN"] if file.parent == prefix / "lib" else ["$ORIGIN", libraries]
-    options = ["--set-rpath", ":".join(folders)]
-    for old in needed(file):
-        if old in renamed:
-            options += ["--replace-needed", old, renamed[old]]
+    changes = [["--replace-needed", old, renamed[old]] for old in needed(file) if old in renamed]
     if file.name in renamed.values():
-        options += ["--set-soname", file.name]
-    subprocess.run(["patchelf", *options, file], check=True)
+        changes.append(["--set-soname", file.name])
+    changes.append(["--set-rpath", ":".join(folders)])
+    # One change a call: Debian's patchelf 0.14 writes the texts of several changes over one another.
+    for change in changes:
+        subprocess.run(["patchelf", *change, file], check=True)

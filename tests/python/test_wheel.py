@@ -58,7 +58,7 @@ def test_all_that_is_needed_is_in_it(wheel):
         r"etendue/__init__\.py",
         r"etendue/py\.typed",
         r"etendue/_prefix/native/_core\.[^/]*\.so",
-        r"etendue/_prefix/native/(etendue|libetendue_app\.so|libetendue_formats\.so|libetendue_openimageio\.so)",
+        r"etendue/_prefix/native/(etendue|libetendue_app\.so|libetendue_formats\.so|libetendue_openimageio\.so|libetendue_osl\.so)",
         r"etendue/_prefix/native/libetendue\.so\.[0-9.]+",
         r"etendue/_prefix/libexec/etendue/(etendue_assimp|etendue_draco|etendue_usd\.py)",
         r"etendue/_prefix/share/etendue/studio/index\.html",
