@@ -10,8 +10,8 @@
 #include <unordered_map>
 
 #include "components/maps/footprint.h"
-#include "components/maps/image_texture.h"
 #include "etendue/mesh_facts.h"
+#include "osl/textures/texture_files.h"
 
 namespace etendue::osl {
 
@@ -48,27 +48,10 @@ class Cache {
   std::unordered_map<const String*, T> made_;
 };
 
-struct OpenedTexture {
-  std::shared_ptr<const ImageTexture> image;
-  const String* fault = nullptr;
-};
-OpenedTexture opened(const String* file) {
-  static auto* cache = new Cache<OpenedTexture>;  // never destroyed: used until the program ends
-  return cache->get(file, [&]() -> OpenedTexture {
-    try {
-      return {ImageTexture::open(file->text(), "linear", ""), nullptr};
-    } catch (const Error& e) {
-      return {nullptr, intern_string(e.what())};
-    }
-  });
-}
-
-Wrap wrap_named(const String* name) {
-  const std::string_view text = name ? name->view() : std::string_view();
-  if (text == "periodic") return Wrap::repeat;
-  if (text == "clamp") return Wrap::clamp;
-  if (text == "mirror") return Wrap::mirror;
-  return Wrap::black;
+/// The image files of all shaders of the process; never destroyed: used until the program ends.
+TextureFiles& texture_files() {
+  static auto* files = new TextureFiles;
+  return *files;
 }
 
 Color spectrum_named(const std::string& text) {
@@ -182,68 +165,16 @@ bool RenderServices::attribute(const String* object, const String* name, int ind
 
 std::string_view RenderServices::texture(const String* file, const Dual<float>& s, const Dual<float>& t,
                                          const TextureOptions& options, TextureLookup& lookup) {
-  const OpenedTexture texture = opened(file);
-  if (texture.fault) return texture.fault->view();
-  const Wraps wraps(wrap_named(options.wrap[0]), wrap_named(options.wrap[1]));
-  // t is 0 at the top of an image, and v at its bottom.
-  const auto sample = [&](float x, float y, float* out) {
-    const UvFootprint f{{s.dx * options.width[0], -t.dx * options.width[1]},
-                        {s.dy * options.width[0], -t.dy * options.width[1]}};
-    const bool closest = options.interpolation && options.interpolation->view() == "closest";
-    if (closest)
-      texture.image->nearest({x, 1 - y}, wraps, out);
-    else if (f.longer == Vector2{} && f.shorter == Vector2{})
-      texture.image->bilinear({x, 1 - y}, wraps, out);
-    else
-      texture.image->mean({x, 1 - y}, f, wraps, out);
-  };
-  float texel[4] = {};
-  const int channels = texture.image->channels();
-  sample(s.value, t.value, texel);
-  const auto channel = [&](const float* from, int i) {
-    const int k = options.first_channel + i;
-    if (k < channels) return from[k];
-    return channels == 1 && i < 3 && options.first_channel == 0 ? from[0] : options.fill;
-  };
-  const int wanted = lookup.channels + (lookup.wants_alpha ? 1 : 0);
-  for (int i = 0; i < wanted; ++i) lookup.value[i] = i == lookup.channels && channels < 4 ? 1.0f : channel(texel, i);
-  if (lookup.wants_derivatives) {
-    constexpr float step = 1.0f / 1024;
-    float next[4] = {};
-    sample(s.value + step, t.value, next);
-    for (int i = 0; i < wanted; ++i) lookup.by_s[i] = (channel(next, i) - channel(texel, i)) / step;
-    sample(s.value, t.value + step, next);
-    for (int i = 0; i < wanted; ++i) lookup.by_t[i] = (channel(next, i) - channel(texel, i)) / step;
-  }
-  return {};
+  return texture_files().texture(file, s, t, options, lookup);
 }
 
-// Latitude and longitude with y upwards: s = 1/2 + atan2(x, z) / (2 pi), t = acos(y) / pi.
 std::string_view RenderServices::environment(const String* file, const Dual<Triple>& direction, const TextureOptions& options,
                                              TextureLookup& lookup) {
-  const Triple d = direction.value;
-  const float l = length(d);
-  const Dual<float> s(l > 0 ? 0.5f + std::atan2(d.x, d.z) / (2 * pi) : 0), t(l > 0 ? std::acos(clamp(d.y / l, -1, 1)) / pi : 0);
-  TextureOptions wrapped = options;
-  wrapped.wrap[0] = intern_string("periodic");
-  wrapped.wrap[1] = intern_string("clamp");
-  const bool wants = lookup.wants_derivatives;
-  lookup.wants_derivatives = false;
-  const std::string_view fault = texture(file, s, t, wrapped, lookup);
-  lookup.wants_derivatives = wants;
-  return fault;
+  return texture_files().environment(file, direction, options, lookup);
 }
 
-bool RenderServices::texture_info(const String* file, const float*, const String* name, const Type& type, void* out) {
-  const OpenedTexture texture = opened(file);
-  const auto give = [&](int x) {
-    if (!type.is_int()) return false;
-    std::memcpy(out, &x, sizeof x);
-    return true;
-  };
-  if (name->view() == "exists") return give(texture.image ? 1 : 0);
-  if (name->view() == "channels") return texture.image && give(texture.image->channels());
-  return false;
+bool RenderServices::texture_info(const String* file, const float* at, const String* name, const Type& type, void* out) {
+  return texture_files().texture_info(file, at, name, type, out);
 }
 
 void RenderServices::print(std::string_view text) {

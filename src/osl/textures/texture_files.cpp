@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <mutex>
 #include <numbers>
 #include <optional>
 
@@ -61,7 +62,12 @@ std::string TextureFiles::found(const std::string& name) const {
 
 TextureFiles::File& TextureFiles::opened(const String* name, const TextureOptions* options) {
   const String* space = options ? options->color_space : nullptr;
-  const std::lock_guard lock(mutex_);
+  {
+    // Each lookup of each thread comes here: readers do not wait for one another.
+    const std::shared_lock lock(mutex_);
+    if (const auto known = files_.find({name, space}); known != files_.end()) return *known->second;
+  }
+  const std::unique_lock lock(mutex_);
   std::unique_ptr<File>& file = files_[{name, space}];
   if (file) return *file;
   file = std::make_unique<File>();

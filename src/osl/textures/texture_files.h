@@ -8,7 +8,7 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
+#include <shared_mutex>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -43,7 +43,7 @@ class TextureFiles {
   std::string found(const std::string& name) const;
 
   std::vector<std::string> folders_;
-  std::mutex mutex_;
+  std::shared_mutex mutex_;
   std::map<std::pair<const String*, const String*>, std::unique_ptr<File>> files_;  // by name and colour space
 };
 
