@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
@@ -85,6 +86,25 @@ TEST(OslClasses, MapsAreFinite) {
 }
 
 // The render that is asked to end must not wait for a point that never does.
+/// The left pixel is red, the right one blue; (0, 0) of a texture is its upper left corner.
+TEST(OslClasses, LookTexturesUp) {
+  const std::string image = written("test_pixels.ppm", std::string("P6\n2 1\n255\n") + "\xff" + std::string(4, '\0') + "\xff");
+  const std::string file = "\"" + image + "\"";
+  Registry::instance().load_plugin(
+      written("test_texture.osl",
+              "shader test_texture(output float red = 0, output float width = 0, output float blue = 0) { "
+              "int r[2] = {0, 0}; gettextureinfo(" +
+                  file + ", \"resolution\", r); width = r[0]; red = texture(" + file +
+                  ", u, v, \"interp\", \"closest\"); blue = texture(" + file +
+                  ", u + 0.5, v, \"interp\", \"closest\", \"firstchannel\", 2); }"));
+  const Ref<ObjectMap> map = ref_cast<ObjectMap>(Registry::instance().create("TestTexture"));
+  for (const auto& [output, wanted] : std::map<std::string, float>{{"red", 1}, {"width", 2}, {"blue", 1}}) {
+    set(*map, "output", etendue::Value(output));
+    prepare_tree(*map);
+    EXPECT_FLOAT_EQ(map->scalar(front()), wanted) << output;
+  }
+}
+
 TEST(OslClasses, AnEndlessShaderIsAnErrorAtItsLoop) {
   Registry::instance().load_plugin(
       written("test_endless.osl", "surface test_endless(int k = 1)\n{\n  while (k > 0) { }\n  Ci = diffuse(N);\n}\n"));
