@@ -111,7 +111,7 @@ void BidirectionalSubpaths::add_emitter_hit(const SubpathVertex& z, const Surfac
     path.next_event_point_pdf = next_event_point_pdf(lights_, x1, x0, -z.out);
     path.camera_before_from_light =
         vertex_pdf(x0.infinite ? 1 : point.object->emission->pdf(point, z.out), x0, x1, z.out, z.mean_transmittance, front_);
-    if (path.pdf_emission_origin > 0) found.weight = bidirectional_weight(path, weights_.heuristic);
+    if (path.pdf_emission_origin > 0) weigh(found, path);
   }
   if (PathStates* const states = PathStates::current()) [[unlikely]]
     found.matches = states->ended(camera_vertex(t - 1).path, point.object);
@@ -135,8 +135,7 @@ std::optional<PathContribution> BidirectionalSubpaths::next_event(int t) const {
     path.light_last_from_camera = vertex_pdf(at_z, z, x0, c->direction, c->mean_transmittance, front_);
     path.camera_last_from_light = vertex_pdf(c->pdf_at_luminaire, x0, z, -c->direction, c->mean_transmittance, front_);
     path.camera_before_from_light = before_from(camera_, t, c->direction, Transport::importance);
-    if (path.pdf_emission_origin > 0 && path.next_event_point_pdf > 0)
-      found.weight = bidirectional_weight(path, weights_.heuristic);
+    if (path.pdf_emission_origin > 0 && path.next_event_point_pdf > 0) weigh(found, path);
   }
   return found;
 }
@@ -167,7 +166,7 @@ std::optional<PathContribution> BidirectionalSubpaths::connect(int s, int t) con
     path.light_before_from_camera = before_from(light_, s, -c->direction, Transport::radiance);
     path.camera_last_from_light = vertex_pdf(c->pdf_at_y, y, z, -c->direction, c->mean_transmittance, front_);
     path.camera_before_from_light = before_from(camera_, t, c->direction, Transport::importance);
-    found.weight = bidirectional_weight(path, weights_.heuristic);
+    weigh(found, path);
   }
   return found;
 }
@@ -180,28 +179,36 @@ std::optional<PathContribution> BidirectionalSubpaths::connect_to_lens(int s) co
   PathContribution found{s, 1, false, c->light, light_[0].point.object, 1, c->lens.film};
   if (PathStates* const states = PathStates::current()) [[unlikely]]
     found.matches = states->joined(path_after_camera, s == 1 ? y.path : path_from_luminaire(s, c->lens.direction));
-  if (weights_.weighted) found.weight = lens_weight(s, *c);
+  if (weights_.weighted) {
+    const SubpathVertex lens = lens_vertex(context_.camera, c->lens.lens, y.point.time);
+    weigh(found, path_to_lens(s, *c, lens));
+  }
   return found;
 }
 
-float BidirectionalSubpaths::lens_weight(int s, const LensConnection& c) const {
-  const SubpathVertex &y = light_vertex(s), lens = lens_vertex(context_.camera, c.lens.lens, y.point.time);
+ConnectedPath BidirectionalSubpaths::path_to_lens(int s, const LensConnection& c, const SubpathVertex& lens) const {
+  const SubpathVertex& y = light_vertex(s);
   Ray to_y;
   to_y.origin = c.lens.lens;
   to_y.direction = -c.lens.direction;
   to_y.time = y.point.time;
-  return bidirectional_weight({.light = light_.data(),
-                               .s = s,
-                               .camera = &lens,
-                               .t = 1,
-                               .light_last_from_camera = vertex_pdf(camera_direction_pdf(context_.camera, to_y), lens, y,
-                                                                    to_y.direction, c.mean_transmittance, front_),
-                               .light_before_from_camera = before_from(light_, s, c.lens.direction, Transport::radiance),
-                               .next_event_point_pdf = y0_next_event_point_pdf_,
-                               .pdf_emission_origin = light_[0].pdf_forward,
-                               .emitter_can_be_hit = emitter_can_be_hit(light_[0]),
-                               .merging = weights_.merging},
-                              weights_.heuristic);
+  return {.light = light_.data(),
+          .s = s,
+          .camera = &lens,
+          .t = 1,
+          .light_last_from_camera =
+              vertex_pdf(camera_direction_pdf(context_.camera, to_y), lens, y, to_y.direction, c.mean_transmittance, front_),
+          .light_before_from_camera = before_from(light_, s, c.lens.direction, Transport::radiance),
+          .next_event_point_pdf = y0_next_event_point_pdf_,
+          .pdf_emission_origin = light_[0].pdf_forward,
+          .emitter_can_be_hit = emitter_can_be_hit(light_[0]),
+          .merging = weights_.merging};
+}
+
+void BidirectionalSubpaths::weigh(PathContribution& found, const ConnectedPath& path) const {
+  found.weight = bidirectional_weight(path, weights_.heuristic);
+  if (sample_.sink.records) [[unlikely]]
+    found.path_tracing_moment = etendue::path_tracing_moment(path, weights_.heuristic);
 }
 
 std::optional<PathContribution> BidirectionalSubpaths::merge(const Photon& photon, int t) const {
@@ -246,6 +253,11 @@ void add_contribution(SampleContext& sample, const Wavelengths& of_light, const 
   } else {
     radiance += light;
     report_light(sample.sink, found.length(), light, found.luminaire, found.matches);
+  }
+  if (sample.sink.records) [[unlikely]] {
+    const double y = to_xyz(found.light, splat ? of_light : sample.wavelengths).y;
+    sample.sink.records.add(PathTracingExcess{found.weight * y * y * (found.path_tracing_moment - found.weight),
+                                              splat ? std::optional(found.film) : std::nullopt});
   }
   if (PathRecord* record = sample.sink.record) [[unlikely]]
     record->contribute({std::to_string(found.s) + " from the luminaire, " + std::to_string(found.t) + " from the camera" +

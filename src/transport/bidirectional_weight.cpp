@@ -46,6 +46,14 @@ class Strategies {
     const double merging = v.in_medium() ? path_.merging.medium : v.on_surface() ? path_.merging.surface : 0;
     return raised(ratio * merging * from_light(i));
   }
+  /// p_j / p_s; 0 if strategy j cannot make the path. Strategy s has connected it.
+  double relative_pdf(int j) const {
+    if (j != path_.s && !possible(j)) return 0;
+    double ratio = 1 / first(path_.s);
+    for (int i = path_.s; i < j; ++i) ratio *= from_light(i) / from_camera(i);
+    for (int i = path_.s - 1; i >= j; --i) ratio *= from_camera(i) / from_light(i);
+    return ratio > 0 && std::isfinite(ratio) ? ratio * first(j) : 0;
+  }
   bool possible(int j) const {
     const int last = path_.s + path_.t - 1;
     if (j == 0) return path_.emitter_can_be_hit;
@@ -83,6 +91,16 @@ float bidirectional_weight(const ConnectedPath& path, Heuristic heuristic) {
   const Strategies strategies(path, heuristic, false);
   const double ratio = 1 / strategies.first(path.s);
   return float(1 / (1 + strategies.merged(ratio, path.s) + strategies.after(ratio) + strategies.before(ratio)));
+}
+
+double path_tracing_moment(const ConnectedPath& path, Heuristic heuristic) {
+  const Strategies strategies(path, heuristic, false);
+  const double hit = strategies.relative_pdf(0), next_event = strategies.relative_pdf(1);
+  if (!(hit + next_event > 0)) return 0;
+  if (heuristic == Heuristic::balance) return 1 / (hit + next_event);
+  // In units of the larger pdf, whose cube can be more than a number holds.
+  const double most = std::max(hit, next_event), a = hit / most, b = next_event / most;
+  return (a * a * a + b * b * b) / ((a * a + b * b) * (a * a + b * b)) / most;
 }
 
 PhotonWeight photon_weight(const ConnectedPath& path, float pdf_forward, Heuristic heuristic) {

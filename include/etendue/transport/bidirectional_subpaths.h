@@ -38,8 +38,17 @@ struct PathContribution {
   float weight = 1;                        ///< w
   Point2 film = {};                        ///< of t = 1: where it is splatted
   PathState matches = {};                  ///< the light path expressions that the path matches
+  double path_tracing_moment = 1;          ///< G; computed where the sample has a list of records
   /// Segments of the path. A merged photon and z_{t-1} are one vertex.
   int length() const { return s + t - 1; }
+};
+
+/// A record of what path tracing alone would make of the light that a bidirectional sample has found, for a PathSink with a
+/// list of these: w C^2 (G - w) [Y^2], with G of path_tracing_moment and C [Y]. The mean over samples is by how much the second
+/// moment of path tracing, summed over the lengths of paths, is larger than that of bidirectional path tracing.
+struct PathTracingExcess {
+  double value = 0;
+  std::optional<Point2> film = {};  ///< where the light is splatted; none: in the sample's own pixel
 };
 
 /// At most one may exist per thread at a time: its vertices are stored in memory of the thread that the next one uses again.
@@ -85,8 +94,10 @@ class BidirectionalSubpaths {
   PathState path_from_luminaire(int s, const Vector3& on) const;
   void add_emitter_hit(const SubpathVertex&, const SurfacePoint& luminaire, int t, std::vector<PathContribution>&) const;
   void add_emitter_hits(int t, std::vector<PathContribution>&) const;
-  /// The weight of strategy (s, 1).
-  float lens_weight(int s, const LensConnection&) const;
+  /// Sets the weight of a contribution, and what path tracing would make of it if that is asked for.
+  void weigh(PathContribution&, const ConnectedPath&) const;
+  /// The path of strategy (s, 1), whose last vertex is `lens`.
+  ConnectedPath path_to_lens(int s, const LensConnection&, const SubpathVertex& lens) const;
   /// The pdf (vertex_pdf) of the vertex before the last among a subpath's first `count` vertices, if it is sampled from the
   /// opposite end: by a walk that comes to the last vertex from the direction `from` and is scattered there.
   float before_from(const std::vector<SubpathVertex>& subpath, int count, const Vector3& from, Transport) const;

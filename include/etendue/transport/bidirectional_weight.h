@@ -62,6 +62,16 @@ struct ConnectedPath {
 /// The weight of the connection of light[s-1] and camera[t-1] (s = 0: of the emitter hit).
 float bidirectional_weight(const ConnectedPath&, Heuristic);
 
+/// How large the second moment of a path's contribution would be if the strategies of path tracing alone, emitter hits and next
+/// event estimation, made the path. With p_j the pdfs of strategies, f the contribution of the path x and power weights, the
+/// second moment of path tracing is
+///     int sum_{j=0,1} (w_j f / p_j)^2 p_j dx = int f^2 (p_0^3 + p_1^3) / (p_0^2 + p_1^2)^2 dx,
+/// and int f^2 / (p_0 + p_1) dx with balance weights. With C = f / p_s for a path that strategy s has made, and w_s its weight
+/// among all, w_s C^2 G is an unbiased estimate of it (Grittmann et al. 2022, "Efficiency-aware multiple importance sampling
+/// for bidirectional rendering algorithms", section 4), so that a bidirectional path tells of the error of path tracing even
+/// where that has not found the light yet. Returns G; 0 if neither strategy can make the path.
+double path_tracing_moment(const ConnectedPath&, Heuristic);
+
 /// The part of a merging weight that depends on the light subpath of a photon alone, so that the subpath need not be stored.
 /// The photon is x_s.
 struct PhotonWeight {

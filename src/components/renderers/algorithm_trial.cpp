@@ -6,6 +6,7 @@
 
 #include "etendue/render/guided_process.h"
 #include "etendue/render/renderer.h"
+#include "etendue/transport/bidirectional_subpaths.h"
 #include "film/pixel_area.h"
 
 namespace etendue {
@@ -60,18 +61,21 @@ double median(std::vector<double> values) {
 
 /// The result of one item.
 struct AlgorithmTrial::Part {
-  std::vector<double> tiles;  // the sum of light in each tile, as part of its mean
-  double cost = 0;            // of all paths
+  std::vector<double> tiles;   // the sum of light in each tile, as part of its mean
+  std::vector<double> excess;  // the sum of PathTracingExcess in each tile, as part of its mean
+  double cost = 0;             // of all paths
   std::vector<GuideSample> lessons;
 
   void pack(std::vector<std::byte>& to) const {
     Packing::pack(to, tiles);
+    Packing::pack(to, excess);
     Packing::pack(to, cost);
     Packing::pack(to, lessons);
   }
   static Part unpack(std::span<const std::byte>& from) {
     Part part;
     Packing::unpack(from, part.tiles);
+    Packing::unpack(from, part.excess);
     Packing::unpack(from, part.cost);
     Packing::unpack(from, part.lessons);
     return part;
@@ -106,30 +110,39 @@ void AlgorithmTrial::trace(const RenderProcess& process, std::uint64_t seed, int
   const auto pixels = std::uint64_t(area.width()) * std::uint64_t(area.height());
   CountedNumbers numbers(*process.renderer.sampler);
   std::vector<Splat> splats;
-  const PathSink sink{.splats = &splats, .records = records ? RecordList(part.lessons) : RecordList(), .abort = abort};
+  std::vector<PathTracingExcess> excess;
+  const PathSink sink{.splats = &splats, .records = records ? RecordList(part.lessons) : RecordList(excess), .abort = abort};
   const auto light = [](const Spectrum& value, const Wavelengths& w) {
     const double y = to_xyz(value, w).y;
     return std::isfinite(y) ? std::max(y, 0.0) : 0.0;
   };
   // The chosen pixels do not depend on the algorithm or the batch: the fractions of a Weyl sequence from a random start.
   const std::uint64_t start = mix_bits(seed_ + std::uint64_t(tile));
-  const double tiles = double(columns_) * rows_, whole = double(context_.image.width) * context_.image.height;
+  // What is splatted counts as part of the mean of the tile it falls on, as the share of all paths that its area is of the
+  // film.
+  const auto splat_share = [&](int to) {
+    const PixelArea other = tile_area(to);
+    return double(context_.image.width) * context_.image.height /
+           (double(other.width()) * other.height() * columns_ * rows_ * paths_);
+  };
   for (int i = 0; i < paths_; ++i) {
     const std::uint64_t fraction = start + std::uint64_t(i) * 0x9e3779b97f4a7c15ull;  // of 2^64: the golden ratio
     const auto pixel = int((fraction >> 32) * pixels >> 32);
     const int x = area.x0 + pixel % area.width(), y = area.y0 + pixel / area.width();
     const SampleKey key(seed, x, y, std::uint32_t(i));
     splats.clear();
+    excess.clear();
     numbers.begin(key);
     const CameraSample s = process.path({x, y, x + 1, y + 1}, numbers, key, arena, sink);
     part.cost += numbers.cost();
     part.tiles[size_t(tile)] += light(s.value, s.wavelengths) / paths_;
     for (const Splat& splat : splats)
-      if (const int to = tile_of(splat.film); to >= 0) {
-        const PixelArea other = tile_area(to);
-        part.tiles[size_t(to)] +=
-            light(splat.value, splat.wavelengths) * whole / (double(other.width()) * other.height() * tiles * paths_);
-      }
+      if (const int to = tile_of(splat.film); to >= 0)
+        part.tiles[size_t(to)] += light(splat.value, splat.wavelengths) * splat_share(to);
+    if (!excess.empty()) part.excess.resize(part.tiles.size());
+    for (const PathTracingExcess& each : excess)
+      if (const int to = each.film ? tile_of(*each.film) : tile; to >= 0 && std::isfinite(each.value))
+        part.excess[size_t(to)] += each.value * (each.film ? splat_share(to) : 1.0 / paths_);
   }
 }
 
@@ -140,6 +153,8 @@ AlgorithmTrial::Measured AlgorithmTrial::measure(Schedule& schedule, RenderProce
   const bool learns = pupil && pupil->learns();
   Measured measured;
   measured.tiles.resize(size_t(tiles));
+  measured.from_camera = !process.renderer.splats();
+  measured.guided = learns;
   // Items of rows of tiles: few enough that their results, a number for each tile, stay small.
   constexpr int most_items = 64;
   const int each = (tiles + most_items - 1) / most_items, items = (tiles + each - 1) / each;
@@ -159,6 +174,8 @@ AlgorithmTrial::Measured AlgorithmTrial::measure(Schedule& schedule, RenderProce
     std::vector<GuideSample> taught;
     for (const Part& part : parts) {
       for (size_t t = 0; t < part.tiles.size(); ++t) measured.tiles[t][batch] += part.tiles[t];
+      if (!part.excess.empty()) measured.excess.resize(size_t(tiles));
+      for (size_t t = 0; t < part.excess.size(); ++t) measured.excess[t] += part.excess[t] / batches;
       measured.cost += part.cost / (double(tiles) * paths_ * batches);
       taught.insert(taught.end(), part.lessons.begin(), part.lessons.end());
     }
@@ -187,29 +204,50 @@ std::vector<double> AlgorithmTrial::seen(const std::vector<Measured>& all) const
   return seen;
 }
 
+/// Sums over eight groups of the tiles, and the power mean of the groups' means.
+struct AlgorithmTrial::Groups {
+  static constexpr size_t count = 8;
+  std::array<double, count> sum{}, tiles{};
+
+  void add(size_t tile, double value) {
+    const size_t group = mix_bits(tile) % count;
+    sum[group] += value;
+    tiles[group] += 1;
+  }
+  double power_mean() const {
+    double root = 0, groups = 0;
+    for (size_t g = 0; g < count; ++g)
+      if (tiles[g] > 0) root += std::sqrt(std::max(sum[g] / tiles[g], 0.0)), groups += 1;
+    return groups > 0 ? (root / groups) * (root / groups) : 0;
+  }
+};
+
 std::vector<double> AlgorithmTrial::errors(const std::vector<Measured>& all) const {
   const std::vector<double> r = seen(all);
   const double mean = std::accumulate(r.begin(), r.end(), 0.0) / double(r.size());
-  constexpr size_t groups = 8;
   std::vector<double> errors;
+  double of_path_tracing = 0;  // V'
   for (const Measured& one : all) {
-    std::array<double, groups> sum{}, count{};
+    Groups own, path_tracing;
     for (size_t t = 0; t < r.size(); ++t) {
       double b = 0, v = 0;
       for (const double k : one.tiles[t]) b += k / batches;
       for (const double k : one.tiles[t]) v += (k - b) * (k - b) * paths_ / (batches - 1);
       const double scale = r[t] * r[t] + 0.01 * mean * mean;
-      const size_t group = mix_bits(t) % groups;
-      if (scale > 0) sum[group] += v / scale;
-      count[group] += 1;
+      own.add(t, scale > 0 ? v / scale : 0);
+      if (!one.excess.empty()) path_tracing.add(t, scale > 0 ? (v + one.excess[t]) / scale : 0);
     }
-    std::vector<double> means;
-    for (size_t g = 0; g < groups; ++g)
-      if (count[g] > 0) means.push_back(sum[g] / count[g]);
-    double root = 0;
-    for (const double m : means) root += std::sqrt(m) / double(means.size());
-    errors.push_back(root * root);
+    errors.push_back(own.power_mean());
+    of_path_tracing = std::max(of_path_tracing, path_tracing.power_mean());
   }
+  double times = 1;  // how much larger the error of path tracing is than what its own trial says
+  for (size_t i = 0; i < all.size(); ++i)
+    if (all[i].from_camera && !all[i].guided && errors[i] > 0) {
+      times = std::max(times, of_path_tracing / errors[i]);
+      errors[i] = std::max(errors[i], of_path_tracing);
+    }
+  for (size_t i = 0; i < all.size(); ++i)
+    if (all[i].from_camera && all[i].guided) errors[i] *= times;
   return errors;
 }
 

@@ -20,6 +20,14 @@
 // door_ajar it prefers path tracing five times. Between the two is the mean of the roots, V = (mean over the groups g of sqrt
 // V_g)^2, the power mean of exponent 1/2: if one group has all the error, it counts an eighth of what it does in the mean.
 //
+// What a path tracer finds seldom, its own trial has most often not found at all, so that its error looks small. A
+// bidirectional one that takes part finds such light by its other strategies, and knows how seldom path tracing would
+// (transport/bidirectional_subpaths.h, PathTracingExcess): with X the mean of its records relative to r^2 + e,
+//     V' = V of the bidirectional one + X
+// estimates the error of path tracing, and that error is taken to be at least V'. A guided path tracer has learned from the
+// same few paths, and is taken to be as much better where nothing was seen as where something was: its error is multiplied as
+// that of the path tracer without a guide.
+//
 // The cost is counted, never measured by a clock, so that the choice is the same everywhere. A path takes pairs of primary
 // samples wherever it samples a direction, a point of a luminaire or of the lens, and to each belongs a ray and the evaluation
 // of a surface. Where two subpaths are connected no numbers are taken, but every vertex of one is joined with every vertex of
@@ -46,6 +54,9 @@ class AlgorithmTrial {
   struct Measured {
     std::vector<std::array<double, batches>> tiles;  ///< b_k [Y]
     double cost = 0;                                 ///< C
+    std::vector<double> excess;  ///< the mean of PathTracingExcess in each tile; empty: the algorithm gives no such records
+    bool from_camera = false;    ///< its paths begin at the camera alone
+    bool guided = false;         ///< its directions are chosen by a guide
   };
   /// `number`: of the algorithm, so that each has random numbers of its own. A process with a guide learns after each batch;
   /// `lessons` counts these. After an abort the result is not meaningful.
@@ -56,6 +67,7 @@ class AlgorithmTrial {
 
  private:
   struct Part;
+  struct Groups;
   std::vector<double> seen(const std::vector<Measured>&) const;
   PixelArea tile_area(int tile) const;
   int tile_of(const Point2& film) const;

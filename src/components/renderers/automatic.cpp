@@ -1,10 +1,10 @@
 // The algorithm chosen by itself, without bias.
 //
-// The picture begins with the first of several unbiased algorithms. Before the samples 8, 32, 128, 512, ... of each pixel those
+// The picture begins with the first of several unbiased algorithms. Before the samples 8, 16, 32, 64, ... of each pixel those
 // still in question are tried on the scene (algorithm_trial.h), with random numbers of their own, and the samples after it are
-// taken by the one with the least error at equal cost. A trial traces a sixty-fourth of the paths so far with each algorithm,
-// so trials take a few percent of the time; an algorithm that is found much worse than the best is tried no more. A preview of
-// a few samples has no trial at all.
+// taken by the one with the least error at equal cost, by all trials so far. A trial traces 1/256 of the paths so far with each
+// algorithm, in small pictures up to 1/32, so trials take a few percent of the time; an algorithm that is found much worse than
+// the best is tried no more. A preview of a few samples has no trial at all.
 //
 // The samples of an algorithm with less variance must count more: eight samples of a path tracer would spoil few, expensive
 // ones of a bidirectional one. Let V_i be the variances of the samples of two independent means of n_i samples. The variance of
@@ -51,7 +51,7 @@ class Automatic final : public Renderer {
   static void describe(Description<Automatic>& d) {
     d.summary(
          "Finds out by itself which of several algorithms suits the scene, and says so. It begins with the first of them; "
-         "before the samples 8, 32, 128, 512, … of each pixel it tries all on a small part of the picture, and goes on with "
+         "before the samples 8, 16, 32, 64, … of each pixel it tries all on a small part of the picture, and goes on with "
          "the one that has the least error for its cost. Trials take a few percent of the time. Without bias, since the "
          "samples "
          "of trials decide and are not shown. Costs are counted and not measured, so the choice is the same on all machines. "
@@ -175,10 +175,16 @@ class AutomaticProcess final : public ShownProcess, public TellsChoice {
     std::uint32_t lessons = 0;                    // how often its guide was trained,
     double taught = 0;                            // and with how many paths before trials
     bool out = false;                             // it was found much worse than another
-    double error = 0, cost = 0;                   // V and C of the last trial it took part in
+    double error = 0, cost = 0;                   // V and C: the means of the trials it took part in,
+    double paths = 0;                             // over so many paths
     double product() const { return error * cost; }
+    void learn(double v, double c, double over) {
+      paths += over;
+      error += (v - error) * over / paths;
+      cost += (c - cost) * over / paths;
+    }
   };
-  static constexpr std::uint32_t first_trial = 8, trial_factor = 4;
+  static constexpr std::uint32_t first_trial = 8, trial_factor = 2;
 
   /// The number of trials before a sample of each pixel.
   static std::uint32_t trials_before(std::uint64_t sample) {
@@ -227,10 +233,12 @@ void AutomaticProcess::teach(Schedule& schedule, Candidate& one, std::uint32_t n
 }
 
 void AutomaticProcess::hold_trial(Schedule& schedule, const Step& step, std::uint32_t due) {
-  constexpr double share = 1.0 / 128, fewest = 1024, most = 1 << 18, lessons_share = 1.0 / 32;
+  constexpr double share = 1.0 / 256, largest_share = 1.0 / 32, fewest = 1024, enough = 2048, most = 1 << 17;
+  constexpr double lessons_share = 1.0 / 32;
   const PixelArea area = context.image.sampled_area();
   const double pixels = double(area.width()) * double(area.height());
-  const double paths = std::min(share * step.samples.begin * pixels, most);
+  const double so_far = step.samples.begin * pixels,
+               paths = std::clamp(share * so_far, std::min(enough, largest_share * so_far), most);
   trials_ = due;
   if (paths < fewest) return;
   const AlgorithmTrial trial(context, mix_bits(context.seed ^ mix_bits(0x7472696c + due)), paths);
@@ -240,17 +248,14 @@ void AutomaticProcess::hold_trial(Schedule& schedule, const Step& step, std::uin
     Candidate& one = candidates_[c];
     if (one.out) continue;
     if (!one.process) one.process = one.renderer->start(context);
-    if (pupil(*one.process)) teach(schedule, one, std::uint32_t(c), due, lessons_share * step.samples.begin * pixels);
+    if (pupil(*one.process)) teach(schedule, one, std::uint32_t(c), due, lessons_share * so_far);
     if (schedule.aborted()) return;
     measured.push_back(trial.measure(schedule, *one.process, std::uint32_t(c), one.lessons));
     tried.push_back(c);
     if (schedule.aborted()) return;
   }
   const std::vector<double> errors = trial.errors(measured);
-  for (size_t i = 0; i < tried.size(); ++i) {
-    candidates_[tried[i]].error = errors[i];
-    candidates_[tried[i]].cost = measured[i].cost;
-  }
+  for (size_t i = 0; i < tried.size(); ++i) candidates_[tried[i]].learn(errors[i], measured[i].cost, paths);
   trial_samples_ = step.samples.begin;
   decide(tried);
 }
@@ -333,6 +338,7 @@ std::vector<std::byte> AutomaticProcess::save_state() const {
     Packing::pack(bytes, c.out);
     Packing::pack(bytes, c.error);
     Packing::pack(bytes, c.cost);
+    Packing::pack(bytes, c.paths);
     Packing::pack(bytes, c.process ? c.process->save_state() : std::vector<std::byte>{});
   }
   Packing::pack(bytes, film_->save_state());
@@ -353,6 +359,7 @@ void AutomaticProcess::load_state(std::span<const std::byte> bytes) {
     c.out = out != 0;
     Packing::unpack(bytes, c.error);
     Packing::unpack(bytes, c.cost);
+    Packing::unpack(bytes, c.paths);
     Packing::unpack(bytes, state);
     c.process = state.empty() ? nullptr : c.renderer->start(context);
     if (c.process) c.process->load_state(state);
@@ -375,7 +382,7 @@ std::string AutomaticProcess::told() const {
     if (c != chosen_ && candidates_[c].product() > 0)
       others += fmt::format("{}{:.2g} times that of {}", others.empty() ? "" : " and ",
                             candidates_[chosen_].product() / candidates_[c].product(), name(c));
-  return fmt::format("{}: a trial before sample {} of each pixel found its error at equal cost to be {}", name(chosen_),
+  return fmt::format("{}: trials up to sample {} of each pixel found its error at equal cost to be {}", name(chosen_),
                      trial_samples_, others.empty() ? "none" : others);
 }
 
