@@ -225,19 +225,22 @@ struct AlgorithmTrial::Groups {
 std::vector<double> AlgorithmTrial::errors(const std::vector<Measured>& all) const {
   const std::vector<double> r = seen(all);
   const double mean = std::accumulate(r.begin(), r.end(), 0.0) / double(r.size());
-  std::vector<double> errors;
+  std::vector<double> errors, means;
   double of_path_tracing = 0;  // V'
   for (const Measured& one : all) {
     Groups own, path_tracing;
+    double light = 0;
     for (size_t t = 0; t < r.size(); ++t) {
       double b = 0, v = 0;
       for (const double k : one.tiles[t]) b += k / batches;
       for (const double k : one.tiles[t]) v += (k - b) * (k - b) * paths_ / (batches - 1);
       const double scale = r[t] * r[t] + 0.01 * mean * mean;
+      light += scale > 0 ? b / std::sqrt(scale) / double(r.size()) : 0;
       own.add(t, scale > 0 ? v / scale : 0);
       if (!one.excess.empty()) path_tracing.add(t, scale > 0 ? (v + one.excess[t]) / scale : 0);
     }
     errors.push_back(own.power_mean());
+    means.push_back(light);
     of_path_tracing = std::max(of_path_tracing, path_tracing.power_mean());
   }
   double times = 1;  // how much larger the error of path tracing is than what its own trial says
@@ -248,7 +251,22 @@ std::vector<double> AlgorithmTrial::errors(const std::vector<Measured>& all) con
     }
   for (size_t i = 0; i < all.size(); ++i)
     if (all[i].from_camera && all[i].guided) errors[i] *= times;
-  return errors;
+  return with_missed_light(errors, means);
+}
+
+/// The errors, where those of algorithms that have found significantly less light than another are at least what they must be
+/// for that.
+std::vector<double> AlgorithmTrial::with_missed_light(const std::vector<double>& errors,
+                                                      const std::vector<double>& means) const {
+  constexpr double significant = 3;  // standard errors
+  const double n = double(columns_) * rows_ * paths_ * batches;
+  std::vector<double> whole = errors;
+  for (size_t i = 0; i < errors.size(); ++i)
+    for (size_t o = 0; o < errors.size(); ++o) {
+      const double missed = means[o] - means[i];
+      if (missed > significant * std::sqrt((errors[i] + errors[o]) / n)) whole[i] = std::max(whole[i], n * missed * missed);
+    }
+  return whole;
 }
 
 }  // namespace etendue

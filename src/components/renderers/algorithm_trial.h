@@ -28,6 +28,10 @@
 // same few paths, and is taken to be as much better where nothing was seen as where something was: its error is multiplied as
 // that of the path tracer without a guide.
 //
+// Without a bidirectional one among them there are the means: light of relative mean m that none of n paths has found has a
+// probability q of about 1/n or less, and its variance is m^2 / q. So an algorithm whose mean is less than another's by m, by
+// more than three standard errors, has at least V = n m^2.
+//
 // The cost is counted, never measured by a clock, so that the choice is the same everywhere. A path takes pairs of primary
 // samples wherever it samples a direction, a point of a luminaire or of the lens, and to each belongs a ray and the evaluation
 // of a surface. Where two subpaths are connected no numbers are taken, but every vertex of one is joined with every vertex of
@@ -69,6 +73,7 @@ class AlgorithmTrial {
   struct Part;
   struct Groups;
   std::vector<double> seen(const std::vector<Measured>&) const;
+  std::vector<double> with_missed_light(const std::vector<double>& errors, const std::vector<double>& means) const;
   PixelArea tile_area(int tile) const;
   int tile_of(const Point2& film) const;
   void trace(const RenderProcess&, std::uint64_t seed, int tile, bool records, const std::atomic<bool>* abort, Part&,

@@ -262,13 +262,15 @@ void AutomaticProcess::hold_trial(Schedule& schedule, const Step& step, std::uin
 
 void AutomaticProcess::decide(const std::vector<size_t>& tried) {
   constexpr double hold = 0.9;    // of the present algorithm's error: what is not better by this is not worth a change
-  constexpr double hopeless = 4;  // times the best error: no longer tried
+  constexpr double hopeless = 4;  // times the best error: no longer tried,
+  constexpr double known = 8192;  // if so many paths say so
   size_t best = chosen_;
   for (const size_t c : tried)
     if (candidates_[c].product() < candidates_[best].product()) best = c;
   if (!(candidates_[best].product() < hold * candidates_[chosen_].product())) best = chosen_;
   const double limit = hopeless * candidates_[best].product();
-  for (const size_t c : tried) candidates_[c].out = c != best && c > 0 && candidates_[c].product() > limit;
+  for (const size_t c : tried)
+    candidates_[c].out = c != best && c > 0 && candidates_[c].product() > limit && candidates_[c].paths >= known;
   if (best != chosen_) {
     const bool learns = pupil(*candidates_[best].process);
     lessons_ = candidates_[best].lessons;
