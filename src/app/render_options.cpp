@@ -66,6 +66,9 @@ void RenderOptions::add_to(Command& command) {
 void RenderOptions::add_picture_options(Command& command) {
   command.option("-o,--output FILE", outputs,
                  "Write to this file instead of those the file names; its ending chooses the format; may be repeated");
+  command.option("--renderer R", renderer,
+                 "Render by another algorithm: a class, or an expression such as 'PathTracer { max_depth: 8 }'. It inherits "
+                 "samples, sampler, light sampler and longest path from the description's, unless it sets its own");
   command.option("--samples N", samples, "Samples per pixel");
   command.option("--seed N", seed, "Seed of the random numbers");
   command.option("--size WxH", size, "Size of the picture in pixels");
@@ -222,6 +225,7 @@ std::string RenderOptions::hash_of(const Job& job, std::set<std::string> read) c
   read.insert(std::filesystem::absolute(file).string());
   std::vector<std::string> texts;
   for (const std::string& define : defines) texts.push_back("-D" + define);
+  if (!renderer.empty()) texts.push_back("--renderer" + renderer);
   for (const std::string& set : sets) texts.push_back("--set" + set);
   if (frame) texts.push_back(fmt::format("--frame{} of {}", *frame, frames_per_second()));
   for (const Override& override : overrides()) texts.push_back(override.path + "=" + override.expression);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "check/verify/collect.h"
 #include "common_options.h"
 #include "etendue/language/language.h"
 #include "etendue/render/job.h"
@@ -119,12 +120,23 @@ void require_kept(const std::vector<SetOption>& sets) {
 
 std::vector<SetOption> SceneOptions::set_options() const {
   std::vector<SetOption> list;
+  if (!renderer.empty()) list.push_back({"--renderer", "renderer"});
   for (const std::string& set : sets) list.push_back({"--set", split("--set", set, "path=value").first});
   return list;
 }
 
+void SceneOptions::apply_renderer(Job& job) const {
+  const Ref<Renderer> named = verify::named_renderer(job, renderer, "--renderer");
+  if (named == job.renderer) return;
+  verify::take_over(*named, *job.renderer);
+  for (const char* member : {"samples", "map_filter"})
+    if (!verify::written(*named, member)) set(*named, member, get(*job.renderer, member));
+  job.renderer = named;
+}
+
 void SceneOptions::apply_sets(Job& job) const {
   require_kept(set_options());
+  if (!renderer.empty()) apply_renderer(job);
   std::vector<Error> errors;
   for (const std::string& set : sets) {
     try {
@@ -144,6 +156,7 @@ std::string SceneOptions::command_line() const { return " " + shell_quoted(file)
 std::string SceneOptions::overrides_line() const {
   std::string text;
   for (const std::string& define : defines) text += " -D " + shell_quoted(define);
+  if (!renderer.empty()) text += " --renderer " + shell_quoted(renderer);
   for (const std::string& set : sets) text += " --set " + shell_quoted(set);
   for (const std::string& plugin : plugins) text += " --plugin " + shell_quoted(plugin);
   if (import.strict) text += " --strict";

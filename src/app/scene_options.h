@@ -24,6 +24,7 @@ struct SceneOptions {
   std::string file;
   std::vector<std::string> defines;  ///< "name=value"
   std::vector<std::string> sets;     ///< "path=value"
+  std::string renderer;              ///< a class or expression instead of the description's renderer; empty: that one
   std::vector<std::string> plugins;
   ImportOptions import;      ///< for files of other formats
   std::optional<int> frame;  ///< the value of `frame` in the file; without it 0
@@ -54,6 +55,7 @@ struct SceneOptions {
 
  private:
   LoadOptions load_options() const;
+  void apply_renderer(Job&) const;
   void apply_sets(Job&) const;
 };
 

@@ -73,6 +73,27 @@ TEST_F(OptionErrors, WhatALaterOneWouldUndoIsRefused) {
       << err;
 }
 
+TEST_F(OptionErrors, ARendererIsNamedAndKeepsWhatTheFileSays) {
+  EXPECT_TRUE(has(refused({"--renderer", "PathTracr"}), "did you mean 'PathTracer'?")) << err;
+  EXPECT_TRUE(has(refused({"--renderer", "Sphere"}), "'Sphere' is no renderer")) << err;
+  EXPECT_TRUE(refused({"--renderer", "LightTracer", "--set", "renderer=PathTracer"})
+                  .starts_with("--set: 'renderer' is set already, by --renderer"))
+      << err;
+  // max_depth and samples of the file, unless the expression or a later option sets them.
+  const auto same_picture = [&](const char* renderer, std::vector<std::string> sets) {
+    EXPECT_EQ(run({"render", scene, "--renderer", renderer, "--quiet", "-o", "named.npy"}), 0) << err;
+    std::vector<std::string> plain{"render", scene, "--quiet", "-o", "plain.npy"};
+    plain.insert(plain.end(), sets.begin(), sets.end());
+    EXPECT_EQ(run(plain), 0) << err;
+    return file_text(folder.path() + "/named.npy") == file_text(folder.path() + "/plain.npy");
+  };
+  const std::string depth = "renderer.max_depth=3";
+  EXPECT_EQ(run({"save", scene, "--set", "renderer.samples=3", "--set", depth, "-o", "deep.etd"}), 0) << err;
+  scene = folder.path() + "/deep.etd";
+  EXPECT_TRUE(same_picture("LightTracer", {"--set", "renderer=LightTracer { max_depth: 3, samples: 3 }"}));
+  EXPECT_FALSE(same_picture("LightTracer { max_depth: 1 }", {"--set", "renderer=LightTracer { max_depth: 3, samples: 3 }"}));
+}
+
 TEST_F(OptionErrors, APathGoesByMembers) {
   EXPECT_TRUE(
       has(refused({"--set", "ball.radius=2"}), "a path consists of members, not names of the file; 'ball' is scene.objects[0]"))

@@ -12,12 +12,6 @@
 namespace etendue::verify {
 namespace {
 
-bool written(const Component& component, const std::string& member) {
-  if (!component.origin) return false;
-  const auto& members = component.origin->members;
-  return std::any_of(members.begin(), members.end(), [&](const auto& m) { return m.first == member; });
-}
-
 std::string joined(const std::vector<std::string>& parts) {
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
@@ -47,6 +41,12 @@ std::vector<double> means(const Layout& layout, const Image& picture) {
 }
 
 }  // namespace
+
+bool written(const Component& component, const std::string& member) {
+  if (!component.origin) return false;
+  const auto& members = component.origin->members;
+  return std::any_of(members.begin(), members.end(), [&](const auto& m) { return m.first == member; });
+}
 
 void take_over(Renderer& to, const Renderer& from) {
   for (const char* member : {"sampler", "light_sampler", "max_depth"})

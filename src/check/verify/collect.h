@@ -39,6 +39,8 @@ Ref<Renderer> named_renderer(const Job&, const std::string& expression, const st
 /// Gives a new renderer the job's sampler, light sampler and max_depth, unless its expression sets them; likewise a renderer
 /// nested in it. Throws Error if the renderer rejects them.
 void take_over(Renderer& to, const Renderer& from);
+/// Whether a description sets a member of a component.
+bool written(const Component&, const std::string& member);
 /// Descriptions of the scene's light that a renderer misses.
 std::vector<std::string> missed_light(const Renderer&, const SceneTraits&);
 
