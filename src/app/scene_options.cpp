@@ -130,7 +130,8 @@ void SceneOptions::apply_renderer(Job& job) const {
   if (named == job.renderer) return;
   verify::take_over(*named, *job.renderer);
   for (const char* member : {"samples", "map_filter"})
-    if (!verify::written(*named, member)) set(*named, member, get(*job.renderer, member));
+    if (!verify::written(*named, member) && named->class_info().find(member) && job.renderer->class_info().find(member))
+      set(*named, member, get(*job.renderer, member));
   job.renderer = named;
 }
 
