@@ -214,6 +214,10 @@ struct AlgorithmTrial::Groups {
     sum[group] += value;
     tiles[group] += 1;
   }
+  double mean() const {
+    const double all = std::accumulate(tiles.begin(), tiles.end(), 0.0);
+    return all > 0 ? std::accumulate(sum.begin(), sum.end(), 0.0) / all : 0;
+  }
   double power_mean() const {
     double root = 0, groups = 0;
     for (size_t g = 0; g < count; ++g)
@@ -241,7 +245,7 @@ std::vector<double> AlgorithmTrial::errors(const std::vector<Measured>& all) con
     }
     errors.push_back(own.power_mean());
     means.push_back(light);
-    of_path_tracing = std::max(of_path_tracing, path_tracing.power_mean());
+    of_path_tracing = std::max(of_path_tracing, path_tracing.mean());
   }
   double times = 1;  // how much larger the error of path tracing is than what its own trial says
   for (size_t i = 0; i < all.size(); ++i)
