@@ -45,7 +45,12 @@ struct MadeUp {
     return !specular[size_t(j - 1)] && !specular[size_t(j)] && last > 1;
   }
 
-  float weight(int s, bool merge, Heuristic heuristic) const {
+  double moment(int s, Heuristic heuristic) const {
+    double found = 0;
+    weight(s, false, heuristic, &found);
+    return found;
+  }
+  float weight(int s, bool merge, Heuristic heuristic, double* moment = nullptr) const {
     std::vector<SubpathVertex> light, camera;
     for (int i = 0; i < s; ++i) light.push_back(vertex(i, from_light[size_t(i)], from_camera[size_t(i)]));
     for (int i = last; i >= s; --i) camera.push_back(vertex(i, from_camera[size_t(i)], from_light[size_t(i)]));
@@ -72,6 +77,7 @@ struct MadeUp {
                        from_light[0],
                        true,
                        {merging, 0}};
+    if (moment) *moment = path_tracing_moment(path, heuristic);
     if (!merge) return bidirectional_weight(path, heuristic);
     // A photon stores the pdf of its previous vertex, sampled from the merged vertex, over the pdf of the direction, here
     // `back`.
@@ -114,6 +120,24 @@ TEST(BidirectionalWeight, of_all_strategies_sum_to_one_in_proportion_to_their_pd
         EXPECT_NEAR(sum, 1, 1e-5);
         for (const auto& [weight, pdf] : known) EXPECT_NEAR(weight, std::pow(pdf, power) / all, 1e-5);
       }
+}
+
+// The second moment of path tracing, f^2 sum_{j=0,1} w_j^2 / p_j with the weights of these two strategies among each other, is
+// (f / p_s)^2 G p_s for whichever strategy s made the path.
+TEST(BidirectionalWeight, each_strategy_tells_the_second_moment_of_path_tracing) {
+  std::mt19937 random(5);
+  for (const Heuristic heuristic : {Heuristic::balance, Heuristic::power})
+    for (int n = 0; n < 400; ++n) {
+      const MadeUp path(random, 2 + n % 6, 0, n % 3 == 0 ? 0.4 : 0);
+      const double power = heuristic == Heuristic::balance ? 1 : 2;
+      double all = 0, moment = 0;
+      for (const int j : {0, 1})
+        if (path.connects(j)) all += std::pow(path.pdf(j), power);
+      for (const int j : {0, 1})
+        if (path.connects(j)) moment += std::pow(std::pow(path.pdf(j), power) / all, 2) / path.pdf(j);
+      for (int s = 0; s <= path.last; ++s)
+        if (path.connects(s)) EXPECT_NEAR(path.moment(s, heuristic) / (moment * path.pdf(s)), 1, 1e-5);
+    }
 }
 
 TEST(BidirectionalWeight, without_merging_nothing_is_merged) {
