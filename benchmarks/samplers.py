@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+"""Measures the samplers: writes docs/results/samplers.md.
+
+    ./etendue python
+    PYTHONPATH=build/python python3 benchmarks/samplers.py --scenes FOLDER [--runs FOLDER] [--write docs/results/samplers.md]
+
+Needs NumPy. FOLDER has scenes of other programs, a folder each (B. Bitterli's, as Mitsuba's XML). Points: L2 star discrepancy and star
+discrepancy of pairs of numbers, errors of four integrals, nanoseconds for a pair. Pictures: `etendue compare` of all samplers, at 16 and
+256 samples, on the scenes by which the default is chosen, and on scenes of our own that are looked at afterwards. With --runs the
+comparisons stay in a folder, and those that are there are not made again.
+"""
+import argparse
+import json
+import math
+import os
+import subprocess
+import tempfile
+import time
+
+import etendue
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SAMPLERS = ["IndependentSampler", "StratifiedSampler", "LatticeSampler", "HaltonSampler", "SobolSampler", "Pmj02Sampler",
+            "PairsInQuadsSampler", "ZSobolSampler"]
+SHORT = {name: name.removesuffix("Sampler") for name in SAMPLERS}
+CHOICE = ["classroom", "cornell-box", "dining-room", "living-room", "material-testball", "staircase2", "veach-ajar", "veach-mis"]
+HELD_OUT = ["cornell_box", "shader_ball", "window_room", "cloister", "depth_of_field", "image_lit"]
+BUDGETS = {16: 16, 256: 4}  # samples per pixel: runs
+SIZE = "64x36"
+
+
+def made(name, samples):
+    """The sampler, set for so many samples of a pixel."""
+    if name == "ZSobolSampler":
+        return etendue.ZSobolSampler(samples=samples)
+    if name == "StratifiedSampler":
+        x = 2 ** (int(math.log2(samples) + 1) // 2)
+        return etendue.StratifiedSampler(x=x, y=samples // x)
+    return getattr(etendue, name)()
+
+
+def points(sampler, n, pixel, dimension, seed=1):
+    pixels = np.tile(np.array([[pixel % 64, pixel // 64]], dtype=np.int32), (n, 1))
+    return np.asarray(sampler.pairs(pixels, np.arange(n, dtype=np.uint32), dimension, seed=seed), dtype=np.float64)
+
+
+# ---- points
+
+def l2_star_discrepancy(p):
+    """Warnock 1972."""
+    n = len(p)
+    once = np.prod(1 - p ** 2, axis=1).sum() / 4
+    twice = np.prod(1 - np.maximum(p[:, None, :], p[None, :, :]), axis=2).sum()
+    return math.sqrt(max(0.0, 1 / 9 - 2 * once / n + twice / n ** 2))
+
+
+def star_discrepancy(p):
+    """Of points of the plane, exactly: the suprema are at corners made of the points' coordinates (Niederreiter 1972)."""
+    n = len(p)
+    xs, ys = np.append(np.sort(p[:, 0]), 1.0), np.append(np.sort(p[:, 1]), 1.0)
+    below = np.zeros((n + 2, n + 2))
+    column, row = np.searchsorted(xs[:-1], p[:, 0]), np.searchsorted(ys[:-1], p[:, 1])
+    np.add.at(below, (column + 1, row + 1), 1)
+    below = below.cumsum(0).cumsum(1)  # [i, j]: points among the first i of x and j of y
+    area = np.outer(xs, ys)
+    opened, closed = below[:n + 1, :n + 1], below[1:n + 2, 1:n + 2]
+    return max(np.abs(area - opened / n).max(), np.abs(closed / n - area).max())
+
+
+# Christensen, Kensler & Kilpatrick 2018, section 3: two discontinuous functions, two smooth ones, with their integrals.
+INTEGRANDS = {
+    "disk": (lambda p: (p[:, 0] ** 2 + p[:, 1] ** 2 < 2 / math.pi).astype(float), 0.5),
+    "triangle": (lambda p: (p[:, 1] > p[:, 0]).astype(float), 0.5),
+    "gaussian": (lambda p: np.exp(-p[:, 0] ** 2 - p[:, 1] ** 2), math.pi / 4 * math.erf(1) ** 2),
+    "bilinear": (lambda p: p[:, 0] * p[:, 1], 0.25),
+}
+# In four dimensions, the film's point and the first luminaire's: a product of two, and one that is none.
+FOUR = {
+    "gaussian in 4": (lambda p: np.exp(-(p ** 2).sum(axis=1)), (math.pi / 4 * math.erf(1) ** 2) ** 2),
+    "half space in 4": (lambda p: (p.sum(axis=1) < 2).astype(float), 0.5),
+}
+
+
+def errors(name, n, trials):
+    """Root mean square errors of the integrands by the first n points of pixels."""
+    sampler, sums = made(name, n), {}
+    for trial in range(trials):
+        p, q = points(sampler, n, trial, 0), points(sampler, n, trial, 7)
+        both = np.hstack([p, q])
+        for functions, at in ((INTEGRANDS, p), (FOUR, both)):
+            for what, (f, integral) in functions.items():
+                sums.setdefault(what, []).append((f(at).mean() - integral) ** 2)
+    return {what: math.sqrt(np.mean(s)) for what, s in sums.items()}
+
+
+def slope(counts, values):
+    return np.polyfit(np.log(counts), np.log(np.maximum(values, 1e-12)), 1)[0]
+
+
+def nanoseconds(name, n=1 << 21):
+    sampler = made(name, 16)
+    rng = np.random.default_rng(1)
+    pixels = rng.integers(0, 1000, (n, 2)).astype(np.int32)
+    samples = (np.arange(n) % 16).astype(np.uint32)
+    best = math.inf
+    for _ in range(5):
+        before = time.process_time()
+        sampler.pairs(pixels, samples, 10)
+        best = min(best, time.process_time() - before)
+    return best / n * 1e9
+
+
+def point_tables():
+    text = ["## Discrepancy\n", "Means over 64 pixels, pairs of the dimensions 0 and 1: L2 star discrepancy (Warnock 1972), and star discrepancy "
+            "(exact).\n", "| | L2: 16 | 64 | 256 | 1024 | slope | star: 16 | 64 | 256 | slope |", "|---|" + "---:|" * 9]
+    counts = [16, 64, 256, 1024]
+    for name in SAMPLERS:
+        l2 = [np.mean([l2_star_discrepancy(points(made(name, n), n, i, 0)) for i in range(64 if n < 1024 else 16)]) for n in counts]
+        star = [np.mean([star_discrepancy(points(made(name, n), n, i, 0)) for i in range(64)]) for n in counts[:3]]
+        text.append("| %s | %s | %.2f | %s | %.2f |" % (SHORT[name], " | ".join("%.5f" % v for v in l2), slope(counts, l2),
+                                                     " | ".join("%.4f" % v for v in star), slope(counts[:3], star)))
+    text += ["\n## Convergence\n",
+             "Root mean square errors over 256 pixels (64 for more than 1024 samples): at 256 samples, and the slope of their logarithms from "
+             "16 to 4096 samples. Independent numbers have −0.5. disk, triangle, gaussian and bilinear are those of Christensen, Kensler & Kilpatrick "
+             "2018, over one pair of dimensions; the last two integrate over two pairs, the film's and the first luminaire's: "
+             "exp(−x²) in four dimensions, and the half space below the sum 2.\n"]
+    names = list(INTEGRANDS) + list(FOUR)
+    text += ["| | " + " | ".join(names) + " |", "|---|" + "---:|" * len(names)]
+    counts = [16, 64, 256, 1024, 4096]
+    for name in SAMPLERS:
+        rows = [errors(name, n, 64 if n > 1024 else 256) for n in counts]
+        text.append("| %s | %s |" % (SHORT[name], " | ".join("%.1e, %.2f" % (rows[2][w], slope(counts, [r[w] for r in rows])) for w in names)))
+    return text
+
+
+def cost_table():
+    own = {name: nanoseconds(name) for name in SAMPLERS}
+    return ["\n## Cost\n", "Nanoseconds of processor time for a pair, asked for by Python on arrays, with the array's own share: %s.\n"
+            % ", ".join("%s %.0f" % (SHORT[n], t) for n, t in own.items())]
+
+
+# ---- pictures
+
+def variant(name, samples):
+    if name == "ZSobolSampler":
+        return "ZSobolSampler{samples: %d}" % samples
+    if name == "StratifiedSampler":
+        side = int(math.sqrt(samples))
+        return "StratifiedSampler{x: %d\ny: %d}" % (side, side)
+    return name + "{}"
+
+
+def compared(program, file, name, samples, folder):
+    """The results of `etendue compare` for a scene: relMSE of each sampler, its processor time for a run [s], and whether it
+    differs from the default's significantly."""
+    path = os.path.join(folder, "%s.%d.json" % (name, samples))
+    if not os.path.exists(path):
+        command = [program, "compare", file, "--samples", str(samples), "--runs", str(BUDGETS[samples]), "--size", SIZE, "--seed", "5",
+                   "--quiet", "--json", path, "--csv", path.replace(".json", ".csv")]
+        for sampler in SAMPLERS:
+            command += ["--variant", "%s: renderer.sampler=%s" % (sampler, variant(sampler, samples))]
+        subprocess.run(command, check=True, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    with open(path) as f:
+        return json.load(f)
