@@ -25,9 +25,8 @@ SAMPLERS = ["IndependentSampler", "StratifiedSampler", "LatticeSampler", "Halton
             "PairsInQuadsSampler", "ZSobolSampler"]
 SHORT = {name: name.removesuffix("Sampler") for name in SAMPLERS}
 CHOICE = ["classroom", "cornell-box", "dining-room", "living-room", "material-testball", "staircase2", "veach-ajar", "veach-mis"]
-HELD_OUT = ["cornell_box", "shader_ball", "window_room", "cloister", "depth_of_field", "image_lit"]
-BUDGETS = {16: 16, 256: 4}  # samples per pixel: runs
-SIZE = "64x36"
+HELD_OUT = ["cornell_box", "window_room", "depth_of_field", "image_lit"]
+BUDGETS = {16: ("48x27", 8), 256: ("32x18", 3)}  # samples per pixel: the picture's size, and how many independent runs
 
 
 def made(name, samples):
@@ -152,14 +151,93 @@ def variant(name, samples):
 
 
 def compared(program, file, name, samples, folder):
-    """The results of `etendue compare` for a scene: relMSE of each sampler, its processor time for a run [s], and whether it
-    differs from the default's significantly."""
+    """The results of `etendue compare` for a scene: of each sampler the relMSE of its runs and its processor time for a run [s]."""
     path = os.path.join(folder, "%s.%d.json" % (name, samples))
     if not os.path.exists(path):
-        command = [program, "compare", file, "--samples", str(samples), "--runs", str(BUDGETS[samples]), "--size", SIZE, "--seed", "5",
-                   "--quiet", "--json", path, "--csv", path.replace(".json", ".csv")]
+        size, runs = BUDGETS[samples]
+        command = [program, "compare", file, "--samples", str(samples), "--runs", str(runs), "--size", size, "--seed", "5", "--quiet",
+                   "--json", path, "--csv", path.replace(".json", ".csv")]
         for sampler in SAMPLERS:
             command += ["--variant", "%s: renderer.sampler=%s" % (sampler, variant(sampler, samples))]
         subprocess.run(command, check=True, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     with open(path) as f:
-        return json.load(f)
+        variants = json.load(f)["scenes"][0]["variants"]
+    return {v["name"]: (v["at_equal_samples"]["runs"], v["processor_seconds"]) for v in variants}
+
+
+def ratio_to_default(results, name):
+    """The geometric mean of a sampler's relMSE relative to SobolSampler's, the square of its relative standard error, and the ratio
+    of processor times."""
+    logs, default = (np.log(results[n][0]) for n in (name, "SobolSampler"))
+    variance = 0 if name == "SobolSampler" else logs.var(ddof=1) / len(logs) + default.var(ddof=1) / len(default)
+    return logs.mean() - default.mean(), variance, results[name][1] / results["SobolSampler"][1]
+
+
+def scene_table(program, scenes, samples, folder):
+    names = [n for n in SAMPLERS if n != "SobolSampler"]
+    text = ["| %d samples | Sobol: relMSE | %s |" % (samples, " | ".join(SHORT[n] for n in names)), "|---|" + "---:|" * (len(names) + 1)]
+    sums = {n: [0.0, 0.0, 0.0] for n in names}
+    for name, file in scenes.items():
+        results = compared(program, file, name, samples, folder)
+        row = []
+        for n in names:
+            log, variance, seconds = ratio_to_default(results, n)
+            row.append("%.2f ± %.2f" % (math.exp(log), math.exp(log) * math.sqrt(variance)))
+            sums[n] = [sums[n][0] + log / len(scenes), sums[n][1] + variance / len(scenes) ** 2, sums[n][2] + math.log(seconds) / len(scenes)]
+        text.append("| %s | %.3g | %s |" % (name, math.exp(np.log(results["SobolSampler"][0]).mean()), " | ".join(row)))
+    text.append("| **all** | | %s |" % " | ".join("**%.2f ± %.2f**" % (math.exp(m), math.exp(m) * math.sqrt(v)) for m, v, _ in sums.values()))
+    text.append("| processor time | | %s |" % " | ".join("%.2f" % math.exp(t) for _, _, t in sums.values()))
+    return text
+
+
+def picture_tables(program, scenes_folder, runs):
+    text = ["\n## Pictures\n",
+            "relMSE at equal samples, relative to SobolSampler's, with one standard error, by `etendue compare` with the scene's own renderer and "
+            "filter: %s. The reference is the mean of all runs but the one that is compared with it. ZSobol and Stratified are set for the number of samples. Times "
+            "are of a busy machine.\n" % ", ".join("%d samples at %s, %d runs" % (n, *b) for n, b in BUDGETS.items())]
+    theirs = {}
+    for name in CHOICE:
+        here = os.path.join(scenes_folder, name)
+        theirs[name] = next(p for p in (os.path.join(here, f) for f in ("scene_v3.xml", "scene.xml")) if os.path.exists(p))
+    ours = {name: os.path.join(HERE, "..", "scenes", name + ".etd") for name in HELD_OUT}
+    for title, scenes in (("The eight scenes by which the default is chosen", theirs), ("Scenes looked at afterwards", ours)):
+        text.append("### %s\n" % title)
+        for samples in BUDGETS:
+            text += scene_table(program, scenes, samples, runs) + [""]
+    return text
+
+
+INTRODUCTION = """# The samplers
+
+Made by [`benchmarks/samplers.py`](../../benchmarks/samplers.py); what follows for the default is in
+[decision 061](../decisions/061-samplers.md). Each sampler is one file in `src/components/samplers`, with its paper and its derivation.
+
+| | what it promises | best with |
+|---|---|---|
+| Independent | nothing | any number |
+| Stratified | one sample in each cell of a grid | multiples of the cells |
+| Lattice | shifted rank-1 lattices of long dual vectors | powers of 2 |
+| Halton | strata in a prime base for each dimension | any number |
+| Sobol | each pair of dimensions a (0,2)-sequence in base 2 | powers of 2 |
+| Pmj02 | the same, otherwise random; points kept apart by `blue_noise` | powers of 2, up to 4096 |
+| PairsInQuads | the same, and four dimensions a (0,4)-sequence in base 4 | powers of 4 |
+| ZSobol | (0,2)-sequences shared by neighbouring pixels | `samples` |
+"""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", default=os.path.join(HERE, "..", "build", "etendue"))
+    parser.add_argument("--scenes", required=True)
+    parser.add_argument("--runs")
+    parser.add_argument("--write", default=os.path.join(HERE, "..", "docs", "results", "samplers.md"))
+    given = parser.parse_args()
+    text = [INTRODUCTION] + point_tables() + cost_table()
+    with tempfile.TemporaryDirectory() as temporary:
+        text += picture_tables(given.program, given.scenes, given.runs or temporary)
+    with open(given.write, "w") as f:
+        f.write("\n".join(text).rstrip() + "\n")
+
+
+if __name__ == "__main__":
+    main()
