@@ -23,7 +23,9 @@ import numpy as np
 HERE = os.path.dirname(os.path.abspath(__file__))
 SAMPLERS = ["IndependentSampler", "StratifiedSampler", "LatticeSampler", "HaltonSampler", "SobolSampler", "Pmj02Sampler",
             "PairsInQuadsSampler", "ZSobolSampler"]
-SHORT = {name: name.removesuffix("Sampler") for name in SAMPLERS}
+BLUE = "Pmj02Sampler, blue_noise"
+POINTS = SAMPLERS[:6] + [BLUE] + SAMPLERS[6:]
+SHORT = {name: name.replace("Sampler", "") for name in POINTS}
 CHOICE = ["classroom", "cornell-box", "dining-room", "living-room", "material-testball", "staircase2", "veach-ajar", "veach-mis"]
 HELD_OUT = ["cornell_box", "window_room", "depth_of_field", "image_lit"]
 BUDGETS = {16: ("48x27", 8), 256: ("32x18", 3)}  # samples per pixel: the picture's size, and how many independent runs
@@ -36,6 +38,8 @@ def made(name, samples):
     if name == "StratifiedSampler":
         x = 2 ** (int(math.log2(samples) + 1) // 2)
         return etendue.StratifiedSampler(x=x, y=samples // x)
+    if name == BLUE:
+        return etendue.Pmj02Sampler(blue_noise=True)
     return getattr(etendue, name)()
 
 
@@ -114,7 +118,7 @@ def point_tables():
     text = ["## Discrepancy\n", "Means over 64 pixels, pairs of the dimensions 0 and 1: L2 star discrepancy (Warnock 1972), and star discrepancy "
             "(exact).\n", "| | L2: 16 | 64 | 256 | 1024 | slope | star: 16 | 64 | 256 | slope |", "|---|" + "---:|" * 9]
     counts = [16, 64, 256, 1024]
-    for name in SAMPLERS:
+    for name in POINTS:
         l2 = [np.mean([l2_star_discrepancy(points(made(name, n), n, i, 0)) for i in range(64 if n < 1024 else 16)]) for n in counts]
         star = [np.mean([star_discrepancy(points(made(name, n), n, i, 0)) for i in range(64)]) for n in counts[:3]]
         text.append("| %s | %s | %.2f | %s | %.2f |" % (SHORT[name], " | ".join("%.5f" % v for v in l2), slope(counts, l2),
@@ -127,7 +131,7 @@ def point_tables():
     names = list(INTEGRANDS) + list(FOUR)
     text += ["| | " + " | ".join(names) + " |", "|---|" + "---:|" * len(names)]
     counts = [16, 64, 256, 1024, 4096]
-    for name in SAMPLERS:
+    for name in POINTS:
         rows = [errors(name, n, 64 if n > 1024 else 256) for n in counts]
         text.append("| %s | %s |" % (SHORT[name], " | ".join("%.1e, %.2f" % (rows[2][w], slope(counts, [r[w] for r in rows])) for w in names)))
     return text
@@ -207,6 +211,52 @@ def picture_tables(program, scenes_folder, runs):
     return text
 
 
+def blurred(picture, deviation):
+    """By a Gaussian of a standard deviation in pixels, separably; what lies beyond the border is mirrored."""
+    if deviation == 0:
+        return picture
+    reach = int(math.ceil(3 * deviation))
+    weights = np.exp(-np.arange(-reach, reach + 1) ** 2 / (2 * deviation ** 2))
+    weights /= weights.sum()
+    for axis in (0, 1):
+        widths = [(reach, reach) if a == axis else (0, 0) for a in (0, 1)]
+        padded = np.pad(picture, widths, mode="symmetric")
+        picture = np.apply_along_axis(lambda line: np.convolve(line, weights, mode="valid"), axis, padded)
+    return picture
+
+
+BLURRED = ["cornell-box", "dining-room", "veach-mis"]
+DEVIATIONS = [0, 1, 2]  # pixels
+
+
+def blur_table(program, scenes_folder, runs, samples=16, size="48x27", count=6):
+    """The variance of Y over runs with different seeds, of pictures after a blur, relative to SobolSampler's."""
+    text = ["### Noise after a blur\n",
+            "The variance of Y relative to SobolSampler's, in pictures that were blurred by a Gaussian of so many pixels, as eyes and denoisers do: "
+            "%d samples at %s, %d runs, with a box filter. Where neighbouring errors compensate each other it falls.\n" % (samples, size, count),
+            "| | " + " | ".join("%s: %d px" % (n, d) for n in BLURRED for d in DEVIATIONS) + " |", "|---|" + "---:|" * (len(BLURRED) * len(DEVIATIONS))]
+    variances = {}
+    for scene in BLURRED:
+        here = os.path.join(scenes_folder, scene)
+        file = next(p for p in (os.path.join(here, f) for f in ("scene_v3.xml", "scene.xml")) if os.path.exists(p))
+        for sampler in ("IndependentSampler", "SobolSampler", "ZSobolSampler"):
+            pictures = []
+            for seed in range(1, count + 1):
+                path = os.path.join(runs, "blur.%s.%s.%d.npy" % (scene, sampler, seed))
+                if not os.path.exists(path):
+                    subprocess.run([program, "render", file, "--quiet", "--size", size, "--samples", str(samples), "--seed", str(seed), "--set",
+                                    "renderer.sampler=" + variant(sampler, samples), "--set", "image.filter=BoxFilter{}", "-o", path],
+                                   check=True, stderr=subprocess.DEVNULL)
+                pictures.append(np.load(path)[..., 1].astype(np.float64))
+            weight = 1 / (np.mean(pictures, axis=0) ** 2 + 0.01 * np.mean(pictures) ** 2)
+            for d in DEVIATIONS:
+                variances[scene, d, sampler] = (weight * np.var([blurred(x, d) for x in pictures], axis=0, ddof=1)).mean()
+    for sampler in ("IndependentSampler", "ZSobolSampler"):
+        text.append("| %s | %s |" % (SHORT[sampler], " | ".join("%.2f" % (variances[n, d, sampler] / variances[n, d, "SobolSampler"])
+                                                            for n in BLURRED for d in DEVIATIONS)))
+    return text
+
+
 INTRODUCTION = """# The samplers
 
 Made by [`benchmarks/samplers.py`](../../benchmarks/samplers.py); what follows for the default is in
@@ -235,6 +285,7 @@ def main():
     text = [INTRODUCTION] + point_tables() + cost_table()
     with tempfile.TemporaryDirectory() as temporary:
         text += picture_tables(given.program, given.scenes, given.runs or temporary)
+        text += blur_table(given.program, given.scenes, given.runs or temporary)
     with open(given.write, "w") as f:
         f.write("\n".join(text).rstrip() + "\n")
 
