@@ -74,9 +74,12 @@ bool see(const Scene& scene, Ray ray, SampleContext& sample, Hit& hit) {
     const Shader* const shader = point.object->shader.get();
     if (!shader || !(shader->possible_lobes() & null_scattering)) return true;
     const Scatter* const scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
-    const float choice = numbers.next();
-    const std::optional<ScatterSample> next = scatter ? scatter->sample(out, choice, numbers.next_pair()) : std::nullopt;
-    if (!next || next->lobe != null_scattering) return true;
+    const std::optional<ScatterSample> next = scatter ? scatter->sample(out, 0, {}, {.lobes = null_scattering}) : std::nullopt;
+    // The lobe alone has the transmittance as its weight, of which there may be one for each wavelength.
+    float transmittance = 0;
+    if (next)
+      for (int i = 0; i < spectrum_size; ++i) transmittance += next->weight[i] / spectrum_size;
+    if (!(numbers.next() < transmittance)) return true;
     go_on(point, *next, ray, media);
   }
   return false;

@@ -39,7 +39,7 @@ Ref<Job> job(const std::string& filter = "BoxFilter {}", const std::string& crop
       "right = Rectangle { corner: [-0.125, -2, 0] m, edge_u: [1.125, 0, 0] m, edge_v: [0, 2, 0] m, shader: red }\n"
       "pane = Rectangle { corner: [-2, 0, 1] m, edge_u: [4, 0, 0] m, edge_v: [0, 1, 0] m, shader: veil }\n"
       "veil = MaskShader { shader: Lambertian {}, opacity: 0.25 }\n"
-      "red = Lambertian { reflectance: 0.5 }\n"
+      "red = Lambertian { color: 0.5 }\n"
       "Job {\n renderer: PathTracer { samples: 64, max_depth: 1 }\n"
       " camera: OrthographicCamera { from: [0, 0, 5] m, to: [0, 0, 0] m, width: 4 m }\n"
       " image: ImageBuffer { width: 16, height: 16, filter: " +
