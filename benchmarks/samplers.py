@@ -27,7 +27,7 @@ BLUE = "Pmj02Sampler, blue_noise"
 POINTS = SAMPLERS[:6] + [BLUE] + SAMPLERS[6:]
 SHORT = {name: name.replace("Sampler", "") for name in POINTS}
 CHOICE = ["classroom", "cornell-box", "dining-room", "living-room", "material-testball", "staircase2", "veach-ajar", "veach-mis"]
-HELD_OUT = ["cornell_box", "window_room", "depth_of_field", "image_lit"]
+HELD_OUT = ["cornell_box", "window_room", "depth_of_field", "shader_ball"]
 BUDGETS = {16: ("48x27", 8), 256: ("32x18", 3)}  # samples per pixel: the picture's size, and how many independent runs
 
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <tuple>
 #include <unordered_map>
 
 #include "camera_path.h"
@@ -28,7 +29,7 @@ class Names {
     std::vector<std::string> names;
     for (int i = hit.depth; i-- > 0;)
       if (const auto found = names_.find(hit.scenes[i]); found != names_.end()) names.push_back(found->second);
-    names.push_back(names_.contains(hit.object) ? names_.at(hit.object) : hit.object->class_info().name);
+    names.push_back(name_of(*hit.object));
     return names;
   }
   std::string material(const SceneObject& object) const {
@@ -49,9 +50,23 @@ class Names {
     const std::string& type = part.class_info().name;
     const bool named = part.origin && !part.origin->name.empty();
     names_[&part] = named ? part.origin->name : type + " " + std::to_string(++numbers_[type]);
+    if (part.origin) written_[place_of(part)] = names_[&part];
+  }
+  /// Where an instance has replaced the shader, another object stands for the one of the list: it has the same origin.
+  std::string name_of(const SceneObject& object) const {
+    if (const auto found = names_.find(&object); found != names_.end()) return found->second;
+    if (!object.origin) return object.class_info().name;
+    const auto found = written_.find(place_of(object));
+    return found != written_.end() ? found->second : object.class_info().name;
+  }
+  using Place = std::tuple<std::string, int, int>;
+  static Place place_of(const Component& part) {
+    const Location& at = part.origin->location;
+    return {at.file, at.line, at.column};
   }
   std::unordered_map<const Component*, std::string> names_;
   std::map<std::string, int> numbers_;
+  std::map<Place, std::string> written_;
 };
 
 /// What a sample sees: the film point, and a key of the object in its instances; 0: nothing.
