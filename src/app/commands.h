@@ -27,6 +27,7 @@ void add_verify_command(Command& program);
 void add_compare_command(Command& program);
 void add_conform_command(Command& program);
 void add_measure_command(Command& program);
+void add_cryptomatte_command(Command& program);
 void add_cluster_command(Command& program);
 void add_studio_command(Command& program);
 void add_shade_command(Command& program);

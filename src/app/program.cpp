@@ -25,6 +25,7 @@ First steps
   etendue verify box.etd                                 whether all algorithms agree on a scene
   etendue compare box.etd --renderers A,B --time 1m      which algorithm is better on a scene, and by how much
   etendue measure desk.etd                               what a meter reads: lux, W/m2 per band, with errors
+  etendue cryptomatte box.etd -o mattes.exr              mattes of all objects and materials, for compositing
   etendue conform Shader                                 whether parts do what their interfaces promise
   etendue cluster submit box.etd --parts 16              renders on the machines of a cluster
   etendue studio box.etd                                 describes, shows and controls a render in the browser
@@ -53,6 +54,7 @@ int run_program(int argument_count, char** arguments) {
   add_compare_command(program);
   add_conform_command(program);
   add_measure_command(program);
+  add_cryptomatte_command(program);
   add_cluster_command(program);
   add_studio_command(program);
   add_shade_command(program);

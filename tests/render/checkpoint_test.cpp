@@ -108,6 +108,22 @@ TEST_F(CheckpointTest, every_renderer_continues_to_the_same_bits_and_merges) {
   EXPECT_GE(tried, 1);
 }
 
+TEST_F(CheckpointTest, every_sampler_continues_to_the_same_bits_and_merges) {
+  for (const char* sampler : {"IndependentSampler", "SobolSampler", "HaltonSampler", "LatticeSampler", "PairsInQuadsSampler",
+                              "Pmj02Sampler", "StratifiedSampler", "ZSobolSampler"}) {
+    SCOPED_TRACE(sampler);
+    const auto fresh = [&] {
+      return job_of(ball_text(std::string("PathTracer { max_depth: 3, sampler: ") + sampler + " {} }"), 2 * step);
+    };
+    const std::unique_ptr<Render> straight = rendered(fresh(), two_threads);
+    EXPECT_TRUE(film(*rendered(fresh(), {.threads = 1})) == film(*straight));
+    part(fresh(), "a", IndexRange{0, 1});
+    part(fresh(), "b", IndexRange{1, 2});
+    EXPECT_TRUE(film(*continued(fresh(), folder / "a")) == film(*straight));
+    expect_same(merge_checkpoints({folder / "b", folder / "a"}), *straight);
+  }
+}
+
 /// Returns more radiance with each step.
 class LearningProcess final : public RenderProcess {
  public:

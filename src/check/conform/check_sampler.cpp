@@ -1,4 +1,5 @@
-// Checks of every sampler: numbers in [0, 1), reproducible, uniform, and independent across dimensions, pixels and seeds.
+// Checks of every sampler: numbers in [0, 1), reproducible, uniform, independent across dimensions, pixels and seeds, and
+// spread over the samples of a pixel.
 
 #include "etendue/sampler.h"
 
@@ -121,12 +122,37 @@ void check_spread(Trial& trial, const Sampler& sampler) {
   }
 }
 
+/// Tests that the samples of one pixel have orders of their own in different dimensions: otherwise the mean over a pixel's
+/// samples would not converge to the integral over both dimensions, although each sample, and each dimension, is uniform. The
+/// mean squared correlation of n independent numbers is 1 / (n - 1), that of nested random permutations somewhat more.
+void check_shuffled(Trial& trial, const Sampler& sampler) {
+  constexpr std::uint32_t n = 64;
+  const int pixels = trial.samples(200);
+  for (const auto& [one, two] : {std::pair{0u, 2u}, {0u, 7u}, {7u, 10u}, {10u, 13u}, {13u, 16u}}) {
+    double squares = 0;
+    for (int pixel = 0; pixel < pixels; ++pixel) {
+      double x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const SampleKey key(11, pixel, 8, i);
+        const auto u = double(sampler.pair(key, one).x) - 0.5, v = double(sampler.pair(key, two).y) - 0.5;
+        x += u / n, y += v / n, xx += u * u / n, yy += v * v / n, xy += u * v / n;
+      }
+      const double variances = (xx - x * x) * (yy - y * y);
+      squares += variances > 0 ? (xy - x * y) * (xy - x * y) / variances / pixels : 0;
+    }
+    trial.expect(squares < 0.15, "samples of a pixel are independent between dimensions", [&, a = one, b = two] {
+      return fmt::format("dimensions {} and {}: mean squared correlation {:.3f}", a, b, squares);
+    });
+  }
+}
+
 void check_sampler(Trial& trial) {
   const Sampler& sampler = trial.part<Sampler>();
   check_range(trial, sampler);
   check_uniform(trial, sampler);
   check_independent(trial, sampler);
   check_spread(trial, sampler);
+  check_shuffled(trial, sampler);
 }
 
 const RegisterCheck<Sampler> registered(check_sampler);

@@ -165,13 +165,32 @@ void Writer::film() {
   out_ += "\n";
 }
 
+namespace {
+
+/// The type of the sampler and its parameters.
+std::string sampler_of(const Component* sampler, int samples) {
+  const std::string name = sampler ? sampler->class_info().name : "";
+  if (name == "StratifiedSampler") {
+    const double x = number_of(*sampler, "x"), y = number_of(*sampler, "y");
+    if (x * y == samples) return fmt::format("\"stratified\" \"integer xsamples\" {} \"integer ysamples\" {}", x, y);
+  }
+  const std::pair<const char*, const char*> known[] = {{"IndependentSampler", "independent"},
+                                                       {"HaltonSampler", "halton"},
+                                                       {"Pmj02Sampler", "pmj02bn"},
+                                                       {"ZSobolSampler", "zsobol"}};
+  const char* type = "paddedsobol";
+  for (const auto& [ours, theirs] : known)
+    if (name == ours) type = theirs;
+  return fmt::format("\"{}\" \"integer pixelsamples\" {}", type, samples);
+}
+
+}  // namespace
+
 void Writer::integrator() {
   const Component& renderer = *job.renderer;
   const std::string name = renderer.class_info().name;
   const Ref<Component> sampler = renderer.class_info().find("sampler") ? part_of(renderer, "sampler") : nullptr;
-  const bool independent = sampler && sampler->class_info().name == "IndependentSampler";
-  out_ += fmt::format("Sampler \"{}\" \"integer pixelsamples\" {}\n", independent ? "independent" : "zsobol",
-                      job.renderer->samples);
+  out_ += "Sampler " + sampler_of(sampler.get(), job.renderer->samples) + "\n";
   const std::pair<const char*, const char*> known[] = {
       {"PathTracer", "volpath"},           {"BidirectionalPathTracer", "bdpt"},
       {"LightTracer", "lightpath"},        {"PathSpaceMetropolis", "mlt"},

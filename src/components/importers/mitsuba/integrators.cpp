@@ -66,6 +66,14 @@ Ref<Component> Converter::renderer(const Element& scene, const Element* integrat
     if (std::ranges::find(known, sampler->type) == known.end()) stand_in(*sampler, known, "the usual one stands for it");
     set_member(*made, "samples", double(sampler->integer("sample_count", 4)), sampler->location_of("sample_count"));
     if (sampler->type == "independent") set_member(*made, "sampler", make("IndependentSampler", *sampler), sampler->at);
+    if (sampler->type == "halton") set_member(*made, "sampler", make("HaltonSampler", *sampler), sampler->at);
+    if (sampler->type == "stratified") {
+      // A square grid of at least as many cells.
+      const Ref<Component> grid = make("StratifiedSampler", *sampler);
+      const double side = std::ceil(std::sqrt(std::clamp(double(sampler->integer("sample_count", 4)), 1.0, 4096.0 * 4096)));
+      for (const char* along : {"x", "y"}) set_member(*grid, along, side, sampler->at);
+      set_member(*made, "sampler", grid, sampler->at);
+    }
     sampler->ignore({"scramble", "jitter", "strength", "dimension"});
   }
   return made;

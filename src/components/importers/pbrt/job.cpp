@@ -25,7 +25,7 @@ int samples(Reader& reader) {
 
 Ref<Component> sampler(Reader& reader) {
   const Setting& s = reader.sampler;
-  const bool independent = s.type == "independent" || s.type == "random" || s.type == "stratified";
+  const bool independent = s.type == "independent" || s.type == "random";
   const char* known[] = {"",           "zsobol",      "sobol",      "paddedsobol",    "halton",     "pmj02bn",        "random",
                          "stratified", "independent", "02sequence", "lowdiscrepancy", "maxmindist", "zerotwosequence"};
   if (std::ranges::none_of(known, [&](const char* k) { return s.type == k; }))
@@ -33,7 +33,28 @@ Ref<Component> sampler(Reader& reader) {
   if (s.parameters.has("seed")) reader.seed = s.parameters.integer("seed", 0);
   // The choice of points does not change the image that rendering converges to.
   s.parameters.ignore({"randomization", "dimensions", "samplepixelcenter"});
-  return reader.make(independent ? "IndependentSampler" : "SobolSampler", s.parameters.at);
+  const Location& at = s.parameters.at;
+  const auto count = [&](const char* name, int otherwise, int most) {
+    return double(std::clamp(s.parameters.integer(name, otherwise), 1, most));
+  };
+  if (s.type == "stratified") {
+    const Ref<Component> made = reader.make("StratifiedSampler", at);
+    set_member(*made, "x", count("xsamples", 4, 4096), at);
+    set_member(*made, "y", count("ysamples", 4, 4096), at);
+    return made;
+  }
+  if (s.type == "zsobol") {
+    const Ref<Component> made = reader.make("ZSobolSampler", at);
+    set_member(*made, "samples", count("pixelsamples", 16, 1 << 20), at);
+    return made;
+  }
+  if (s.type == "pmj02bn") {
+    const Ref<Component> made = reader.make("Pmj02Sampler", at);
+    set_member(*made, "blue_noise", true, at);
+    return made;
+  }
+  if (s.type == "halton") return reader.make("HaltonSampler", at);
+  return reader.make(independent ? "IndependentSampler" : "SobolSampler", at);
 }
 
 }  // namespace
