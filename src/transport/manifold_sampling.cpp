@@ -13,6 +13,11 @@ namespace {
 /// error.
 constexpr int most_trials = 1 << 20;
 
+/// The probability with which seeds choose reflection where a surface refracts as well.
+constexpr float reflection_chosen = 0.2f;
+
+constexpr bool single(Lobes lobes) { return (lobes & (lobes - 1)) == 0; }
+
 /// Whether the pdf with which directions to a luminaire at infinity are sampled tells where its light is. Light that comes from
 /// everywhere is found better by scattered rays. The light of the luminaire, if it came evenly from some solid angle, would
 /// come from (mean of L / p)^2 / mean of L^2 / p [sr].
@@ -105,30 +110,61 @@ Vector3 ManifoldSampler::seed_direction(const Trial& t) const {
   return length_squared(way) > 0 ? normalize(way) : warp::sphere(u);
 }
 
-/// Traces a seed chain. `wanted`: the lobes without which it is of no use. False: there is none.
-bool ManifoldSampler::seed(const Trial& t, Vector3& direction, ChainLobes& lobes, const ChainLobes* wanted) const {
-  const ArenaScope memory(t.arena);
-  direction = seed_direction(t);
-  ChainTracer chain(scene_, t.wavelengths, t.numbers, t.arena);
-  chain.begin(t.receiver, direction);
-  lobes.count = 0;
-  while (lobes.count < t.longest) {
-    if (!chain.meet() || !chain.lobes_here()) break;
-    // Inside a body few chains end: they need a luminaire in there.
-    if (lobes.count > 0 && t.uniform() < (chain.inside() ? 0.05f : 0.5f)) break;
-    const Lobe lobe = t.uniform() < chain.reflection_probability() ? specular_reflection : specular_transmission;
-    if (wanted && (lobes.count == wanted->count || wanted->at[size_t(lobes.count)] != lobe)) return false;
-    if (!chain.scatter_by(lobe)) return false;
-    lobes.add(lobe);
-  }
-  return lobes.count > 0 && (!wanted || lobes.count == wanted->count);
-}
-
-std::optional<ChainSolution> ManifoldSampler::solve(const Trial& t, const ChainLobes* wanted) const {
+/// A chain at the start of Newton's method, or its lobes.
+struct ManifoldSampler::Seed {
   Vector3 direction;
   ChainLobes lobes;
-  if (!seed(t, direction, lobes, wanted)) return {};
-  return solve_chain(scene_, t.receiver, t.wavelengths, t.numbers, t.arena, direction, lobes, t.target);
+  std::uint32_t chosen = 0;  ///< bit i: the i-th vertex has both lobes, so that one was chosen
+
+  /// The probability of the choices.
+  float probability() const {
+    float p = 1;
+    for (int i = 0; i < lobes.count; ++i)
+      if (chosen >> i & 1) p *= lobes.at[size_t(i)] == specular_reflection ? reflection_chosen : 1 - reflection_chosen;
+    return p;
+  }
+};
+
+/// Traces a seed; with the lobes and choices of `wanted`, if given. False: there is none.
+bool ManifoldSampler::seed(const Trial& t, const Seed* wanted, Seed& seed) const {
+  const ArenaScope memory(t.arena);
+  seed.direction = seed_direction(t);
+  seed.lobes.count = 0;
+  seed.chosen = 0;
+  ChainTracer chain(scene_, t.wavelengths, t.numbers, t.arena);
+  chain.begin(t.receiver, seed.direction);
+  while (seed.lobes.count < t.longest && chain.meet()) {
+    const int i = seed.lobes.count;
+    const Lobes here = chain.lobes_here();
+    if (here == no_lobes) break;
+    // Inside a body few chains end: they need a luminaire in there.
+    if (i > 0 && t.uniform() < (chain.inside() ? 0.05f : 0.5f)) break;
+    auto lobe = Lobe(here);
+    if (!single(here)) {
+      seed.chosen |= 1u << i;
+      lobe = wanted                            ? wanted->lobes.at[size_t(i)]
+             : t.uniform() < reflection_chosen ? specular_reflection
+                                               : specular_transmission;
+    }
+    if (wanted && (i == wanted->lobes.count || lobe != wanted->lobes.at[size_t(i)] ||
+                   (seed.chosen >> i & 1) != (wanted->chosen >> i & 1)))
+      return false;
+    if (!chain.scatter_by(lobe)) return false;
+    seed.lobes.add(lobe);
+  }
+  return seed.lobes.count > 0 && (!wanted || seed.lobes.count == wanted->lobes.count);
+}
+
+/// Whether the chain that starts in a direction, and has the lobes of a seed, would have had the same choices.
+bool ManifoldSampler::chose_as(const Trial& t, const Seed& seed, const Vector3& direction) const {
+  const ArenaScope memory(t.arena);
+  ChainTracer chain(scene_, t.wavelengths, t.numbers, t.arena);
+  chain.begin(t.receiver, direction);
+  for (int i = 0; i < seed.lobes.count; ++i)
+    if (!chain.meet() || single(chain.lobes_here()) == bool(seed.chosen >> i & 1) ||
+        !chain.scatter_by(seed.lobes.at[size_t(i)]))
+      return false;
+  return true;
 }
 
 /// The light of a chain, without 1 / p_k.
@@ -189,27 +225,34 @@ void ManifoldSampler::sample(const PathVertex& receiver, const Wavelengths& wave
   t.target = {t.sampled.point.position, t.sampled.direction, luminaire->infinite()};
   t.density = probability(*luminaire) * double(t.sampled.pdf);
 
+  const auto solve = [&](const Seed& from, ChainTracer::Derivatives derivatives) {
+    return solve_chain(scene_, receiver, wavelengths, t.numbers, arena, from.direction, from.lobes, t.target, derivatives);
+  };
+  Seed first;
   if (!settings_.unbiased) {
     std::vector<ChainSolution> found;
     for (int i = 0; i < settings_.seeds; ++i) {
-      const std::optional<ChainSolution> solution = solve(t, nullptr);
+      if (!seed(t, nullptr, first)) continue;
+      const std::optional<ChainSolution> solution = solve(first, ChainTracer::Derivatives::exact);
       if (!solution || std::ranges::any_of(found, [&](const ChainSolution& old) { return old.same(*solution); })) continue;
       found.push_back(*solution);
       if (const std::optional<ChainLight> light = light_of(t, *solution)) add(*light);
     }
     return;
   }
-  const std::optional<ChainSolution> solution = solve(t, nullptr);
-  if (!solution) return;
+  if (!seed(t, nullptr, first)) return;
+  const std::optional<ChainSolution> solution = solve(first, ChainTracer::Derivatives::exact);
+  if (!solution || !chose_as(t, first, solution->direction)) return;
   std::optional<ChainLight> light = light_of(t, *solution);
   if (!light) return;
   int trials = 1;
-  for (; trials < most_trials; ++trials) {
-    const std::optional<ChainSolution> again = solve(t, &solution->lobes);
-    if (again && solution->same(*again)) break;
+  for (Seed next; trials < most_trials; ++trials) {
     if ((trials & 255) == 0 && aborted()) return;
+    if (!seed(t, &first, next)) continue;
+    const std::optional<ChainSolution> again = solve(next, ChainTracer::Derivatives::approximate);
+    if (again && solution->same(*again)) break;
   }
-  light->light *= float(trials);
+  light->light *= float(trials) / first.probability();
   add(*light);
 }
 
@@ -221,7 +264,7 @@ ManifoldSampler::Pdf ManifoldSampler::pdf(const Ray& start, const MediumStack& m
   if (!(chosen > 0) || lobes.count > settings_.longest) return {};
   const ArenaScope memory(arena);
   ChainTracer chain(scene_, wavelengths, numbers, arena);
-  chain.differentiates = true;
+  chain.derivatives = ChainTracer::Derivatives::exact;
   chain.begin(start, media);
   if (!chain.follow(lobes)) return {};
   const ChainTarget target{luminaire.position, direction, object.infinite()};

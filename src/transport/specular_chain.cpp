@@ -69,14 +69,11 @@ bool ChainTracer::meet() {
   return false;
 }
 
-float ChainTracer::reflection_probability() const {
-  const Lobes lobes = lobes_here();
-  if (lobes == specular_reflection) return 1;
-  if (lobes == specular_transmission) return 0;
-  const Vector3 out = -ray.direction;
-  const float reflected = scatter_->albedo(out, specular_reflection).average(),
-              refracted = scatter_->albedo(out, specular_transmission).average();
-  return reflected + refracted > 0 ? reflected / (reflected + refracted) : 0.5f;
+Lobes ChainTracer::lobes_here() const {
+  if (!scatter_) return no_lobes;
+  const Lobes lobes = scatter_->lobes() & (specular_reflection | specular_transmission);
+  if (lobes != (specular_reflection | specular_transmission)) return lobes;
+  return scatter_->albedo(-ray.direction, specular_transmission).black() ? Lobes(specular_reflection) : lobes;
 }
 
 bool ChainTracer::scatter_by(Lobe lobe) {
@@ -169,7 +166,7 @@ bool ChainTracer::differentiate(Lobe lobe, const Vector3& to, float eta) {
   }
   const Vector3 expected = (1 / eta) * D + along * N;
   if (!(length_squared(expected - to) < 1e-7f)) return false;
-  if (!differentiates) return true;
+  if (derivatives == Derivatives::none) return true;
 
   const Frame tangent(point_.normal);
   Vector3 bend[2];
@@ -193,17 +190,55 @@ bool ChainTracer::differentiate(Lobe lobe, const Vector3& to, float eta) {
 bool ChainTracer::normal_derivatives(const Frame& tangent, Vector3 change[2]) const {
   // So long that rounding is small beside the change of the normal, and short beside the shape where that is possible.
   float step = 1e-3f * distance(from, point_.position);
+  if (hit_.depth == 0)
+    if (const auto triangles = still_triangles(*hit_.object)) return normal_on_triangle(*triangles, tangent, step, change);
   for (int attempt = 0; attempt < 3; ++attempt, step /= 6)
     if (normal_differences(tangent, step, change)) return true;
   return false;
 }
 
+/// On a triangle, by its barycentric coordinates.
+bool ChainTracer::normal_on_triangle(const TriangleView& view, const Frame& tangent, float step, Vector3 change[2]) const {
+  const auto& corners = view.triangles[hit_.primitive];
+  const Point3 p0 = view.positions[corners[0]];
+  const Vector3 edge[2] = {view.positions[corners[1]] - p0, view.positions[corners[2]] - p0};
+  const bool perturbed = scatter_->frame().n != point_.shading_normal;
+  Vector3 by[2];  // derivatives by the coordinates
+  for (int i = 0; i < 2; ++i) {
+    // An interpolated normal is nearly a linear function of them; one of a bump map has detail.
+    const float most = perturbed ? std::min(0.004f, step / length(edge[i])) : 0.004f;
+    float at[2];
+    Vector3 normal[2];
+    for (int way = 0; way < 2; ++way) {
+      Hit beside = hit_;
+      (i == 0 ? beside.u : beside.v) += way == 0 ? most : -most;
+      SurfacePoint there;
+      scene_.locate_alone(ray, beside, there);  // it moves points outside into the triangle
+      at[way] = i == 0 ? there.u : there.v;
+      normal[way] = Vector3(model_normal(there));
+    }
+    if (!(at[0] - at[1] > 0.1f * most)) return false;
+    by[i] = (normal[0] - normal[1]) / (at[0] - at[1]);
+  }
+  const float aa = dot(edge[0], edge[0]), ab = dot(edge[0], edge[1]), bb = dot(edge[1], edge[1]),
+              determinant = aa * bb - ab * ab;
+  if (!(determinant > 0)) return false;
+  for (int axis = 0; axis < 2; ++axis) {
+    const Vector3 along = axis == 0 ? tangent.s : tangent.t;
+    const float a = dot(edge[0], along), b = dot(edge[1], along);
+    change[axis] = ((bb * a - ab * b) * by[0] + (aa * b - ab * a) * by[1]) / determinant;
+  }
+  return true;
+}
+
+/// By differences between normals at two points on both sides, or at one of them if the other is not on the primitive.
 bool ChainTracer::normal_differences(const Frame& tangent, float step, Vector3 change[2]) const {
   const Vector3 here(scatter_->frame().n);
   for (int axis = 0; axis < 2; ++axis) {
     const Vector3 along = axis == 0 ? tangent.s : tangent.t;
     std::optional<Vector3> d[2];
     for (int way = 0; way < 2; ++way) {
+      if (way == 1 && d[0] && derivatives == Derivatives::approximate) continue;
       std::optional<SurfacePoint> there = on_same_primitive((way == 0 ? step : -step) * along, step);
       if (!there) continue;
       const float moved = dot(there->position - point_.position, along);
@@ -229,18 +264,24 @@ std::optional<SurfacePoint> ChainTracer::on_same_primitive(const Vector3& off, f
   probe.origin = point_.position + off + outwards;
   probe.maximum = 2 * reach;
   probe.time = ray.time;
-  HitList hits;
-  scene_.all(probe, hits);
-  const Hit* best = nullptr;
-  for (int i = 0; i < hits.size; ++i) {
-    const Hit& h = hits.hits[i];
-    bool same = h.object == hit_.object && h.primitive == hit_.primitive && h.depth == hit_.depth;
-    for (int k = 0; same && k < h.depth; ++k) same = h.scenes[k] == hit_.scenes[k];
-    if (same && (!best || std::abs(h.distance - reach) < std::abs(best->distance - reach))) best = &h;
+  Hit beside;
+  if (hit_.depth == 0) {
+    if (!hit_.object->intersect(probe, beside) || beside.primitive != hit_.primitive) return {};
+    // An object of objects, a solid of solids, may have found another part.
+    if (beside.object != hit_.object || beside.depth != 0) return {};
+  } else {
+    HitList hits;
+    scene_.all(probe, hits);
+    for (int i = 0; i < hits.size; ++i) {
+      const Hit& h = hits.hits[i];
+      bool same = h.object == hit_.object && h.primitive == hit_.primitive && h.depth == hit_.depth;
+      for (int k = 0; same && k < h.depth; ++k) same = h.scenes[k] == hit_.scenes[k];
+      if (same && std::abs(h.distance - reach) < std::abs(beside.distance - reach)) beside = h;
+    }
+    if (!beside) return {};
   }
-  if (!best) return {};
   SurfacePoint there;
-  scene_.locate_alone(probe, *best, there);
+  scene_.locate_alone(probe, beside, there);
   if (!(dot(there.normal, point_.normal) > 0)) return {};
   return there;
 }
@@ -293,17 +334,17 @@ double chain_residual(const ChainTracer& chain, const ChainTarget& target, Chain
 
 std::optional<ChainSolution> solve_chain(const Scene& scene, const PathVertex& receiver, const Wavelengths& wavelengths,
                                          NumberStream& numbers, Arena& arena, const Vector3& guess, const ChainLobes& lobes,
-                                         const ChainTarget& target) {
-  constexpr int most_steps = 20;
-  constexpr double enough = 1e-6, rounding = 3e-5;  // |r| at which the search ends, and that of a root that has no better one
+                                         const ChainTarget& target, ChainTracer::Derivatives derivatives) {
+  constexpr int most_steps = 16, most_failures = 4;
+  constexpr double enough = 1e-5, rounding = 3e-5;  // |r| at which the search ends, and that of a root that has no better one
   struct Trial {
     ChainSolution at;
     double r[2] = {}, off = 0;
   };
-  const auto trial = [&](const Vector3& direction, Trial& t) {
+  const auto trial = [&](const Vector3& direction, ChainTracer::Derivatives which, Trial& t) {
     const ArenaScope memory(arena);
     ChainTracer chain(scene, wavelengths, numbers, arena);
-    chain.differentiates = true;
+    chain.derivatives = which;
     chain.begin(receiver, direction);
     if (!chain.follow(lobes)) return false;
     t.at.direction = direction;
@@ -312,8 +353,9 @@ std::optional<ChainSolution> solve_chain(const Scene& scene, const PathVertex& r
     return std::isfinite(t.off) && std::isfinite(t.at.determinant) && t.at.determinant != 0;
   };
   Trial here, there;
-  if (!trial(guess, here)) return {};
+  if (!trial(guess, ChainTracer::Derivatives::approximate, here)) return {};
   double longest = 0.3;  // of a step [rad]
+  int failures = 0;
   for (int i = 0; i < most_steps && here.off > enough; ++i) {
     const auto& J = here.at.jacobian;
     const double u = (J[0][1] * here.r[1] - J[1][1] * here.r[0]) / here.at.determinant,
@@ -321,16 +363,17 @@ std::optional<ChainSolution> solve_chain(const Scene& scene, const PathVertex& r
     const double length = std::hypot(u, v), part = length > longest ? longest / length : 1;
     const Frame across{Normal3(here.at.direction)};
     const Vector3 next = normalize(here.at.direction + float(part * u) * across.s + float(part * v) * across.t);
-    if (trial(next, there) && there.off < here.off) {
+    if (trial(next, ChainTracer::Derivatives::approximate, there) && there.off < here.off) {
       here = there;
       longest = std::min(0.3, 2 * std::min(longest, length));
       continue;
     }
     if (here.off < rounding) break;
+    if (++failures > most_failures) return {};
     longest = part * length / 4;
-    if (longest < 1e-6) return {};
   }
   if (here.off > rounding) return {};
+  if (derivatives == ChainTracer::Derivatives::exact && !trial(here.at.direction, derivatives, here)) return {};
   return here.at;
 }
 

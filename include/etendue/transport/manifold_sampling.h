@@ -18,8 +18,10 @@
 //
 // Seeds. p_k need not be known, so seeds may come from anywhere, if only each chain has some seeds that lead to it. Half start
 // about straight towards a, as in manifold next event estimation (Hanika, Droske & Fascione 2015), since refraction bends light
-// little; the others towards a random point in the box around a random object that casts caustics. At each surface reflection
-// or refraction is chosen by its albedo, and the chain ends at random.
+// little; the others towards a random point in the box around a random object that casts caustics. Where a surface both
+// reflects and refracts, reflection is chosen with a constant probability, and the chain ends at random. A seed belongs to a
+// chain if it has the same lobes, and had the same choices of lobes; so the probability of its lobes is a known factor of p_k,
+// and the N seeds have them by construction: N is then no greater for dim chains, which are reflected several times.
 //
 // Each path counts once. Emitter hits of the camera path find the same light, with the pdf of the receiver's direction times
 // the share of power that the lobes scatter, p_b = p(w) share. Manifold sampling has the pdf p_m = P p(a) |da / dw| / p_k; p_k
@@ -89,9 +91,10 @@ class ManifoldSampler {
   struct Trial;
   const SceneObject* choose(float u) const;
   double probability(const SceneObject& luminaire) const;
-  bool seed(const Trial&, Vector3& direction, ChainLobes& lobes, const ChainLobes* wanted) const;
+  struct Seed;
+  bool seed(const Trial&, const Seed* wanted, Seed&) const;
+  bool chose_as(const Trial&, const Seed&, const Vector3& direction) const;
   Vector3 seed_direction(const Trial&) const;
-  std::optional<ChainSolution> solve(const Trial&, const ChainLobes* wanted) const;
   std::optional<ChainLight> light_of(const Trial&, const ChainSolution&) const;
 
   const Scene& scene_;

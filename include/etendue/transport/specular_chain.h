@@ -30,6 +30,7 @@
 #include <array>
 #include <optional>
 
+#include "etendue/mesh_facts.h"
 #include "etendue/transport/path_vertex.h"
 
 namespace etendue {
@@ -86,11 +87,8 @@ class ChainTracer {
   bool meet();
   /// Scatters the ray at that surface by a specular lobe. False: the surface lacks the lobe, or it cannot be followed.
   bool scatter_by(Lobe);
-  /// The probability with which chains choose reflection there rather than refraction.
-  float reflection_probability() const;
-  Lobes lobes_here() const {
-    return scatter_ ? Lobes(scatter_->lobes() & (specular_reflection | specular_transmission)) : no_lobes;
-  }
+  /// The specular lobes that scatter light there; without transmission where reflection is total.
+  Lobes lobes_here() const;
   /// Whether the ray is in a refracting body.
   bool inside() const { return tracks_ && media_.current() && has_own_index(*media_.current()); }
   /// All of a chain. False: it cannot be followed.
@@ -99,8 +97,11 @@ class ChainTracer {
   /// multiplies `weight` by the transmittance.
   bool reaches(const SurfacePoint& luminaire, const ChainTarget&);
 
-  bool differentiates = false;  ///< whether derivatives are computed
-  bool attenuates = false;      ///< whether `weight` includes the transmittance of media
+  /// Whether derivatives are computed: with differences of normals to one side, for steps of Newton's method, or as exactly as
+  /// they can be.
+  enum class Derivatives : std::uint8_t { none, approximate, exact };
+  Derivatives derivatives = Derivatives::none;
+  bool attenuates = false;  ///< whether `weight` includes the transmittance of media
 
   Ray ray;                  ///< leaves the last vertex
   Point3 from;              ///< the last vertex
@@ -117,6 +118,7 @@ class ChainTracer {
   bool differentiate(Lobe, const Vector3& to, float eta);
   bool normal_derivatives(const Frame& tangent, Vector3 change[2]) const;
   bool normal_differences(const Frame& tangent, float step, Vector3 change[2]) const;
+  bool normal_on_triangle(const TriangleView&, const Frame& tangent, float step, Vector3 change[2]) const;
   std::optional<SurfacePoint> on_same_primitive(const Vector3& off, float reach) const;
   Normal3 model_normal(SurfacePoint&) const;
 
@@ -135,8 +137,9 @@ class ChainTracer {
 /// |r|.
 double chain_residual(const ChainTracer&, const ChainTarget&, ChainSolution& solution, double r[2]);
 
-/// Newton's method from a direction. Empty: no root was found.
+/// Newton's method from a direction. Empty: no root was found. `derivatives`: those at the root.
 std::optional<ChainSolution> solve_chain(const Scene&, const PathVertex& receiver, const Wavelengths&, NumberStream&, Arena&,
-                                         const Vector3& guess, const ChainLobes&, const ChainTarget&);
+                                         const Vector3& guess, const ChainLobes&, const ChainTarget&,
+                                         ChainTracer::Derivatives derivatives);
 
 }  // namespace etendue
