@@ -335,7 +335,8 @@ double chain_residual(const ChainTracer& chain, const ChainTarget& target, Chain
 std::optional<ChainSolution> solve_chain(const Scene& scene, const PathVertex& receiver, const Wavelengths& wavelengths,
                                          NumberStream& numbers, Arena& arena, const Vector3& guess, const ChainLobes& lobes,
                                          const ChainTarget& target, ChainTracer::Derivatives derivatives) {
-  constexpr int most_steps = 16, most_failures = 4;
+  constexpr int most_steps = 10, most_failures = 2;
+  constexpr double farthest = 1;                    // |r| from which a search begins: from farther, few come to a root
   constexpr double enough = 1e-5, rounding = 3e-5;  // |r| at which the search ends, and that of a root that has no better one
   struct Trial {
     ChainSolution at;
@@ -353,7 +354,7 @@ std::optional<ChainSolution> solve_chain(const Scene& scene, const PathVertex& r
     return std::isfinite(t.off) && std::isfinite(t.at.determinant) && t.at.determinant != 0;
   };
   Trial here, there;
-  if (!trial(guess, ChainTracer::Derivatives::approximate, here)) return {};
+  if (!trial(guess, ChainTracer::Derivatives::approximate, here) || here.off > farthest) return {};
   double longest = 0.3;  // of a step [rad]
   int failures = 0;
   for (int i = 0; i < most_steps && here.off > enough; ++i) {

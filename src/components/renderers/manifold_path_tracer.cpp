@@ -134,7 +134,7 @@ class ManifoldProcess final : public RenderProcess {
     while (walk.next_vertex(met) && !walk.at_end()) {
       const NumberStream::Bounce u = walk.next_bounce();
       walk.add_direct(lights, u, settings_.heuristic);
-      add_chains(walk);
+      add_chains(walk, behind.begun ? attempted : 1);
       if (walk.splits(splitting)) {
         const Vector3 out = walk.vertex.out;
         const Normal3 normal = walk.vertex.point.normal;
@@ -149,17 +149,23 @@ class ManifoldProcess final : public RenderProcess {
     return walk.radiance;
   }
 
-  /// Light that comes to the last vertex through chains.
+  /// The probability with which chains are searched at smooth vertices behind the first, whose light is blurred: a search costs
+  /// more than many segments of a path.
+  static constexpr float attempted = 0.25f;
+
+  /// Light that comes to the last vertex through chains, which are searched with a probability.
   template <class Walk>
-  void add_chains(Walk& walk) const {
+  void add_chains(Walk& walk, float probability) const {
     const int longest = settings_.max_depth - walk.length - 1;
     if (longest < 1 || !walk.vertex.scatters_smoothly() || !manifold_.useful()) return;
+    NumberStream numbers = walk.numbers.fork("chains", std::uint32_t(walk.length));
+    if (probability < 1 && numbers.next() >= probability) return;
     manifold_.sample(
-        walk.vertex, walk.sample.wavelengths, longest, walk.numbers.fork("chains", std::uint32_t(walk.length)),
-        walk.sample.arena, [&] { return walk.sample.aborted(); },
+        walk.vertex, walk.sample.wavelengths, longest, numbers, walk.sample.arena, [&] { return walk.sample.aborted(); },
         [&](const ChainLight& chain) {
-          walk.add_light(chain.vertices + 1, chain.light, chain.luminaire, chain.path, chain.in);
-          walk.sample.sink.next_event(walk.throughput * chain.light, walk.length + chain.vertices + 1, chain.weight);
+          const Spectrum light = chain.light / probability;
+          walk.add_light(chain.vertices + 1, light, chain.luminaire, chain.path, chain.in);
+          walk.sample.sink.next_event(walk.throughput * light, walk.length + chain.vertices + 1, chain.weight);
         });
   }
 
