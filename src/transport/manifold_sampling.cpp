@@ -24,7 +24,12 @@ constexpr bool single(Lobes lobes) { return (lobes & (lobes - 1)) == 0; }
 bool comes_from_everywhere(const SceneObject& luminaire, const Scene& scene) {
   constexpr int samples = 256;
   constexpr double most = 1;  // [sr]
-  const Wavelengths wavelengths({450, 530, 560, 600}, {1, 1, 1, 1});
+  std::array<float, spectrum_size> lambda{}, pdf{};
+  for (int i = 0; i < spectrum_size; ++i) {
+    lambda[size_t(i)] = lerp((float(i) + 0.5f) / spectrum_size, 430.0f, 650.0f);
+    pdf[size_t(i)] = 1.0f / 220;
+  }
+  const Wavelengths wavelengths(lambda, pdf);
   double sum = 0, squares = 0;
   for (int i = 0; i < samples; ++i) {
     // The R2 sequence (Roberts 2018).
