@@ -23,7 +23,7 @@ SCENES = ["cornell_box", "glossy_box", "caustic_through_glass", "door_ajar", "sm
           "tilted_normals"]
 CONSISTENT = "BidirectionalPathTracer,VertexConnectionMerging,ProgressivePhotonMapper"
 SHORT = {"PathTracer": "Path", "AdaptiveSampling": "Adaptive", "BidirectionalPathTracer": "Bidirectional", "DistributionRenderer": "Distribution",
-         "GuidedPathTracer": "Guided", "InstantRadiosity": "Instant", "LightTracer": "Light", "ManyLights": "ManyLights",
+         "GuidedPathTracer": "Guided", "InstantRadiosity": "Instant", "LightTracer": "Light", "ManifoldPathTracer": "Manifold", "ManyLights": "ManyLights",
          "MultiplexedMetropolis": "Multiplexed", "PathSpaceMetropolis": "PathSpace", "PrimarySampleMetropolis": "PrimarySample",
          "VertexConnectionMerging": "VCM", "ProgressivePhotonMapper": "SPPM"}
 

@@ -13,12 +13,12 @@ constexpr size_t most_spheres = 64;
 
 /// Whether an object, or one inside it, has specular lobes and so casts caustics. `instead`: the shader that replaces those of
 /// all objects inside; null: their own.
-bool throws_on(const SceneObject& object, const Shader* instead) {
+bool specular_within(const SceneObject& object, const Shader* instead) {
   const Shader* shader = instead ? instead : object.shader.get();
   if (const Scene* inner = scene_within(object)) {
     const bool replaces = inner != &object;
     for (const Ref<SceneObject>& each : inner->objects)
-      if (throws_on(*each, replaces ? shader : instead)) return true;
+      if (specular_within(*each, replaces ? shader : instead)) return true;
     return false;
   }
   return shader && (shader->possible_lobes() & mirrors);
@@ -26,9 +26,11 @@ bool throws_on(const SceneObject& object, const Shader* instead) {
 
 }  // namespace
 
+bool casts_caustics(const SceneObject& object) { return specular_within(object, nullptr); }
+
 ProjectionMap::ProjectionMap(const Scene& scene) {
   for (const Ref<SceneObject>& object : scene.objects) {
-    if (object->infinite() || object->delta() || !throws_on(*object, nullptr)) continue;
+    if (object->infinite() || object->delta() || !casts_caustics(*object)) continue;
     if (object->unbounded()) return;
     const Bounds3 bounds = object->bounds();
     if (!bounds.empty()) spheres_.push_back({bounds.centre(), length(bounds.diagonal()) / 2});

@@ -9,6 +9,9 @@
 
 namespace etendue {
 
+/// Whether an object, or one inside it, has specular lobes (null scattering aside), and so casts caustics.
+bool casts_caustics(const SceneObject&);
+
 class ProjectionMap {
  public:
   /// Bounding spheres of the objects of a prepared scene that have specular lobes; of very many such objects, neighbours share
