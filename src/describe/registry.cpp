@@ -322,8 +322,8 @@ void Registry::load_plugin(const std::string& path) {
   }
   const std::string file = find_plugin(path);
   note_input(file);
-  // A shader's file may have changed since: its reader compares.
-  const bool shading = file.ends_with(".osl");
+  // A shader's file, or a document of such, may have changed since: its reader compares.
+  const bool shading = file.ends_with(".osl") || file.ends_with(".mtlx");
   {
     const std::lock_guard lock(state_->mutex);
     if (state_->plugins.contains(file) && !shading) return;
