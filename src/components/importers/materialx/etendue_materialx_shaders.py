@@ -202,8 +202,6 @@ class Generator:
         if opaque:
             frame.metadata["etendue_opaque"] = opaque
         dark = [frame.inner_name(key) for key in LIGHT_FROM.get(kind, ())]
-        if any(dark):
-            frame.metadata["etendue_dark"] = " ".join(f"{key}=0" for key in dark if key)
         emits = frame.result not in ("BSDF",) and "_edf" in frame.text and not any(frame.is_zero(key) for key in dark if key)
         emits = emits or "emission()" in frame.end
         return frame.written(name), emits
