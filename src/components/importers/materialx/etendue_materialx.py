@@ -34,9 +34,13 @@ class Files:
         self.folders = [os.path.realpath(folder) for folder in [os.path.dirname(path) or ".", *allowed]]
         self.read, self.open, self.bytes = [], [], 0
 
-    def require(self, path, named):
+    def allowed(self, path):
         real = os.path.realpath(path)
-        if not any(folder == "/" or real == folder or real.startswith(folder + "/") for folder in self.folders):
+        return any(folder == "/" or real == folder or real.startswith(folder + "/") for folder in self.folders)
+
+    def require(self, path, named):
+        if not self.allowed(path):
+            real = os.path.realpath(path)
             raise Refused(f"'{named}' is outside of the folder of '{self.path}'; --allow-path {os.path.dirname(real)} lets files be read there")
 
     def document(self, document, path, options):
@@ -82,7 +86,7 @@ def main():
     files = Files(path, sys.argv[2:])
     document = mx.createDocument()
     files.document(document, path, None)
-    made = Generator(document, os.path.dirname(path), files.require).run(os.path.splitext(os.path.basename(path))[0])
+    made = Generator(document, os.path.dirname(path), files).run(os.path.splitext(os.path.basename(path))[0])
     made["files"] = files.read
     json.dump(made, sys.stdout)
 

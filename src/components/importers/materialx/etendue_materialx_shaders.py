@@ -32,9 +32,9 @@ class Refused(Exception):
 
 
 class Generator:
-    def __init__(self, document, folder, require):
-        """`require(path, named)` throws unless the file may be read."""
-        self.document, self.folder, self.require = document, folder, require
+    def __init__(self, document, folder, files):
+        """`files.require(path, named)` throws unless the file may be read; `files.allowed(path)` says whether it may."""
+        self.document, self.folder, self.require, self.allowed = document, folder, files.require, files.allowed
         self.notes = []
         self.check()  # of the document alone, before the library is there
         path = mx.getDefaultDataSearchPath()
@@ -77,7 +77,8 @@ class Generator:
             raise Refused("it has no materials: neither surfacematerial nor shader nor output nodes")
         names, made = set(), []
         for element in elements[:MOST_MATERIALS]:
-            name = class_name(stem, element.getName() if len(elements) > 1 else "", names)
+            path = element.getNamePath() if element.getCategory() == "output" else element.getName()
+            name = class_name(stem, re.sub("/out$", "", path) if len(elements) > 1 else "", names)
             try:
                 made.append({"name": element.getNamePath(), "class": name, **self.material(element, name)})
             except (Refused, LookupError, TypeError, ValueError, RuntimeError, mx.Exception) as error:
@@ -119,6 +120,9 @@ class Generator:
         """All names of files become those of files that are there and may be read; the others are told."""
         mx.flattenFilenames(self.document)
         for element in self.document.traverseTree():
+            if element.getAttribute("colorspace") in SPACES:
+                element.setAttribute("colorspace", SPACES[element.getAttribute("colorspace")])
+        for element in self.document.traverseTree():
             make_linear(element)
             space = element.getAttribute("colorspace")
             if space and space != "none" and not self.known_space(space):
@@ -137,41 +141,35 @@ class Generator:
                 element.setAttribute("value", "")
 
     def image(self, named, element):
-        """Where a file is; of one with <UDIM> in its name, that name with its folder; empty: nowhere."""
+        """Where a file is; of one with <UDIM> in its name, that name with its folder; empty: nowhere. It is searched beside the
+        document that names it and, as MaterialX's programs have search paths, in the folders above that may be read; then by
+        its name without folders."""
         source = element.getActiveSourceUri()
         beside = os.path.dirname(source) if os.path.isabs(source) else self.folder
-        for folder in dict.fromkeys([beside, self.folder]):
-            path = os.path.normpath(os.path.join(folder, named))
-            mark = re.search("<(UDIM|UVTILE)>", path)
-            if mark and mark.group(1) == "UDIM" and os.path.isdir(os.path.dirname(path)):
-                pattern = re.compile(re.escape(os.path.basename(path)).replace("<UDIM>", r"\d{4}"))
-                if any(pattern.fullmatch(name) for name in os.listdir(os.path.dirname(path))):
+        above = [beside]
+        while len(above) < 32 and os.path.dirname(above[-1]) != above[-1] and self.allowed(os.path.dirname(above[-1])):
+            above.append(os.path.dirname(above[-1]))
+        for name in dict.fromkeys([named, os.path.basename(named)]):
+            for folder in dict.fromkeys([beside, self.folder, *above] if name == named else [beside]):
+                path = os.path.normpath(os.path.join(folder, name))
+                if is_image(path):
                     return path
-            elif os.path.isfile(path):
-                return path
         return ""
 
     def known_space(self, space):
-        if space in ("lin_rec709", "raw", "Raw"):
-            return True
-        kind = mx_shader.TypeDesc if hasattr(mx_shader, "TypeDesc") else None
-        try:
-            color3 = kind("color3") if kind else None
-            return self.colors.supportsTransform(mx_shader.ColorSpaceTransform(space, "lin_rec709", color3))
-        except Exception:  # what this version's classes are called is no reason to fail
-            return self.document.getDataLibrary().getNodeDef(f"ND_{space}_to_lin_rec709_color3") is not None
+        return space in ("lin_rec709", "raw", "Raw") or self.document.getNodeDef(f"ND_{space}_to_lin_rec709_color3") is not None
 
     # ---- shaders -------------------------------------------------------------------------------------------------------------
 
     def material(self, element, name):
         if element.getType() in ("volumeshader", "lightshader", "VDF") or element.getCategory() == "volumematerial":
             raise Refused("media and lights of their own are not read: it is neither a surface nor a value")
+        if element.getType() == "displacementshader":
+            raise Refused("it displaces surfaces and has no surface of its own")
         surface = surface_of(element)
         text, emits = self.surface(element, name, surface)
         made = {"text": text, "emits": emits, "displacement": "", "vector": False}
         moved = element.getConnectedNode("displacementshader") if element.getCategory() == "surfacematerial" else None
-        if element.getType() == "displacementshader":
-            raise Refused("it displaces surfaces and has no surface of its own")
         if moved is not None:
             made["displacement"], made["vector"] = self.displacement(moved, name + "Displacement")
         return made
@@ -190,6 +188,9 @@ class Generator:
                      "surfaceshader": "Ci = out.opacity * (out.bsdf + out.edf) + (1 - out.opacity) * transparent();",
                      "float": "Ci = color(out) * emission();", "int": "Ci = color(float(out)) * emission();", "color": "Ci = out * emission();",
                      "color4": "Ci = out.rgb * emission();", "vector": "Ci = color(out) * emission();",
+                     # Of matrices the diagonal, as MaterialX's own pictures of them.
+                     "matrix": "Ci = color(out[0][0], out[1][1], out[2][2]) * emission();",
+                     "matrix33": "Ci = color(out.m[0][0], out.m[1][1], out.m[2][2]) * emission();",
                      "vector2": "Ci = color(out.x, out.y, 0) * emission();", "vector4": "Ci = color(out.x, out.y, out.z) * emission();",
                      }.get(frame.result, "")
         if not frame.end:
@@ -240,6 +241,19 @@ class Generator:
         return found
 
 
+def is_image(path):
+    if "<UDIM>" not in path:
+        return os.path.isfile(path)
+    folder, pattern = os.path.dirname(path), re.escape(os.path.basename(path)).replace("<UDIM>", r"\d{4}")
+    return os.path.isdir(folder) and any(re.fullmatch(pattern, name) for name in os.listdir(folder))
+
+
+# Other names of colour spaces that the library knows.
+SPACES = {"lin_rec709_scene": "lin_rec709", "srgb_rec709_scene": "srgb_texture", "lin_ap1_scene": "acescg", "lin_ap1": "acescg",
+          "gamma22": "g22_rec709", "gamma18": "g18_rec709", "gamma24": "rec709_display", "g22_rec709_scene": "g22_rec709",
+          "g18_rec709_scene": "g18_rec709", "lin_p3d65_scene": "lin_displayp3", "srgb_p3d65_scene": "srgb_displayp3"}
+
+
 def make_linear(element):
     """A colour that is written encoded becomes the linear one, as the parameter that it is will be set by linear colours."""
     decode = DECODED.get(element.getActiveColorSpace()) if element.getAttribute("type") in ("color3", "color4") else None
@@ -256,8 +270,7 @@ def make_linear(element):
 
 # Of colour spaces with the primaries of sRGB: light from what is written.
 DECODED = {"srgb_texture": lambda x: x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4,
-           "gamma22": lambda x: max(x, 0.0) ** 2.2, "g22_rec709": lambda x: max(x, 0.0) ** 2.2,
-           "gamma18": lambda x: max(x, 0.0) ** 1.8, "g18_rec709": lambda x: max(x, 0.0) ** 1.8}
+           "g22_rec709": lambda x: max(x, 0.0) ** 2.2, "g18_rec709": lambda x: max(x, 0.0) ** 1.8}
 
 
 def surface_of(element):
@@ -334,7 +347,7 @@ class Frame:
             kind, name, value, metadata = parameter
             about = described.get(name, {})
             key = about.get("key", "")
-            plain = kind in ("float", "int", "color", "vector", "point", "normal", "matrix") or metadata.get("widget") == '"filename"'
+            plain = kind in ("float", "int", "color", "vector", "point", "normal") or metadata.get("widget") == '"filename"'
             meant = not name.startswith("geomprop_") and key not in ("frameoffset", "space", "index", "layer", "framerange")
             if not plain or not meant:
                 variables.append(parameter)
