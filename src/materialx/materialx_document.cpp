@@ -36,18 +36,36 @@ struct Read {
   }
 };
 
-std::string run_reader(const std::string& path, const std::vector<std::string>& allowed_folders) {
-  const std::string script = helper_path("etendue_materialx.py");
-  if (script.empty()) throw Error("the program 'etendue_materialx.py', which reads MaterialX, is not there: install it too");
+/// Runs one of our programs in Python; `words` names the package that it needs.
+std::string run_python(const std::string& name, std::vector<std::string> arguments, const char* package,
+                       std::string_view input) {
+  const std::string script = helper_path(name);
+  if (script.empty()) throw Error("the program '" + name + "', which reads MaterialX, is not there: install it too");
   const char* chosen = std::getenv("ETENDUE_PYTHON");
-  std::vector<std::string> arguments{script, path};
-  arguments.insert(arguments.end(), allowed_folders.begin(), allowed_folders.end());
+  arguments.insert(arguments.begin(), script);
   try {
-    return run_program(chosen && *chosen ? chosen : "python3", arguments, "etendue_materialx.py");
+    return run_program(chosen && *chosen ? chosen : "python3", arguments, name, input);
   } catch (const NotStarted& error) {
-    throw Error(std::string("MaterialX documents are read by Python, but ") + error.what() +
-                "; install it with its package (pip install materialx), or name one that has it by ETENDUE_PYTHON");
+    throw Error(
+        fmt::format("MaterialX documents are read by Python, but {}; install it with its package (pip install {}), or name "
+                    "one that has it by ETENDUE_PYTHON",
+                    error.what(), package));
   }
+}
+
+bool is_document(const std::string& path) { return path.ends_with(".mtlx"); }
+
+std::string run_reader(const std::string& path, const std::vector<std::string>& allowed_folders) {
+  std::vector<std::string> arguments{path};
+  std::string text;
+  if (!is_document(path)) {  // the networks of a USD scene
+    std::vector<std::string> of_usd{"--materialx", path, "0"};
+    of_usd.insert(of_usd.end(), allowed_folders.begin(), allowed_folders.end());
+    text = run_python("etendue_usd.py", of_usd, "usd-core numpy materialx", {});
+    arguments.insert(arguments.begin(), "--text");
+  }
+  arguments.insert(arguments.end(), allowed_folders.begin(), allowed_folders.end());
+  return run_python("etendue_materialx.py", arguments, "materialx", text);
 }
 
 /// No class of a document may have the name of one of the program's own.

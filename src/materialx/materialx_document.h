@@ -23,14 +23,14 @@ struct MaterialXMaterial {
 };
 
 struct MaterialXDocument {
-  std::vector<std::string> files;            ///< that were read: the document and what it includes
+  std::vector<std::string> files;            ///< that were read: the document and what it includes, or the scene
   std::vector<std::string> include_folders;  ///< of the headers that the shaders include
   std::vector<std::string> notes;            ///< what is lost or missing
   std::vector<MaterialXMaterial> materials;
   mutable std::atomic<bool> told = false;  ///< whoever reads it next need not tell `notes` and problems again
 };
 
-/// Reads a document, or returns what was read before, if no file of it has changed since. Only files in its own folder and in
+/// Reads a document, or the networks of MaterialX in a USD scene, or returns what was read before, if no file of it has changed since. Only files in its own folder and in
 /// `allowed_folders` are read and named in shaders; others are an Error. Throws Error with the reason, without the file's name.
 std::shared_ptr<const MaterialXDocument> read_materialx(const std::string& path,
                                                         const std::vector<std::string>& allowed_folders);

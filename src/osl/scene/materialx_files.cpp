@@ -1,5 +1,5 @@
 // MaterialX documents as plugins: `plugin "brass.mtlx"` declares a class for each of its materials, which is the shader that
-// MaterialX's own generator writes.
+// MaterialX's own generator writes. The same for the materials of a USD scene that are networks of MaterialX.
 
 #include <fmt/format.h>
 
@@ -89,7 +89,8 @@ void declare_materialx(const std::string& file) {
 
 /// When the library is loaded, it becomes the registry's reader of such files.
 const bool announced = [] {
-  Registry::instance().read_plugins(".mtlx", declare_materialx);
+  for (const char* ending : {".mtlx", ".usd", ".usda", ".usdc", ".usdz"})
+    Registry::instance().read_plugins(ending, declare_materialx);
   return true;
 }();
 

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""etendue_materialx.py FILE [FOLDER ...]: the materials of a MaterialX document as shaders in the Open Shading Language, in JSON on
+"""etendue_materialx.py [--text] FILE [FOLDER ...]: the materials of a MaterialX document as shaders in the Open Shading Language, in JSON on
 standard output; what is wrong goes to standard error.
 
 It is started in a process of its own (src/materialx/materialx_document.h). PyPI's package `materialx` reads the document and
 writes the shaders; etendue_materialx_shaders.py makes of them what our compiler takes. Files outside of FILE's folder and of the
-FOLDERs are not read: neither documents that this one includes, nor images.
+FOLDERs are not read: neither documents that this one includes, nor images. With --text the document comes from standard input,
+as if it stood in FILE, which is of another format.
 
 {"files": [all documents that were read], "include": [folders of the headers that the shaders include], "notes": [texts],
  "materials": [{"name", "class", "problem"} or {"name", "class", "text", "emits", "displacement": text or "", "vector": bool}]}
@@ -79,13 +80,20 @@ def limit(what, wanted):
 
 
 def main():
+    given = sys.argv[1] == "--text"
+    if given:
+        del sys.argv[1]
     path = os.path.abspath(sys.argv[1])
     limit(resource.RLIMIT_CORE, 0)
     limit(resource.RLIMIT_AS, 4 << 30)
     limit(resource.RLIMIT_CPU, 120)
     files = Files(path, sys.argv[2:])
     document = mx.createDocument()
-    files.document(document, path, None)
+    if given:
+        mx.readFromXmlString(document, sys.stdin.read())
+        files.read.append(path)
+    else:
+        files.document(document, path, None)
     made = Generator(document, os.path.dirname(path), files).run(os.path.splitext(os.path.basename(path))[0])
     made["files"] = files.read
     json.dump(made, sys.stdout)

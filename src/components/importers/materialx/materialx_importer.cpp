@@ -86,7 +86,7 @@ class MaterialXImporter final : public Importer {
     const int count = int(shown.size()), columns = int(std::ceil(std::sqrt(double(count)))),
               rows = (count + columns - 1) / columns;
     constexpr double distance = 2.5;
-    const double size = 1 + 0.5 * distance * std::hypot(columns - 1, rows - 1);
+    const double size = count == 1 ? 1 : 0.7 * (1 + 0.5 * distance * (columns - 1));  // of the stage, over that for one ball
     const std::string text = fmt::format(
         R"(Job {{
     renderer: PathTracer {{ max_depth: 24, samples: 64 }}
