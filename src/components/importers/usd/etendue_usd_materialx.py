@@ -7,7 +7,7 @@ import xml.etree.ElementTree as xml
 from pxr import Sdf, Usd, UsdShade
 
 FILE, NAME = "etendue:materialx:file", "etendue:materialx:name"
-CONTEXT = ["mtlx"]
+CONTEXT = "mtlx"
 
 
 def installed():
@@ -18,7 +18,7 @@ def layer_of(path):
     """A layer that stands for a .mtlx document: below </MaterialX/Materials>, as UsdMtlx has them, its materials, which say where
     they come from."""
     names = [element.get("name", "") for element in xml.parse(path).getroot().iter("surfacematerial")]
-    layer = Sdf.Layer.CreateAnonymous(os.path.basename(path))
+    layer = Sdf.Layer.CreateAnonymous(os.path.basename(path) + ".usda")
     root = Sdf.CreatePrimInLayer(layer, "/MaterialX/Materials")
     layer.defaultPrim = "MaterialX"
     for prim in (root.nameParent, root):
