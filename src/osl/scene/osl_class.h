@@ -27,6 +27,9 @@ struct OslClass {
   Role role = Role::surface;
   ClosureUses uses;
   std::vector<Parameter> parameters;
+  /// A surface that lets no light through if all these members have these values in all their components, whatever closures
+  /// its text names; none: the text alone says it. From the shader's metadatum etendue_opaque, "transmission=0 opacity=1".
+  std::vector<std::pair<std::string, float>> opaque;
   std::vector<std::string> outputs;  ///< of a map: the parameters that can be its value; of a displacement: "displacement"
 };
 

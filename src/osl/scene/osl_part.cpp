@@ -48,6 +48,19 @@ void OslPart::build_group(const Component& self, std::vector<std::string> output
   output_ = *found;
 }
 
+bool OslPart::all_set(const std::vector<std::pair<std::string, float>>& settings) const {
+  for (const auto& [name, wanted] : settings) {
+    const Member* m = info_.find(name);
+    if (!m || (m->kind != Kind::number && m->kind != Kind::color)) return false;
+    const auto given = declared_values.find(name);
+    const etendue::Value& value = given == declared_values.end() ? m->default_value : given->second;
+    const Constant c = constant_of(m->kind == Kind::color ? Type(Base::color) : Type(Base::float_), *m, value);
+    for (size_t i = 0; i < c.bytes.size() / sizeof(float); ++i)
+      if (c.at<float>(i) != wanted) return false;
+  }
+  return !settings.empty();
+}
+
 OslPart::Run::Run(const OslPart& part, const SurfacePoint& p, const Wavelengths* w)
     : part_(part),
       globals_(globals_of(p, from_behind_)),

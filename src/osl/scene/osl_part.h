@@ -38,6 +38,9 @@ class OslPart : public DeclaredMembers {
     Execution& execution_;
   };
 
+  /// Whether members have these values in all their components; false if there are none.
+  bool all_set(const std::vector<std::pair<std::string, float>>&) const;
+
   const Memory& output() const { return output_; }
   const RgbSpace& space() const { return *space_; }
 

@@ -16,7 +16,8 @@ class OslSurface final : public etendue::Shader, public OslPart {
     // The index of the body is a property of the object, not of the point: that of the closure at the origin of surface
     // coordinates, seen along the normal.
     index_ = 1;
-    if (osl_class().uses.interior) {
+    opaque_ = all_set(osl_class().opaque);
+    if (transmits()) {
       SurfacePoint p;
       p.normal = p.shading_normal = Normal3{0, 0, 1};
       p.dpdu = {1, 0, 0};
@@ -32,20 +33,24 @@ class OslSurface final : public etendue::Shader, public OslPart {
     if (!run.Ci()) return nullptr;
     SurfacePoint with = p;
     with.dpdu = {run.globals().dPdu.value.x, run.globals().dPdu.value.y, run.globals().dPdu.value.z};
-    const bool refracts = (osl_class().uses.lobes & specular_transmission) != 0;
+    const bool refracts = (possible_lobes() & specular_transmission) != 0;
     const ClosurePlace place{with, w, arena, space(), run.from_behind(), info().name, refracts};
     return scatter_of(run.Ci(), place);
   }
 
-  Lobes possible_lobes() const override { return osl_class().uses.lobes; }
+  Lobes possible_lobes() const override {
+    constexpr Lobes into_the_body = specular_transmission | glossy_transmission | null_scattering;
+    return opaque_ ? Lobes(osl_class().uses.lobes & ~into_the_body) : osl_class().uses.lobes;
+  }
   Spectrum interior_index(const Wavelengths&) const override { return Spectrum(index_); }
-  bool transmits() const override { return osl_class().uses.interior; }
+  bool transmits() const override { return osl_class().uses.interior && !opaque_; }
   /// A shader may depend on the direction of view, and layer() does.
   bool reciprocal() const override { return !osl_class().uses.layers && !osl_class().shader->globals[size_t(Global::I)]; }
   float albedo_error() const override { return 0.3f; }
 
  private:
   float index_ = 1;
+  bool opaque_ = false;  ///< its members say that it lets no light through
 };
 
 }  // namespace
