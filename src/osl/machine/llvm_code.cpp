@@ -151,6 +151,11 @@ bool LlvmCode::own(std::uint32_t offset) const {
   return a && own_[std::size_t(a - layout_.areas().data())];
 }
 
+const std::byte* LlvmCode::constant(std::uint32_t offset) const {
+  const MemoryLayout::Area* a = area(offset);
+  return a && a->use == MemoryLayout::Use::constant ? layout_.image().data() + offset : nullptr;
+}
+
 llvm::Value* LlvmCode::pointer(const Spot& at) {
   llvm::Value* base = function_->getArg(1);
   std::uint32_t offset = at.offset;
@@ -170,14 +175,11 @@ llvm::Value* LlvmCode::pointer(const Spot& at) {
 }
 
 Word LlvmCode::load(WordKind kind, const Spot& at) {
-  if (!at.base.value) {
-    const MemoryLayout::Area* a = area(at.offset);
-    if (a && a->use == MemoryLayout::Use::constant) {
-      const std::byte* bytes = layout_.image().data() + at.offset;
+  const std::byte* const bytes = at.base.value ? nullptr : constant(at.offset);
+  if (bytes) {
       if (kind == WordKind::int_) return integer(*reinterpret_cast<const int*>(bytes));
       if (kind == WordKind::float_) return number(*reinterpret_cast<const float*>(bytes));
       return address(*reinterpret_cast<const void* const*>(bytes));
-    }
   }
   const llvm::Align alignment(kind == WordKind::address ? 8 : 4);
   return {builder_.CreateAlignedLoad(type(kind), pointer(at), alignment)};

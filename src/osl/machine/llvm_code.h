@@ -36,6 +36,7 @@ class LlvmCode final : public Code {
   Word address_of(const Spot&) override;
   Word element(Word base, Word index, std::uint32_t step) override;
   bool own(std::uint32_t offset) const override;
+  const std::byte* constant(std::uint32_t offset) const override;
   Word borrow(std::size_t bytes) override;
   void give_back(Word) override;
   Word run_state() override;
@@ -50,11 +51,6 @@ class LlvmCode final : public Code {
   void begin(Label) override;
 
  private:
-  /// An area of the frame of which the layer has its own copy.
-  struct Copy {
-    llvm::AllocaInst* memory = nullptr;
-  };
-
   const MemoryLayout::Area* area(std::uint32_t offset) const;
   llvm::Value* pointer(const Spot&);
   llvm::Type* type(WordKind) const;
@@ -64,7 +60,7 @@ class LlvmCode final : public Code {
 
   const MemoryLayout& layout_;
   std::vector<bool> own_;  ///< by the number of the area
-  std::unordered_map<std::size_t, llvm::AllocaInst*> copies_;
+  std::unordered_map<std::size_t, llvm::AllocaInst*> copies_;  ///< of areas of the frame, by their numbers
   std::vector<llvm::AllocaInst*> lent_;  ///< memory of calls that is free again
   std::unordered_map<llvm::Value*, std::size_t> lent_sizes_;
   std::vector<llvm::BasicBlock*> labels_;

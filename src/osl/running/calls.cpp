@@ -132,7 +132,7 @@ class LibraryCall final : public Node {
   void emit(Code& code) const override {
     for (const Value& argument : arguments_) argument.emit(code);
     const CodedCall call{code, *types_, arguments_, outputs_, result_};
-    if (!emit_instructions(row_, call)) {
+    if (!emit_instructions(row_, call) && !emit_noise(row_, call)) {
       LentArguments lent(call);
       if (speaks_itself_)
         code.call(reinterpret_cast<const void*>(&speak), WordKind::none, {code.run_state(), code.address(this), lent.call()});

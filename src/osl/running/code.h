@@ -86,6 +86,8 @@ class Code {
   virtual Word element(Word base, Word index, std::uint32_t step) = 0;
   /// Whether the layer has its own copy of the place, so that the frame does not show its value, nor take changes of it.
   virtual bool own(std::uint32_t offset) const = 0;
+  /// The bytes of a place whose value never changes; null: it is none.
+  virtual const std::byte* constant(std::uint32_t offset) const = 0;
   /// Memory for a call, aligned to 32 bytes, until it is released. No other layer sees it.
   virtual Word borrow(std::size_t bytes) = 0;
   virtual void give_back(Word) = 0;

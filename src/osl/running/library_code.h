@@ -22,6 +22,9 @@ struct CodedCall {
 /// Makes the instructions of a short function that do the same as the library's code, to the bit. False: there are none.
 bool emit_instructions(const Row&, const CodedCall&);
 
+/// The same for noise: a call of a function of numbers.
+bool emit_noise(const Row&, const CodedCall&);
+
 /// Where the library's functions find the arguments of a call, and leave the result.
 ///
 /// They take addresses. An input that the layer keeps in registers is lent as a copy, so that it can stay there; one that is
