@@ -2,12 +2,15 @@
 """What shaders in the Open Shading Language cost, against parts in C++ that do the same: eight materials, each written both ways.
 
     python3 benchmarks/osl_shaders.py [--program build/etendue] [--samples 64] [--pairs 3] [--only NAME...]
+    python3 benchmarks/osl_shaders.py --start
+    python3 benchmarks/osl_shaders.py --lengths 10 100 500
 
 Each material covers the ball, the block and the floor of a scene like scenes/osl/stage.etd. It is rendered on one thread in three
 ways, one after the other: the C++ part, the shader as machine code, the shader by the interpreter. What counts is the processor's
 time (user and system) of the process less that of the same scene with one sample, so that start-up and compilation are not in it.
 Printed are the ratios shader / C++ of the medians, and the mean of the pictures' difference: both must be of the same material. With
---start, the processor's time of one sample is printed instead: what start-up and compilation cost.
+--start, the processor's time of one sample is printed instead: what start-up and compilation cost. With --lengths, what the
+compilation of a shader of so many lines costs.
 
 Needs numpy. The pictures of machine code and interpreter must be the same bytes, or the exit status is 1.
 """
@@ -92,6 +95,35 @@ def run(program, scene, output, way):
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
+def shader_of(lines):
+    """A shader of so many lines of arithmetic, functions and noise, with a branch and a loop now and then."""
+    rows = ["surface long_one(float knob = 0.3, output float f = 0.5, output color c = 0.2) {", "  float x = u, y = v;"]
+    kinds = ("x = sin(x * {k}) + y * knob;", "y = mix(x, y, 0.{k}) + noise(\"perlin\", P * {k});", "c = c * color(x, y, {k}) + 0.1 * tint;",
+             "color tint = clamp(c * x, 0, {k});", "if (x > y) {{ x -= 0.{k}; }} else {{ y = sqrt(abs(x)); }}",
+             "for (int i = 0; i < {k}; ++i) y += pow(x, i) * 0.1;", "f += smoothstep(0.1, 0.9, x) * dot(N, vector(x, y, {k}));")
+    for i in range(lines - 4):
+        rows.append("  " + kinds[(3, 0, 1, 2, 4, 5, 6)[i % 7]].format(k=1 + i % 7).replace("tint", f"tint{i // 7}"))
+    return "\n".join(rows + ["  Ci = c * f * diffuse(N);", "}"])
+
+
+def compile_times(options):
+    print(f"{'lines':>6} {'compilation [s]':>16}")
+    with tempfile.TemporaryDirectory() as folder:
+        for lines in options.lengths:
+            path = pathlib.Path(folder) / "long_one.osl"
+            path.write_text(shader_of(lines))
+            found = []
+            for _ in range(options.pairs):
+                used = []
+                for way in ("--interpreter", "--compiler"):
+                    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+                    subprocess.run([options.program, "shade", way, "-g", "1", "1", path], check=True, stdout=subprocess.DEVNULL)
+                    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+                    used.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+                found.append(used[1] - used[0])
+            print(f"{lines:6} {statistics.median(found):16.3f}", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=str(pathlib.Path(__file__).resolve().parent.parent / "build/etendue"))
@@ -99,7 +131,10 @@ def main():
     parser.add_argument("--pairs", type=int, default=3)
     parser.add_argument("--only", nargs="*", default=list(MATERIALS))
     parser.add_argument("--start", action="store_true", help="prints what start-up costs")
+    parser.add_argument("--lengths", type=int, nargs="+", help="lines of shaders that are compiled")
     options = parser.parse_args()
+    if options.lengths:
+        return compile_times(options)
     different = False
     print(f"{'material':10} {'C++ [s]':>9} {'machine code':>13} {'interpreter':>12}   picture")
     with tempfile.TemporaryDirectory() as folder:

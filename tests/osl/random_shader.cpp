@@ -32,7 +32,7 @@ std::string RandomShader::text() {
                 {"o_F", 'F'},         {"o_C", 'C'},         {"o_S", 'S'},          {"u", 'f', false},    {"v", 'f', false},
                 {"P", 'v', false},    {"N", 'v', false},    {"I", 'v', false}};
   indent_ = 1;
-  left_ = 12 + below(25);
+  left_ = 6 + below(10);
   while (left_ > 0) statement(3);
   line(fmt::format("Ci = {};", closure()));
   if (chance(30)) line("o_F[0] += Dx(o_f) + filterwidth(o_f) + area(P + o_v);");

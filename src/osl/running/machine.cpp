@@ -23,11 +23,13 @@ void say(const std::string& text) { fmt::print(stderr, "etendue: {}\n", text); }
 
 const Machine* load() {
   Dl_info own{};
-  std::string path = file_name;
-  if (dladdr(reinterpret_cast<void*>(&load), &own) && own.dli_fname) {
-    const std::filesystem::path beside = std::filesystem::path(own.dli_fname).parent_path() / file_name;
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(beside, ignored)) path = beside.string();
+  std::filesystem::path path;
+  if (dladdr(reinterpret_cast<void*>(&load), &own) && own.dli_fname)
+    path = std::filesystem::path(own.dli_fname).parent_path() / file_name;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    say("shaders are interpreted: this build has no compiler for them (docs/shading-language.md)");
+    return nullptr;
   }
   // Never closed: code may be in use until the program ends.
   if (!dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL))

@@ -1,5 +1,5 @@
-// Noise of numbers without derivatives: called as a function of its coordinates alone, which stay in registers, instead of by the
-// addresses of a Call that it first has to take apart.
+// Noise of numbers without derivatives: called as a function of its coordinates alone, which stay in registers, instead of by
+// the addresses of a Call that it first has to take apart.
 
 #include <string_view>
 #include <utility>
