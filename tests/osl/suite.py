@@ -148,12 +148,10 @@ class Runner:
         command = [self.program, "shade", "-I", folder.parent, "-I", standard, *defines, *words]
         if not self.options.compare_compilers:
             return self.run(command, folder)
-        kept, found = folder.parent / f"{folder.name}_interpreted", {}
-        for way in ("interpreter", "compiler"):
-            found[way] = self.run([*command[:2], f"--{way}", *command[2:]], folder)
-            if way == "interpreter":
-                shutil.rmtree(kept, ignore_errors=True)
-                shutil.copytree(folder, kept, symlinks=True)
+        kept = folder.parent / f"{folder.name}_interpreted"
+        shutil.rmtree(kept, ignore_errors=True)
+        shutil.copytree(folder, kept, symlinks=True)
+        found = {way: self.run([*command[:2], f"--{way}", *command[2:]], place) for way, place in (("interpreter", kept), ("compiler", folder))}
         difference = None if signless(found["interpreter"]) == signless(found["compiler"]) else first_difference(found)
         for path in sorted(folder.iterdir()):
             if not difference and path.is_file() and not path.is_symlink() and not same_file(path, kept / path.name):

@@ -20,10 +20,12 @@ struct OfCoordinates;
 template <Noise noise, bool is_unsigned, std::size_t... i>
 struct OfCoordinates<noise, is_unsigned, std::index_sequence<i...>> {
   static float value(Coordinate<i>... x) {
-    const Position<float> p{int(sizeof...(i)), {x...}, false, {}};
-    float out[3] = {};
-    noise(p, 1, out);
-    return is_unsigned ? 0.5f * (out[0] + 1) : out[0];
+    float out = 0;
+    if constexpr (noise == static_cast<Noise>(perlin_noise))
+      out = perlin_noise(x...);
+    else
+      noise({int(sizeof...(i)), {x...}, false, {}}, 1, &out);
+    return is_unsigned ? 0.5f * (out + 1) : out;
   }
 };
 
