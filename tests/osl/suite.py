@@ -15,6 +15,9 @@ A folder's verdict is one of
 The reference's one and two ways of telling (`Compiled x.osl -> x.oso`, `Connect a.b to c.d`, warnings of its compiler and its
 optimizer) are left out of the comparison of texts; numbers agree within 1e-5, or one unit of the last digit that is printed.
 
+With --compare-compilers each command of a folder runs twice, interpreted and as machine code, and a folder `disagrees` where texts
+or pictures are not the same to the bit (but for not-a-number's sign and payload); the expected outputs do not matter then.
+
 Needs numpy and PyPI's openimageio (also for its idiff, oiiotool and maketx). The exit status is 0 if nothing differs.
 """
 
@@ -130,6 +133,7 @@ class Runner:
     def __init__(self, options):
         self.program, self.options = options.program, options
         self.tools = pathlib.Path(sys.executable).parent
+        self.disagreements = {}  # by folder: the first command whose two ways differ
 
     def run(self, words, folder):
         try:
@@ -141,7 +145,21 @@ class Runner:
 
     def shade(self, words, folder, defines):
         standard = self.options.suite.parent / "src" / "shaders"  # oslutil.h and the like
-        return self.run([self.program, "shade", "-I", folder.parent, "-I", standard, *defines, *words], folder)
+        command = [self.program, "shade", "-I", folder.parent, "-I", standard, *defines, *words]
+        if not self.options.compare_compilers:
+            return self.run(command, folder)
+        kept = folder.parent / f"{folder.name}_interpreted"
+        shutil.rmtree(kept, ignore_errors=True)
+        shutil.copytree(folder, kept, symlinks=True)
+        found = {way: self.run([*command[:2], f"--{way}", *command[2:]], place) for way, place in (("interpreter", kept), ("compiler", folder))}
+        difference = None if signless(found["interpreter"]) == signless(found["compiler"]) else first_difference(found)
+        for path in sorted(folder.iterdir()):
+            if not difference and path.is_file() and not path.is_symlink() and not same_file(path, kept / path.name):
+                difference = f"{path.name} is not the same"
+        if difference:
+            self.disagreements.setdefault(folder.name, f"'{' '.join(words)[:80]}': {difference}")
+        shutil.rmtree(kept)
+        return found["interpreter"]
 
     def command(self, line, folder, defines):
         """The status and the text of one command of a recipe."""
@@ -237,6 +255,35 @@ def image_difference(ours, theirs, threshold, percent):
     return None if bad <= percent else f"{bad:.2f} % of the pixels are off by more than {threshold} (the most: {worst.max():.4g})"
 
 
+def signless(result):
+    status, text = result
+    return status, text.replace("-nan", "nan")
+
+
+def first_difference(found):
+    (a, ours), (b, theirs) = (signless(found[way]) for way in ("interpreter", "compiler"))
+    if a != b:
+        return f"status {a} and {b}: {theirs.strip()[-200:]!r}"
+    lines = zip(ours.splitlines() + ["(nothing)"], theirs.splitlines() + ["(nothing)"])
+    return next((f"{x[:100]!r} and {y[:100]!r}" for x, y in lines if x != y), "")
+
+
+def same_file(a, b):
+    """Whether bytes, or all pixels, are the same; not-a-number is one number."""
+    if not b.exists():
+        return False
+    if a.read_bytes() == b.read_bytes():
+        return True
+    import numpy
+    import OpenImageIO
+
+    x, y = (OpenImageIO.ImageBuf(str(path)) for path in (a, b))
+    if x.has_error or y.has_error:
+        return False
+    p, q = (numpy.asarray(image.get_pixels(OpenImageIO.FLOAT)) for image in (x, y))
+    return p.shape == q.shape and bool(((p.view("u4") == q.view("u4")) | (numpy.isnan(p) & numpy.isnan(q))).all())
+
+
 def expected_files(reference, name):
     """The expected file of a name, and its variants: out-alt.txt, out2.txt, ..."""
     stem, ending = pathlib.Path(name).stem, pathlib.Path(name).suffix
@@ -274,6 +321,9 @@ def verdict(runner, folder, scratch):
                     failed = f"'{line[1:80]}' ends with {status}: {last[:160]}"
     except Refused as reason:
         return "excluded", f"needs {reason}"
+    if runner.options.compare_compilers:
+        difference = runner.disagreements.get(name)
+        return ("disagrees", difference) if difference else ("agrees", "")
     (work / "out.txt").write_text(texts[-1], encoding="utf-8")
     reference = folder / "ref"
     compared = 0
@@ -313,6 +363,7 @@ def main():
     parser.add_argument("folders", nargs="*", help="these folders alone")
     parser.add_argument("--program", default=str(ROOT / "build/etendue"))
     parser.add_argument("--keep", type=pathlib.Path, help="a folder in which all outputs remain")
+    parser.add_argument("--compare-compilers", action="store_true", help="interpreter against machine code, not against the expected outputs")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=60, help="the longest time of one command")
     parser.add_argument("--json", type=pathlib.Path, help="writes the verdicts")
@@ -331,11 +382,12 @@ def main():
             print(f"{kind:9} {name:34} {reason}", flush=True)
     if not options.keep:
         shutil.rmtree(scratch)
-    counts = {kind: sum(v[0] == kind for v in verdicts.values()) for kind in ("same", "runs", "intended", "excluded", "differs")}
+    kinds = ("agrees", "excluded", "disagrees") if options.compare_compilers else ("same", "runs", "intended", "excluded", "differs")
+    counts = {kind: sum(v[0] == kind for v in verdicts.values()) for kind in kinds}
     print("\n" + ", ".join(f"{count} {kind}" for kind, count in counts.items()))
     if options.json:
         options.json.write_text(json.dumps(verdicts, indent=1) + "\n", encoding="utf-8")
-    return 1 if counts["differs"] else 0
+    return 1 if counts[kinds[-1]] else 0
 
 
 if __name__ == "__main__":

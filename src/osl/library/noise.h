@@ -40,6 +40,11 @@ inline int floor_to_int(float x) {
 /// Signed gradient noise in about [-1, 1] (Perlin 2002, "Improving Noise").
 void perlin_noise(const Position<float>&, int count, float* out);
 void perlin_noise(const Position<Dual<float>>&, int count, Dual<float>* out);
+/// The same numbers, without periods.
+float perlin_noise(float x);
+float perlin_noise(float x, float y);
+float perlin_noise(float x, float y, float z);
+float perlin_noise(float x, float y, float z, float t);
 
 /// Constant in unit cells, in [0, 1].
 void cell_noise(const Position<float>&, int count, float* out);

@@ -118,6 +118,51 @@ struct Corners {
   }
 };
 
+/// (1 - w) a + w b of pairs of neighbouring lanes.
+template <int count>
+auto between_pairs(const float __attribute__((vector_size(count * sizeof(float)))) & v, float w) {
+  if constexpr (count == 8)
+    return (1 - w) * __builtin_shufflevector(v, v, 0, 2, 4, 6) + w * __builtin_shufflevector(v, v, 1, 3, 5, 7);
+  else
+    return (1 - w) * __builtin_shufflevector(v, v, 0, 2) + w * __builtin_shufflevector(v, v, 1, 3);
+}
+
+/// The same as `perlin` for a number without derivatives and periods: nothing goes through memory.
+template <int n>
+float perlin_number(const std::array<float, n>& x) {
+  std::uint32_t low[n];
+  float offset[n], weight[n];
+  for (std::size_t d = 0; d < n; ++d) {
+    low[d] = std::uint32_t(floor_to_int(x[d]));
+    offset[d] = x[d] - std::floor(x[d]);
+    weight[d] = fade(offset[d]);
+  }
+  float ends[2] = {};  // of the fourth dimension
+  for (int group = 0; group < (n == 4 ? 2 : 1); ++group) {
+    Words words[n];
+    Lanes from[n];
+    for (int d = 0; d < n; ++d) {
+      const Words up = d < 3 ? upper[d] : Words{} + (group ? ~0u : 0u);
+      words[d] = low[d] - up;  // one more where the mask is set
+      const Lanes at = Lanes{} + offset[d];
+      from[d] = chosen(up, at - 1, at);
+    }
+    const Lanes corners = along_gradient<n>(hash_of_corners<n>(words), from);
+    const auto four = between_pairs<8>(corners, weight[0]);
+    if constexpr (n == 1) {
+      ends[0] = four[0];
+    } else {
+      const auto two = between_pairs<4>(four, weight[1]);
+      if constexpr (n == 2)
+        ends[0] = two[0];
+      else
+        ends[group] = (1 - weight[2]) * two[0] + weight[2] * two[1];
+    }
+  }
+  if constexpr (n == 4) ends[0] = (1 - weight[3]) * ends[0] + weight[3] * ends[1];
+  return scales[n - 1] * ends[0];
+}
+
 template <int n, class N>
 void perlin(const Position<N>& p, int count, N* out) {
   std::uint32_t low[most_dimensions] = {}, high[most_dimensions] = {};
@@ -170,6 +215,11 @@ void hashes(std::uint32_t* words, int n, int count, float* out) {
 
 void perlin_noise(const Position<float>& p, int count, float* out) { perlin_of_dimensions(p, count, out); }
 void perlin_noise(const Position<Dual<float>>& p, int count, Dual<float>* out) { perlin_of_dimensions(p, count, out); }
+
+float perlin_noise(float x) { return perlin_number<1>({x}); }
+float perlin_noise(float x, float y) { return perlin_number<2>({x, y}); }
+float perlin_noise(float x, float y, float z) { return perlin_number<3>({x, y, z}); }
+float perlin_noise(float x, float y, float z, float t) { return perlin_number<4>({x, y, z, t}); }
 
 void cell_noise(const Position<float>& p, int count, float* out) {
   std::uint32_t words[most_dimensions + 1];

@@ -6,7 +6,9 @@
 #include <cstring>
 #include <string_view>
 
+#include "coded_numbers.h"
 #include "layer_builder.h"
+#include "library_code.h"
 #include "operations.h"
 #include "osl/library/closures.h"
 #include "references.h"
@@ -26,6 +28,18 @@ class FunctionCall final : public Node {
     for (const Node* node : after_) node->run(run);
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    for (const Node* node : before_) node->emit(code);
+    if (body_) {
+      const Code::Label end = code.label();
+      const Code::Label outer = std::exchange(code.targets.leave, end);
+      body_->emit(code);
+      code.jump(end);
+      code.begin(end);
+      code.targets.leave = outer;
+    }
+    for (const Node* node : after_) node->emit(code);
+  }
 
  private:
   std::vector<const Node*> before_;
@@ -44,6 +58,12 @@ class ReferenceIn final : public Node {
     copy_value(run.memory + copy_.offset, copy_.stride, at, from_.memory.stride, copy_.type.size());
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    if (from_.fetch) from_.fetch->emit(code);
+    const Word at = code.address_of(from_.emit(code));
+    code.store({pointer_, {}}, at);
+    emit_copy(code, copy_.type, {copy_.offset, {}}, copy_.stride, {0, at}, from_.memory.stride, copy_.type.size());
+  }
 
  private:
   Place from_;
@@ -57,6 +77,10 @@ class ReferenceOut final : public Node {
   Flow run(RunState& run) const override {
     copy_value(value_at<std::byte*>(run, pointer_), stride_, run.memory + copy_.offset, copy_.stride, copy_.type.size());
     return Flow::next;
+  }
+  void emit(Code& code) const override {
+    const Word to = code.load(WordKind::address, {pointer_, {}});
+    emit_copy(code, copy_.type, {0, to}, stride_, {copy_.offset, {}}, copy_.stride, copy_.type.size());
   }
 
  private:
@@ -85,11 +109,13 @@ class WithAddresses {
 
 class LibraryCall final : public Node {
  public:
-  LibraryCall(std::unique_ptr<const CallTypes> types, Evaluate evaluate, std::vector<Value> arguments, const Memory& result,
-              bool speaks_itself, std::vector<const Node*> after)
-      : types_(std::move(types)),
+  LibraryCall(const Row& row, std::unique_ptr<const CallTypes> types, Evaluate evaluate, std::vector<Value> arguments,
+              std::vector<bool> outputs, const Memory& result, bool speaks_itself, std::vector<const Node*> after)
+      : row_(row),
+        types_(std::move(types)),
         evaluate_(evaluate),
         arguments_(std::move(arguments)),
+        outputs_(std::move(outputs)),
         result_(result),
         speaks_itself_(speaks_itself),
         after_(std::move(after)) {}
@@ -103,11 +129,32 @@ class LibraryCall final : public Node {
     for (const Node* node : after_) node->run(run);
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    for (const Value& argument : arguments_) argument.emit(code);
+    const CodedCall call{code, *types_, arguments_, outputs_, result_};
+    if (!emit_instructions(row_, call) && !emit_noise(row_, call)) {
+      LentArguments lent(call);
+      if (speaks_itself_)
+        code.call(reinterpret_cast<const void*>(&speak), WordKind::none, {code.run_state(), code.address(this), lent.call()});
+      else
+        code.call(reinterpret_cast<const void*>(evaluate_), WordKind::none, {lent.call()});
+      lent.end();
+    }
+    for (const Node* node : after_) node->emit(code);
+  }
 
  private:
+  static void speak(RunState* run, const LibraryCall* self, const Call* call) {
+    run->speaks_itself = true;
+    self->evaluate_(*call);
+    run->speaks_itself = false;
+  }
+
+  const Row& row_;
   std::unique_ptr<const CallTypes> types_;
   Evaluate evaluate_;
   std::vector<Value> arguments_;
+  std::vector<bool> outputs_;
   Memory result_;
   bool speaks_itself_;
   std::vector<const Node*> after_;
@@ -124,6 +171,17 @@ class MakeClosure final : public Node {
     const Call call{addresses.get(), nullptr, *types_, run.services};
     value_at<const ClosureNode*>(run, out_.offset) = make_component(call, *shape_);
     return Flow::next;
+  }
+  void emit(Code& code) const override {
+    for (const Value& argument : arguments_) argument.emit(code);
+    const std::vector<bool> outputs(arguments_.size());
+    const Memory no_result;
+    const CodedCall call{code, *types_, arguments_, outputs, no_result};
+    LentArguments lent(call);
+    const Word made =
+        code.call(reinterpret_cast<const void*>(&make_component), WordKind::address, {lent.call(), code.address(shape_)});
+    lent.end();
+    code.store({out_.offset, {}}, made);
   }
 
  private:
@@ -277,8 +335,8 @@ Value LayerBuilder::library_call(const Expression& e, bool derivatives, const Me
   if (!evaluate) throw Error(fmt::format("'{}' cannot be called with these types", row.signature), e.place);
   const std::string_view signature = row.signature;
   const bool speaks_itself = signature.starts_with("void error(") || signature.starts_with("void warning(");
-  return {result,
-          nodes_.make<LibraryCall>(std::move(types), evaluate, std::move(arguments), result, speaks_itself, std::move(after))};
+  return {result, nodes_.make<LibraryCall>(row, std::move(types), evaluate, std::move(arguments), std::move(outputs), result,
+                                           speaks_itself, std::move(after))};
 }
 
 // ---- constructors

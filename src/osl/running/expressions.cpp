@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "coded_numbers.h"
 #include "layer_builder.h"
 #include "operations.h"
 #include "references.h"
@@ -18,6 +19,9 @@ class Sequence final : public Node {
     for (const Node* node : nodes_) node->run(run);
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    for (const Node* node : nodes_) node->emit(code);
+  }
 
  private:
   std::vector<const Node*> nodes_;
@@ -29,6 +33,18 @@ class Conditional final : public Node {
   Flow run(RunState& run) const override {
     condition_.evaluate(run);
     return (load<int>(run, condition_.memory) ? yes_ : no_)->run(run);
+  }
+  void emit(Code& code) const override {
+    condition_.emit(code);
+    const Code::Label yes = code.label(), no = code.label(), end = code.label();
+    code.branch((load_int(code, condition_.memory) != whole(code, 0)).word, yes, no);
+    code.begin(yes);
+    yes_->emit(code);
+    code.jump(end);
+    code.begin(no);
+    no_->emit(code);
+    code.jump(end);
+    code.begin(end);
   }
 
  private:
@@ -48,6 +64,18 @@ class ShortCircuit final : public Node {
     }
     value_at<int>(run, out_.offset) = result != 0;
     return Flow::next;
+  }
+  void emit(Code& code) const override {
+    const Code::Label more = code.label(), end = code.label();
+    a_.emit(code);
+    const Truth first = load_int(code, a_.memory) != whole(code, 0);
+    store(code, out_, int_of(first));
+    code.branch(first.word, both_ ? more : end, both_ ? end : more);
+    code.begin(more);
+    b_.emit(code);
+    store(code, out_, int_of(load_int(code, b_.memory) != whole(code, 0)));
+    code.jump(end);
+    code.begin(end);
   }
 
  private:
@@ -193,7 +221,8 @@ Place LayerBuilder::variable(const Symbol& symbol) {
   const SymbolPlan& plan = plans_[i];
   binding.bound = true;
   binding.place.memory =
-      plan.placed ? plan.memory : layout_.allocate(plan.type, plan.derivatives && carries_derivatives(plan.type));
+      plan.placed ? plan.memory
+                  : layout_.allocate(plan.type, plan.derivatives && carries_derivatives(plan.type), MemoryLayout::Use::own);
   binding.place.fetch = plan.fetch;
   return binding.place;
 }

@@ -80,7 +80,7 @@ std::shared_ptr<const ShaderGroup> GroupBuilder::build() {
   try {
     std::uint32_t flags = std::uint32_t(plans_.size());
     for (const LayerPlan& plan : plans_) flags += std::uint32_t(plan.symbols.size());
-    group_->flags_ = group_->layout_.bytes(flags, 1);
+    group_->flags_ = group_->layout_.bytes(flags, 1, MemoryLayout::Use::shared);
     group_->flag_count_ = flags;
     for (int i = 0; i < int(plans_.size()); ++i) place_symbols(i);
     for (layer = 0; layer < int(plans_.size()); ++layer) build_layer(layer);
@@ -337,7 +337,8 @@ void GroupBuilder::place_parameter(int layer, const Symbol& parameter) {
   const bool input = parameter.role == Symbol::Role::parameter && !parameter.written;
   s.constant = fixed && input && !linked && !plan.interpolated[index];
   // The derivatives of a constant are zero, for which no memory is needed.
-  s.memory = group_->layout_.allocate(s.type, s.derivatives && !s.constant);
+  s.memory = group_->layout_.allocate(s.type, s.derivatives && !s.constant,
+                                      s.constant ? MemoryLayout::Use::constant : MemoryLayout::Use::shared);
   s.placed = true;
   group_->layers_[std::size_t(layer)].parameters.emplace_back(&parameter, s.memory);
   if (parameter.initial && parameter.initial->kind == Expression::Kind::constant) {

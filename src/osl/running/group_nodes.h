@@ -14,6 +14,7 @@ class FetchParameter final : public Node {
   };
   FetchParameter(std::uint32_t flag, std::vector<Transfer> transfers) : flag_(flag), transfers_(std::move(transfers)) {}
   Flow run(RunState&) const override;
+  void emit(Code&) const override;
 
  private:
   std::uint32_t flag_;
@@ -25,6 +26,7 @@ class InterpolatedParameter final : public Node {
  public:
   InterpolatedParameter(const String* name, const Memory& memory) : name_(name), memory_(memory) {}
   Flow run(RunState&) const override;
+  void emit(Code& code) const override { code.interpret(*this); }
 
  private:
   const String* name_;

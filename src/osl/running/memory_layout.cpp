@@ -8,23 +8,24 @@
 
 namespace etendue::osl {
 
-std::uint32_t MemoryLayout::bytes(std::size_t size, std::size_t align) {
+std::uint32_t MemoryLayout::bytes(std::size_t size, std::size_t align, Use use) {
   const std::size_t offset = (image_.size() + align - 1) / align * align;
   if (size > limit || offset + size > limit) throw Error("the variables of the shaders take more than 256 MB");
   image_.resize(offset + size);
+  areas_.push_back({std::uint32_t(offset), std::uint32_t(size), use});
   return std::uint32_t(offset);
 }
 
-Memory MemoryLayout::allocate(const Type& type, bool derivatives) {
+Memory MemoryLayout::allocate(const Type& type, bool derivatives, Use use) {
   const std::size_t size = type.size();
-  Memory m{type, bytes(size * (derivatives ? 3 : 1), std::max<std::size_t>(type.alignment(), 4)),
+  Memory m{type, bytes(size * (derivatives ? 3 : 1), std::max<std::size_t>(type.alignment(), 4), use),
            derivatives ? std::uint32_t(size) : 0};
   clear(type, image_.data() + m.offset);
   return m;
 }
 
 Memory MemoryLayout::constant(const Type& type, std::span<const std::byte> value) {
-  const Memory m = allocate(type, false);
+  const Memory m = allocate(type, false, Use::constant);
   std::memcpy(image_.data() + m.offset, value.data(), std::min(value.size(), type.size()));
   return m;
 }
@@ -40,7 +41,7 @@ Memory MemoryLayout::temporary(const Type& type, bool derivatives) {
     block = *old;
     free_.erase(old);
   } else {
-    block.offset = bytes(needed, align);
+    block.offset = bytes(needed, align, Use::own);
   }
   live_.push_back(block);
   clear(type, image_.data() + block.offset);

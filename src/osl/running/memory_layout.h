@@ -29,12 +29,20 @@ class MemoryLayout {
   static constexpr std::size_t alignment = 64;                ///< of frames [bytes]
   static constexpr std::size_t limit = std::size_t(1) << 28;  ///< largest frame [bytes]
 
-  explicit MemoryLayout(std::size_t globals_size) { image_.resize(globals_size); }
+  /// Who reads and writes an area of the frame. Compiled code keeps what is a layer's own in registers, and knows what is
+  /// constant.
+  enum class Use : unsigned char { shared, own, constant };
+  struct Area {
+    std::uint32_t offset, size;
+    Use use;
+  };
+
+  explicit MemoryLayout(std::size_t globals_size) { bytes(globals_size, 1, Use::shared); }
 
   /// A place for good, with the value zero or "". Throws Error if the frame becomes too large.
-  Memory allocate(const Type&, bool derivatives);
+  Memory allocate(const Type&, bool derivatives, Use);
   Memory constant(const Type&, std::span<const std::byte> value);
-  std::uint32_t bytes(std::size_t size, std::size_t align);
+  std::uint32_t bytes(std::size_t size, std::size_t align, Use);
 
   /// A place until the temporaries of the statement are released.
   Memory temporary(const Type&, bool derivatives);
@@ -46,6 +54,8 @@ class MemoryLayout {
 
   std::span<std::byte> at(const Memory& m) { return std::span(image_).subspan(m.offset, m.type.size()); }
   const std::vector<std::byte>& image() const { return image_; }
+  /// In the order of their offsets.
+  const std::vector<Area>& areas() const { return areas_; }
 
   /// Sets a value to zero, or its strings to "".
   static void clear(const Type&, std::byte* value);
@@ -55,6 +65,7 @@ class MemoryLayout {
     std::uint32_t offset, size;
   };
   std::vector<std::byte> image_;
+  std::vector<Area> areas_;
   std::vector<Block> live_, free_;
 };
 

@@ -17,6 +17,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "code.h"
 #include "memory_layout.h"
 #include "run_state.h"
 
@@ -35,6 +36,8 @@ class Node {
   virtual ~Node() = default;
   /// Computes an expression's value and leaves it in the place that was chosen when the node was made; or runs a statement.
   virtual Flow run(RunState&) const = 0;
+  /// Makes code that does the same.
+  virtual void emit(Code&) const = 0;
 };
 
 /// Finds a place that depends on computed indices.
@@ -42,6 +45,7 @@ class Locator {
  public:
   virtual ~Locator() = default;
   virtual std::byte* locate(RunState&) const = 0;
+  virtual Word emit(Code&) const = 0;
 };
 
 /// An expression, translated: `compute` (unless null) leaves the value in `memory`.
@@ -53,6 +57,9 @@ struct Value {
   void evaluate(RunState& run) const {
     if (compute) compute->run(run);
   }
+  void emit(Code& code) const {
+    if (compute) compute->emit(code);
+  }
 };
 
 /// A reference, translated: at `memory`, or, with a locator, wherever that finds it (memory.offset is then not used). `fetch`
@@ -63,6 +70,7 @@ struct Place {
   const Node* fetch = nullptr;
 
   std::byte* find(RunState& run) const { return locator ? locator->locate(run) : run.memory + memory.offset; }
+  Spot emit(Code& code) const { return locator ? Spot{0, locator->emit(code)} : Spot{memory.offset, {}}; }
 };
 
 // Reading and writing of values.
@@ -128,6 +136,8 @@ class NodeStore {
       locators_.push_back(std::move(made));
     return result;
   }
+
+  std::size_t size() const { return nodes_.size() + locators_.size(); }
 
  private:
   std::vector<std::unique_ptr<const Node>> nodes_;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "coded_numbers.h"
 #include "etendue/core/spectrum.h"
 #include "osl/library/closures.h"
 
@@ -49,21 +50,27 @@ struct Divide {
   }
 };
 struct Modulus {
+  Whole operator()(Whole a, Whole b) const { return a % b; }
   int operator()(int a, int b) const { return b == 0 || b == -1 ? 0 : a % b; }
 };
 struct ShiftLeft {
+  Whole operator()(Whole a, Whole b) const { return shifted_left(a, b); }
   int operator()(int a, int b) const { return int(unsigned(a) << (b & 31)); }
 };
 struct ShiftRight {
+  Whole operator()(Whole a, Whole b) const { return shifted_right(a, b); }
   int operator()(int a, int b) const { return a >> (b & 31); }
 };
 struct BitAnd {
+  Whole operator()(Whole a, Whole b) const { return a & b; }
   int operator()(int a, int b) const { return a & b; }
 };
 struct BitOr {
+  Whole operator()(Whole a, Whole b) const { return a | b; }
   int operator()(int a, int b) const { return a | b; }
 };
 struct BitXor {
+  Whole operator()(Whole a, Whole b) const { return a ^ b; }
   int operator()(int a, int b) const { return a ^ b; }
 };
 struct Equal {
@@ -85,26 +92,26 @@ struct Unequal {
 };
 struct Less {
   template <class T>
-  int operator()(const T& a, const T& b) const {
-    return a < b;
+  auto operator()(const T& a, const T& b) const {
+    return int_of(a < b);
   }
 };
 struct LessEqual {
   template <class T>
-  int operator()(const T& a, const T& b) const {
-    return a <= b;
+  auto operator()(const T& a, const T& b) const {
+    return int_of(a <= b);
   }
 };
 struct Greater {
   template <class T>
-  int operator()(const T& a, const T& b) const {
-    return a > b;
+  auto operator()(const T& a, const T& b) const {
+    return int_of(a > b);
   }
 };
 struct GreaterEqual {
   template <class T>
-  int operator()(const T& a, const T& b) const {
-    return a >= b;
+  auto operator()(const T& a, const T& b) const {
+    return int_of(a >= b);
   }
 };
 struct Negate {
@@ -116,11 +123,245 @@ struct Negate {
   Matrix operator()(const Matrix& a) const { return a * -1.0f; }
 };
 struct Complement {
+  Whole operator()(Whole a) const { return ~a; }
   int operator()(int a) const { return ~a; }
 };
 
+// ---- the same in code
+// --------------------------------------------------------------------------------------------------------
+
+/// How many floats a value consists of; 0: it is no number, or one for which the program's own functions are called.
+template <class T>
+inline constexpr int float_count = 0;
+template <>
+inline constexpr int float_count<float> = 1;
+template <>
+inline constexpr int float_count<Triple> = 3;
+template <>
+inline constexpr int float_count<Spectrum> = spectrum_size;
+
+template <class Op>
+inline constexpr bool is_equality = std::is_same_v<Op, Equal> || std::is_same_v<Op, Unequal>;
+
+/// Whether all floats, or the one word, of two values are equal.
+template <class T>
+Truth emit_equal(Code& code, const Memory& a, const Memory& b) {
+  if constexpr (std::is_same_v<T, int>) {
+    return load_int(code, a) == load_int(code, b);
+  } else if constexpr (std::is_pointer_v<T>) {
+    return load_address(code, a) == load_address(code, b);
+  } else {
+    constexpr int count = sizeof(T) / sizeof(float);
+    Truth all = load_number<Real>(code, a, 0) == load_number<Real>(code, b, 0);
+    for (int k = 1; k < count; ++k) all = all && load_number<Real>(code, a, k) == load_number<Real>(code, b, k);
+    return all;
+  }
+}
+
+template <class N, class Op, int count>
+void emit_floats(Code& code, const Memory& a, const Memory& b, const Memory& out) {
+  std::array<decltype(Op()(std::declval<N>(), std::declval<N>())), count> results;
+  for (int k = 0; k < count; ++k) results[k] = Op()(load_number<N>(code, a, k), load_number<N>(code, b, k));
+  if constexpr (std::is_same_v<std::remove_cvref_t<decltype(results[0])>, Whole>)
+    store(code, out, results[0]);
+  else
+    for (int k = 0; k < count; ++k) store_number(code, out, k, results[k]);
+}
+
+template <class A, class B, class Op>
+void apply(const A* a, const B* b, std::invoke_result_t<Op, A, B>* out) {
+  *out = Op()(*a, *b);
+}
+
+/// Calls a function of the program with a value's address. A value that the layer has its own copy of is lent as a copy, so
+/// that it can be kept in registers.
+class Lent {
+ public:
+  Lent(Code& code, const Memory& m) : code_(code), memory_(m), own_(code.own(m.offset)) {
+    at_ = own_ ? code.borrow(m.type.size()) : code.address_of({m.offset, {}});
+  }
+  ~Lent() {
+    if (own_) code_.give_back(at_);
+  }
+  Lent(const Lent&) = delete;
+  Lent& operator=(const Lent&) = delete;
+  Word in() {
+    if (own_) emit_copy(code_, memory_.type, {0, at_}, 0, {memory_.offset, {}}, 0, memory_.type.size());
+    return at_;
+  }
+  Word address() const { return at_; }
+  void out() {
+    if (own_) emit_copy(code_, memory_.type, {memory_.offset, {}}, 0, {0, at_}, 0, memory_.type.size());
+    if (!memory_.stride) return;
+    for (std::size_t i = 1; i < 3; ++i)
+      code_.clear({memory_.offset + std::uint32_t(i) * memory_.stride, {}}, memory_.type.size());
+  }
+
+ private:
+  Code& code_;
+  Memory memory_;
+  bool own_;
+  Word at_;
+};
+
+template <class A, class B, class Op, bool dual>
+void emit_binary(Code& code, const Memory& a, const Memory& b, const Memory& out) {
+  if constexpr (is_equality<Op>) {
+    const Truth equal = emit_equal<A>(code, a, b);
+    store(code, out, int_of(std::is_same_v<Op, Equal> ? equal : !equal));
+  } else if constexpr (std::is_same_v<A, int> && std::is_same_v<B, int>) {
+    store(code, out, Op()(load_int(code, a), load_int(code, b)));
+  } else if constexpr (std::is_same_v<A, B> && float_count<A> > 0) {
+    emit_floats<std::conditional_t<dual, Dual<Real>, Real>, Op, float_count<A>>(code, a, b, out);
+  } else {
+    Lent first(code, a), second(code, b), result(code, out);
+    code.call(reinterpret_cast<const void*>(&apply<A, B, Op>), WordKind::none, {first.in(), second.in(), result.address()});
+    result.out();
+  }
+}
+
 // ---- nodes
 // -------------------------------------------------------------------------------------------------------------------
+
+/// Towards zero. Numbers beyond the range, and not-a-number, give the least int, as the processor's own instruction does.
+int whole_number(float f) { return f > -2147483904.0f && f < 2147483648.0f ? int(f) : INT32_MIN; }
+
+Real float_of(Whole a) { return coded<Real>(*a.code, a.code->float_of_int(a.word)); }
+
+struct IntToFloat {
+  float operator()(int a) const { return float(a); }
+};
+struct FloatToInt {
+  int operator()(float a) const { return whole_number(a); }
+};
+struct IntToTriple {
+  Triple operator()(int a) const { return Triple(float(a)); }
+};
+struct FloatToTriple {
+  Triple operator()(float a) const { return Triple(a); }
+  Dual<Triple> operator()(const Dual<float>& a) const { return {Triple(a.value), Triple(a.dx), Triple(a.dy)}; }
+};
+struct IntToMatrix {
+  Matrix operator()(int a) const { return Matrix::diagonal(float(a)); }
+};
+struct FloatToMatrix {
+  Matrix operator()(float a) const { return Matrix::diagonal(a); }
+};
+struct IntToSpectrum {
+  Spectrum operator()(int a) const { return Spectrum(float(a)); }
+};
+struct FloatToSpectrum {
+  Spectrum operator()(float a) const { return Spectrum(a); }
+};
+
+/// The same for one number or address, or a triple.
+struct Same {
+  template <class T>
+  const T& operator()(const T& a) const {
+    return a;
+  }
+};
+
+struct IsTrue {
+  int operator()(int a) const { return a != 0; }
+  int operator()(float a) const { return a != 0; }
+  int operator()(const Triple& a) const { return a.x != 0 || a.y != 0 || a.z != 0; }
+  int operator()(const Matrix& a) const {
+    for (const auto& row : a.m)
+      for (const float x : row)
+        if (x != 0) return 1;
+    return 0;
+  }
+  int operator()(const Spectrum& a) const { return Unequal()(a, Spectrum()); }
+  int operator()(const String* a) const { return !a->text().empty(); }
+  int operator()(const ClosureNode* a) const { return a != nullptr; }
+};
+struct IsFalse {
+  template <class T>
+  int operator()(const T& a) const {
+    return !IsTrue()(a);
+  }
+};
+
+/// Operators of one operand. The ways of conversion differ in the numbers of words that they read and write.
+template <class A, class Op>
+struct Emit {
+  static void unary(Code& code, const Memory& a, const Memory& out) {
+    if constexpr (std::is_same_v<Op, IsTrue> || std::is_same_v<Op, IsFalse>) {
+      const Truth yes = is_true(code, a);
+      store(code, out, int_of(std::is_same_v<Op, IsTrue> ? yes : !yes));
+    } else if constexpr (std::is_same_v<Op, FloatToInt>) {
+      store(code, out, whole_number(load_number<Real>(code, a, 0)));
+    } else if constexpr (std::is_same_v<Op, Same>) {
+      emit_copy(code, a.type, {out.offset, {}}, 0, {a.offset, {}}, 0, sizeof(A));
+      clear_derivatives(code, out);
+    } else if constexpr (std::is_same_v<A, int> && std::is_same_v<std::invoke_result_t<Op, int>, int>) {
+      store(code, out, Op()(load_int(code, a)));
+    } else if constexpr (std::is_same_v<A, int>) {
+      replicate(code, out, float_of(load_int(code, a)));
+    } else if constexpr (std::is_same_v<Op, Negate>) {
+      negate<Real>(code, a, out);
+    } else {
+      replicate(code, out, load_number<Real>(code, a, 0));
+    }
+  }
+  static void dual_unary(Code& code, const Memory& a, const Memory& out) {
+    if constexpr (std::is_same_v<Op, Same>)
+      emit_copy(code, a.type, {out.offset, {}}, out.stride, {a.offset, {}}, a.stride, sizeof(A));
+    else if constexpr (std::is_same_v<Op, Negate>)
+      negate<Dual<Real>>(code, a, out);
+    else
+      replicate(code, out, load_number<Dual<Real>>(code, a, 0));
+  }
+
+ private:
+  static constexpr int words = int(sizeof(A) / sizeof(float));
+
+  static void clear_derivatives(Code& code, const Memory& out) {
+    if (!out.stride) return;
+    for (std::size_t i = 1; i < 3; ++i) code.clear({out.offset + std::uint32_t(i) * out.stride, {}}, sizeof(A));
+  }
+  /// -x, of a matrix x * -1, which is the same but for not-a-number's sign.
+  template <class N>
+  static void negate(Code& code, const Memory& a, const Memory& out) {
+    std::array<N, words> results;
+    for (int k = 0; k < words; ++k) {
+      if constexpr (std::is_same_v<A, Matrix>)
+        results[k] = load_number<N>(code, a, k) * real(code, -1);
+      else
+        results[k] = -load_number<N>(code, a, k);
+    }
+    for (int k = 0; k < words; ++k) store_number(code, out, k, results[k]);
+  }
+  /// One number as all components, or in the diagonal of a matrix.
+  template <class N>
+  static void replicate(Code& code, const Memory& out, const N& x) {
+    if (out.type.is_matrix()) {
+      if constexpr (std::is_same_v<N, Real>)
+        for (int k = 0; k < 16; ++k) store_number(code, out, k, k % 5 == 0 ? x : x.like(0));
+      return;
+    }
+    for (int k = 0; k < out.type.floats(); ++k) store_number(code, out, k, x);
+  }
+  static Truth is_true(Code& code, const Memory& a) {
+    if constexpr (std::is_same_v<A, int>) {
+      return load_int(code, a) != whole(code, 0);
+    } else if constexpr (std::is_same_v<A, const String*>) {
+      return load_address(code, a) != coded<Address>(code, code.address(empty_string()));
+    } else if constexpr (std::is_pointer_v<A>) {
+      return load_address(code, a) != coded<Address>(code, code.address(nullptr));
+    } else {
+      Truth any = load_number<Real>(code, a, 0) != real(code, 0);
+      for (int k = 1; k < words; ++k) any = any || load_number<Real>(code, a, k) != real(code, 0);
+      return any;
+    }
+  }
+  static Whole whole_number(Real f) {
+    const Truth in_range = f > f.like(-2147483904.0f) && f < f.like(2147483648.0f);
+    const Real safe = select(in_range, f, f.like(0));
+    return select(in_range, coded<Whole>(*f.code, f.code->int_of_float(safe.word)), whole(*f.code, INT32_MIN));
+  }
+};
 
 template <class A, class B, class Op>
 class Binary final : public Node {
@@ -131,6 +372,11 @@ class Binary final : public Node {
     b_.evaluate(run);
     store(run, out_, Op()(load<A>(run, a_.memory), load<B>(run, b_.memory)));
     return Flow::next;
+  }
+  void emit(Code& code) const override {
+    a_.emit(code);
+    b_.emit(code);
+    emit_binary<A, B, Op, false>(code, a_.memory, b_.memory, out_);
   }
 
  private:
@@ -148,6 +394,11 @@ class DualBinary final : public Node {
     store(run, out_, Op()(load_dual<A>(run, a_.memory), load_dual<B>(run, b_.memory)));
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    a_.emit(code);
+    b_.emit(code);
+    emit_binary<A, B, Op, true>(code, a_.memory, b_.memory, out_);
+  }
 
  private:
   Value a_, b_;
@@ -163,6 +414,10 @@ class Unary final : public Node {
     store(run, out_, Op()(load<A>(run, a_.memory)));
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    a_.emit(code);
+    Emit<A, Op>::unary(code, a_.memory, out_);
+  }
 
  private:
   Value a_;
@@ -177,6 +432,10 @@ class DualUnary final : public Node {
     a_.evaluate(run);
     store(run, out_, Op()(load_dual<A>(run, a_.memory)));
     return Flow::next;
+  }
+  void emit(Code& code) const override {
+    a_.emit(code);
+    Emit<A, Op>::dual_unary(code, a_.memory, out_);
   }
 
  private:
@@ -248,6 +507,13 @@ class AddClosures final : public Node {
     value_at<const ClosureNode*>(run, out_.offset) = make_sum(run.services, a, b);
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    a_.emit(code);
+    b_.emit(code);
+    constexpr auto sum = static_cast<const ClosureNode* (*)(Services&, const ClosureNode*, const ClosureNode*)>(&make_sum);
+    const Word words[] = {code.services(), load_address(code, a_.memory).word, load_address(code, b_.memory).word};
+    code.store({out_.offset, {}}, code.call(reinterpret_cast<const void*>(sum), WordKind::address, words));
+  }
 
  private:
   Value a_, b_;
@@ -266,6 +532,24 @@ class WeighClosure final : public Node {
     value_at<const ClosureNode*>(run, out_.offset) = closure ? product(run, closure) : nullptr;
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    (weight_first_ ? weight_ : closure_).emit(code);
+    (weight_first_ ? closure_ : weight_).emit(code);
+    const Word closure = load_address(code, closure_.memory).word;
+    Word result;
+    if (weight_.type().base == Base::spectrum) {
+      Lent spectrum(code, weight_.memory);
+      result = code.call(reinterpret_cast<const void*>(&spectral_product), WordKind::address,
+                         {code.services(), spectrum.in(), closure});
+    } else {
+      const bool one = weight_.type().is_float();
+      const Word x = load_number<Real>(code, weight_.memory, 0).word;
+      const Word y = one ? x : load_number<Real>(code, weight_.memory, 1).word;
+      const Word z = one ? x : load_number<Real>(code, weight_.memory, 2).word;
+      result = code.call(reinterpret_cast<const void*>(&color_product), WordKind::address, {code.services(), x, y, z, closure});
+    }
+    code.store({out_.offset, {}}, result);
+  }
 
  private:
   const ClosureNode* product(RunState& run, const ClosureNode* closure) const {
@@ -273,6 +557,13 @@ class WeighClosure final : public Node {
     if (type.base == Base::spectrum) return make_product(run.services, load<Spectrum>(run, weight_.memory), closure);
     return make_product(
         run.services, type.is_float() ? Triple(load<float>(run, weight_.memory)) : load<Triple>(run, weight_.memory), closure);
+  }
+
+  static const ClosureNode* color_product(Services* services, float x, float y, float z, const ClosureNode* closure) {
+    return make_product(*services, Triple(x, y, z), closure);
+  }
+  static const ClosureNode* spectral_product(Services* services, const Spectrum* weight, const ClosureNode* closure) {
+    return make_product(*services, *weight, closure);
   }
 
   Value closure_, weight_;
@@ -283,35 +574,6 @@ class WeighClosure final : public Node {
 // ---- conversions
 // ---------------------------------------------------------------------------------------------------------------
 
-/// Towards zero. Numbers beyond the range, and not-a-number, give the least int, as the processor's own instruction does.
-int whole_number(float f) { return f > -2147483904.0f && f < 2147483648.0f ? int(f) : INT32_MIN; }
-
-struct IntToFloat {
-  float operator()(int a) const { return float(a); }
-};
-struct FloatToInt {
-  int operator()(float a) const { return whole_number(a); }
-};
-struct IntToTriple {
-  Triple operator()(int a) const { return Triple(float(a)); }
-};
-struct FloatToTriple {
-  Triple operator()(float a) const { return Triple(a); }
-  Dual<Triple> operator()(const Dual<float>& a) const { return {Triple(a.value), Triple(a.dx), Triple(a.dy)}; }
-};
-struct IntToMatrix {
-  Matrix operator()(int a) const { return Matrix::diagonal(float(a)); }
-};
-struct FloatToMatrix {
-  Matrix operator()(float a) const { return Matrix::diagonal(a); }
-};
-struct IntToSpectrum {
-  Spectrum operator()(int a) const { return Spectrum(float(a)); }
-};
-struct FloatToSpectrum {
-  Spectrum operator()(float a) const { return Spectrum(a); }
-};
-
 /// The closure that does nothing, of a null.
 class NoClosure final : public Node {
  public:
@@ -320,6 +582,10 @@ class NoClosure final : public Node {
     from_.evaluate(run);
     value_at<const ClosureNode*>(run, out_.offset) = nullptr;
     return Flow::next;
+  }
+  void emit(Code& code) const override {
+    from_.emit(code);
+    code.store({out_.offset, {}}, code.address(nullptr));
   }
 
  private:
@@ -335,19 +601,15 @@ class Copy final : public Node {
     copy_value(run.memory + to_.offset, to_.stride, run.memory + from_.memory.offset, from_.memory.stride, size_);
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    from_.emit(code);
+    emit_copy(code, to_.type, {to_.offset, {}}, to_.stride, {from_.memory.offset, {}}, from_.memory.stride, size_);
+  }
 
  private:
   Value from_;
   Memory to_;
   std::size_t size_;
-};
-
-/// The same for one number or address, or a triple.
-struct Same {
-  template <class T>
-  const T& operator()(const T& a) const {
-    return a;
-  }
 };
 
 template <class T>
@@ -358,27 +620,6 @@ const Node* copy_of(NodeStore& nodes, const Value& from, const Memory& to) {
 
 // ---- truth
 // -------------------------------------------------------------------------------------------------------------------
-
-struct IsTrue {
-  int operator()(int a) const { return a != 0; }
-  int operator()(float a) const { return a != 0; }
-  int operator()(const Triple& a) const { return a.x != 0 || a.y != 0 || a.z != 0; }
-  int operator()(const Matrix& a) const {
-    for (const auto& row : a.m)
-      for (const float x : row)
-        if (x != 0) return 1;
-    return 0;
-  }
-  int operator()(const Spectrum& a) const { return Unequal()(a, Spectrum()); }
-  int operator()(const String* a) const { return !a->text().empty(); }
-  int operator()(const ClosureNode* a) const { return a != nullptr; }
-};
-struct IsFalse {
-  template <class T>
-  int operator()(const T& a) const {
-    return !IsTrue()(a);
-  }
-};
 
 template <class Op>
 const Node* truth_of(NodeStore& nodes, const Value& a, const Memory& out) {
@@ -407,8 +648,26 @@ class MakeTriple final : public Node {
       store(run, out_, Triple(load<float>(run, x_.memory), load<float>(run, y_.memory), load<float>(run, z_.memory)));
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    x_.emit(code);
+    y_.emit(code);
+    z_.emit(code);
+    if (out_.stride)
+      emit_parts<Dual<Real>>(code);
+    else
+      emit_parts<Real>(code);
+  }
 
  private:
+  template <class N>
+  void emit_parts(Code& code) const {
+    const N x = load_number<N>(code, x_.memory, 0), y = load_number<N>(code, y_.memory, 0),
+            z = load_number<N>(code, z_.memory, 0);
+    store_number(code, out_, 0, x);
+    store_number(code, out_, 1, y);
+    store_number(code, out_, 2, z);
+  }
+
   Value x_, y_, z_;
   Memory out_;
 };

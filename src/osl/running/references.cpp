@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "coded_numbers.h"
+
 namespace etendue::osl {
 namespace {
 
@@ -17,13 +19,31 @@ class ElementLocator final : public Locator {
     index_.evaluate(run);
     int i = load<int>(run, index_.memory);
     if (i < 0 || i >= count_) {
-      run.fault(fmt::format("Index [{}] out of range {}[0..{}]", i, name_, count_ - 1), at_);
+      report(&run, this, i);
       i = std::clamp(i, 0, count_ - 1);
     }
     return begin + std::size_t(i) * step_;
   }
+  Word emit(Code& code) const override {
+    if (base_.fetch) base_.fetch->emit(code);
+    const Word begin = code.address_of(base_.emit(code));
+    index_.emit(code);
+    const Whole i = load_int(code, index_.memory), zero = whole(code, 0), last = whole(code, count_ - 1);
+    const Code::Label outside = code.label(), inside = code.label();
+    code.branch((i < zero || i > last).word, outside, inside);
+    code.begin(outside);
+    code.call(reinterpret_cast<const void*>(&report), WordKind::none, {code.run_state(), code.address(this), i.word});
+    code.jump(inside);
+    code.begin(inside);
+    const Whole near = select(i < zero, zero, select(i > last, last, i));
+    return code.element(begin, near.word, step_);
+  }
 
  private:
+  static void report(RunState* run, const ElementLocator* self, int i) {
+    run->fault(fmt::format("Index [{}] out of range {}[0..{}]", i, self->name_, self->count_ - 1), self->at_);
+  }
+
   Place base_;
   Value index_;
   int count_;
@@ -39,6 +59,10 @@ class OffsetLocator final : public Locator {
     if (base_.fetch) base_.fetch->run(run);
     return base_.find(run) + offset_;
   }
+  Word emit(Code& code) const override {
+    if (base_.fetch) base_.fetch->emit(code);
+    return code.address_of(base_.emit(code) + offset_);
+  }
 
  private:
   Place base_;
@@ -52,6 +76,10 @@ class Read final : public Node {
     if (from_.fetch) from_.fetch->run(run);
     copy_value(run.memory + to_.offset, to_.stride, from_.find(run), from_.memory.stride, size_);
     return Flow::next;
+  }
+  void emit(Code& code) const override {
+    if (from_.fetch) from_.fetch->emit(code);
+    emit_copy(code, to_.type, {to_.offset, {}}, to_.stride, from_.emit(code), from_.memory.stride, size_);
   }
 
  private:
@@ -75,6 +103,13 @@ class Write final : public Node {
     if (has_result_) copy_value(run.memory + result_.offset, result_.stride, from, value_.memory.stride, size_);
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    if (to_.fetch) to_.fetch->emit(code);
+    const Spot at = to_.emit(code), from{value_.memory.offset, {}};
+    value_.emit(code);
+    emit_copy(code, to_.memory.type, at, to_.memory.stride, from, value_.memory.stride, size_);
+    if (has_result_) emit_copy(code, result_.type, {result_.offset, {}}, result_.stride, from, value_.memory.stride, size_);
+  }
 
  private:
   Place to_;
@@ -96,6 +131,14 @@ class Update final : public Node {
     operation_->run(run);
     copy_value(at, at_.memory.stride, run.memory + result_.offset, result_.stride, size_);
     return Flow::next;
+  }
+  void emit(Code& code) const override {
+    if (at_.fetch) at_.fetch->emit(code);
+    const Spot at = at_.emit(code);
+    value_.emit(code);
+    emit_copy(code, old_.type, {old_.offset, {}}, old_.stride, at, at_.memory.stride, size_);
+    operation_->emit(code);
+    emit_copy(code, old_.type, at, at_.memory.stride, {result_.offset, {}}, result_.stride, size_);
   }
 
  private:
@@ -125,6 +168,20 @@ class Increment final : public Node {
     if (postfix_) value_at<T>(run, result_.offset) = old;
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    constexpr WordKind kind = std::is_same_v<T, int> ? WordKind::int_ : WordKind::float_;
+    if (at_.fetch) at_.fetch->emit(code);
+    const Spot at = at_.emit(code);
+    const Word old = code.load(kind, at);
+    Word by;
+    if constexpr (std::is_same_v<T, int>)
+      by = code.integer(by_);
+    else
+      by = code.number(float(by_));
+    code.store(at, code.arithmetic(Code::Arithmetic::add, old, by));
+    emit_copy(code, result_.type, {result_.offset, {}}, result_.stride, at, at_.memory.stride, sizeof(T));
+    if (postfix_) code.store({result_.offset, {}}, old);
+  }
 
  private:
   Place at_;
@@ -143,6 +200,12 @@ class Clear final : public Node {
       for (int i = 1; i < 3; ++i) std::memset(at + i * std::size_t(memory_.stride), 0, memory_.type.size());
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    const Spot at{memory_.offset, {}};
+    emit_clear(code, memory_.type, at);
+    if (memory_.stride)
+      for (std::size_t i = 1; i < 3; ++i) code.clear(at + i * memory_.stride, memory_.type.size());
+  }
 
  private:
   Memory memory_;
@@ -154,6 +217,10 @@ class Both final : public Node {
   Flow run(RunState& run) const override {
     const Flow flow = first_->run(run);
     return flow == Flow::next ? second_->run(run) : flow;
+  }
+  void emit(Code& code) const override {
+    first_->emit(code);
+    second_->emit(code);
   }
 
  private:

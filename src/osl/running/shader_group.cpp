@@ -49,14 +49,31 @@ void ShaderGroup::run_layer(RunState& run, int i) const {
   std::byte& ran = run.memory[flags_ + std::size_t(i)];
   if (ran != std::byte{0}) return;
   ran = std::byte{1};
-  const Layer& layer = layers_[std::size_t(i)];
   const int before = std::exchange(run.layer, i);
+  if (const LayerCode* code = compilation_.code()) {
+    code[i](&run, run.memory, &run.services);
+    run.layer = before;
+    return;
+  }
+  const Layer& layer = layers_[std::size_t(i)];
   try {
     for (const Node* node : layer.defaults) node->run(run);
     if (layer.body) layer.body->run(run);
   } catch (const ExitLayer&) {
   }
   run.layer = before;
+}
+
+std::unique_ptr<GroupCode> ShaderGroup::make_code() const {
+  const Machine* const compiler = machine();
+  if (!compiler) throw Error("there is no compiler of shaders here");
+  CodeRequest request{name_->text(), layout_, layer_count(), {}};
+  request.emit = [this](Code& code, int i) {
+    const Layer& layer = layers_[std::size_t(i)];
+    for (const Node* node : layer.defaults) node->emit(code);
+    if (layer.body) layer.body->emit(code);
+  };
+  return compiler->compile(request);
 }
 
 Flow FetchParameter::run(RunState& run) const {
@@ -68,6 +85,16 @@ Flow FetchParameter::run(RunState& run) const {
     transfer.copy->run(run);
   }
   return Flow::next;
+}
+
+// The values lie in the frame, of which no layer has copies of its own.
+void FetchParameter::emit(Code& code) const {
+  const Code::Label first = code.label(), done = code.label();
+  code.branch(code.flag(flag_), done, first);
+  code.begin(first);
+  code.interpret(*this);
+  code.jump(done);
+  code.begin(done);
 }
 
 Flow InterpolatedParameter::run(RunState& run) const {
@@ -90,6 +117,11 @@ bool Execution::run(Globals& globals, Services& services, const std::atomic<bool
 }
 
 bool Execution::run(Globals& globals, Services& services, std::span<const int> layers, const std::atomic<bool>* abort) {
+  if (runs_ < often) {
+    const Execute mode = execution_mode();
+    if (mode == Execute::compiler) group_->compile();
+    if (++runs_ == often && mode == Execute::automatic) group_->compilation_.begin();
+  }
   std::memcpy(state_.memory, static_cast<const void*>(&globals), sizeof(Globals));
   std::memset(state_.memory + group_->flags_, 0, group_->flag_count_);
   state_.world = &services;

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compilation.h"
 #include "globals.h"
 #include "group_description.h"
 #include "nodes.h"
@@ -57,6 +58,11 @@ class ShaderGroup {
   const String* shader_name(int i) const { return layers_[std::size_t(i)].shader_name; }
   const Shader& shader(int i) const { return *layers_[std::size_t(i)].shader; }
 
+  /// Makes the code of the group now, if there is none (see Execute). Throws Error if that is not possible.
+  void compile() const { compilation_.finish(); }
+  /// Whether runs that begin now are of compiled code.
+  bool compiled() const { return compilation_.code() != nullptr; }
+
   /// Where a run leaves an output: "layer.output", or "output" of the last layer that has one; "Ci" and other globals, too.
   std::optional<Memory> find_output(std::string_view) const;
   /// Where a parameter's value lies in the frame, whatever its role.
@@ -88,6 +94,9 @@ class ShaderGroup {
   friend class FetchParameter;
   void run_layer(RunState&, int) const;
 
+  std::unique_ptr<GroupCode> make_code() const;
+  mutable Compilation compilation_{[this] { return make_code(); }};
+
   struct Executions;
   std::unique_ptr<Executions> executions_;
 };
@@ -115,7 +124,11 @@ class Execution {
   struct Free {
     void operator()(std::byte* p) const { ::operator delete[](p, std::align_val_t(MemoryLayout::alignment)); }
   };
+  /// A group that runs so often on one thread is worth to be compiled.
+  static constexpr int often = 256;
+
   const ShaderGroup* group_;
+  int runs_ = 0;  ///< up to `often`
   std::unique_ptr<std::byte[], Free> memory_;
   RunState state_;
 };

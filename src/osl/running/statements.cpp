@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "coded_numbers.h"
 #include "layer_builder.h"
 #include "operations.h"
 #include "references.h"
@@ -18,6 +19,9 @@ class Block final : public Node {
       if (const Flow flow = statement->run(run); flow != Flow::next) return flow;
     return Flow::next;
   }
+  void emit(Code& code) const override {
+    for (const Node* statement : statements_) statement->emit(code);
+  }
 
  private:
   std::vector<const Node*> statements_;
@@ -30,6 +34,18 @@ class Branch final : public Node {
     condition_.evaluate(run);
     const Node* taken = load<int>(run, condition_.memory) ? yes_ : no_;
     return taken ? taken->run(run) : Flow::next;
+  }
+  void emit(Code& code) const override {
+    condition_.emit(code);
+    const Code::Label yes = code.label(), no = code.label(), end = code.label();
+    code.branch((load_int(code, condition_.memory) != whole(code, 0)).word, yes, no);
+    code.begin(yes);
+    if (yes_) yes_->emit(code);
+    code.jump(end);
+    code.begin(no);
+    if (no_) no_->emit(code);
+    code.jump(end);
+    code.begin(end);
   }
 
  private:
@@ -63,8 +79,45 @@ class Loop final : public Node {
       if (step_) step_->run(run);
     }
   }
+  void emit(Code& code) const override {
+    if (begin_) begin_->emit(code);
+    const Code::Label top = code.label(), body = code.label(), step = code.label(), end = code.label();
+    const Code::Targets outer = code.targets;
+    code.targets.break_loop = end;
+    code.targets.continue_loop = step;
+    code.jump(body_first_ ? body : top);
+    code.begin(top);
+    if (has_condition_) {
+      condition_.emit(code);
+      code.branch((load_int(code, condition_.memory) != whole(code, 0)).word, body, end);
+    } else {
+      code.jump(body);
+    }
+    code.begin(body);
+    emit_look_up(code);
+    if (body_) body_->emit(code);
+    code.jump(step);
+    code.begin(step);
+    if (step_) step_->emit(code);
+    code.jump(top);
+    code.begin(end);
+    code.targets = outer;
+  }
 
  private:
+  /// The code's own counter is of one layer, so that up to 255 steps of each are not counted.
+  void emit_look_up(Code& code) const {
+    const Code::Label now = code.label(), later = code.label();
+    code.branch(code.tick(), now, later);
+    code.begin(now);
+    code.call(reinterpret_cast<const void*>(&look_up_from_code), WordKind::none, {code.run_state(), code.address(this)});
+    code.jump(later);
+    code.begin(later);
+  }
+  static void look_up_from_code(RunState* run, const Loop* loop) {
+    run->steps += 256;
+    loop->look_up(*run);
+  }
   /// Now and then: a shader that never ends is stopped with its render, or as a fault.
   void look_up(RunState& run) const {
     if (run.abort && run.abort->load(std::memory_order_relaxed)) throw RunAborted();
@@ -88,6 +141,15 @@ class Jump final : public Node {
   Flow run(RunState& run) const override {
     if (before_) before_->run(run);
     return flow_;
+  }
+  void emit(Code& code) const override {
+    if (before_) before_->emit(code);
+    const Code::Targets& to = code.targets;
+    code.jump(flow_ == Flow::break_loop      ? to.break_loop
+              : flow_ == Flow::continue_loop ? to.continue_loop
+              : flow_ == Flow::leave         ? to.leave
+                                             : to.exit);
+    code.begin(code.label());  // nothing reaches what follows in the same block
   }
 
  private:

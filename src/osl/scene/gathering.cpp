@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <bit>
+
 #include "components/shaders/tangent_frame.h"
 #include "etendue/transport/medium_stack.h"
 
@@ -14,6 +17,23 @@ Vector3 vector(const Triple& t) { return {t.x, t.y, t.z}; }
 /// A normal that lies so far to the side of the surface that it could hardly be seen is tilted to this cosine with the
 /// geometric normal.
 constexpr float least_cosine = 0.02f;
+
+/// The same as rgb_coefficients. A shader's colours are often the same at the next point, and a saturated colour's coefficients
+/// take longer than all else in a simple shader: so those of this thread are kept, a color at one place of a small table.
+RgbCoefficients recent_coefficients(const RgbSpace& space, const Triple& c) {
+  struct Entry {
+    const RgbSpace* space = nullptr;
+    std::array<std::uint32_t, 3> color{};
+    RgbCoefficients coefficients{};
+  };
+  static constexpr std::size_t size = 64;
+  thread_local std::array<Entry, size> table;
+  const auto bits = std::bit_cast<std::array<std::uint32_t, 3>>(c);
+  const std::uint32_t mixed = bits[0] * 0x9e3779b1u + bits[1] * 0x85ebca77u + bits[2] * 0xc2b2ae3du;
+  Entry& entry = table[(mixed >> 24) % size];
+  if (entry.space != &space || entry.color != bits) entry = {&space, bits, rgb_coefficients(space, c.x, c.y, c.z)};
+  return entry.coefficients;
+}
 
 }  // namespace
 
@@ -63,7 +83,8 @@ Spectrum Gathering::reflectance(const Triple& c) const {
 
 Spectrum Gathering::color(const Triple& c, ColorUse use) const {
   if (c.x == c.y && c.y == c.z && use != ColorUse::radiance) return Spectrum(c.x);
-  return rgb_spectrum(place_.space, c.x, c.y, c.z, use, place_.wavelengths);
+  if (use != ColorUse::reflectance) return rgb_spectrum(place_.space, c.x, c.y, c.z, use, place_.wavelengths);
+  return recent_coefficients(place_.space, c).evaluate(place_.wavelengths);
 }
 
 void Gathering::warn(const std::string& text) const { etendue::warn(place_.name + ": " + text); }
@@ -72,7 +93,7 @@ void Gathering::add(const Scatter* scatter, Lobes lobes, Spectrum weight) {
   if (!scatter || !scatter->has(lobes) || weight.black()) return;
   if (count_ == Mixture::most_parts)
     throw Error(fmt::format("{}: a closure has more than {} components at one point", place_.name, Mixture::most_parts));
-  parts_[count_++] = {scatter, weight, lobes, covers_};
+  std::construct_at(&parts_[count_++], MixturePart{scatter, weight, lobes, covers_});
 }
 
 void Gathering::add(const etendue::Shader& model, const SlotValues& values, const SurfacePoint& p, Lobes lobes,

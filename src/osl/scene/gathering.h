@@ -2,6 +2,7 @@
 // Gathering: the parts of a mixture, gathered from the tree of a closure.
 
 #include <array>
+#include <memory>
 
 #include "closure_models.h"
 #include "lobes.h"
@@ -50,7 +51,9 @@ class Gathering {
   void add_component(const ClosureComponent&);
 
   const ClosurePlace& place_;
-  MixturePart parts_[Mixture::most_parts];
+  union {  // made one by one: that of all would take as long as the rest of a simple shader
+    MixturePart parts_[Mixture::most_parts];
+  };
   int count_ = 0;
   const Cover* covers_ = nullptr;
   Triple weight_{1};

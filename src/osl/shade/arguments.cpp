@@ -165,6 +165,8 @@ class ArgumentReader {
         {"iters", [&] { a_.repetitions = whole(1 << 20); }},
         {"raytype", [&] { a_.ray_type = next(); }},
         {"colorspace", [&] { a_.color_space = next(); }},
+        {"interpreter", [&] { a_.execute = Execute::interpreter; }},
+        {"compiler", [&] { a_.execute = Execute::compiler; }},
         {"print", [&] { a_.print = true; }},
         {"p", [&] { a_.print = true; }},
         {"v", [&] { a_.verbose = true; }},
@@ -232,6 +234,10 @@ The results
   -o OUTPUT FILE               writes an output parameter as an image
   -od TYPE                     its numbers: uint8, uint16, half or float
   --print                      prints the outputs instead
+
+How it runs (the numbers are the same)
+  --interpreter                never as machine code
+  --compiler                   as machine code from the first point on; an error if that is not possible
 
 Options of the reference's testshade that concern its compiler, checks and statistics are accepted with a warning.
 )";

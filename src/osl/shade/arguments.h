@@ -2,12 +2,14 @@
 // The command line of `etendue shade`: shaders of a network, and a grid of points at which it is run. The options are those of
 // the reference implementation's testshade, with one or two dashes.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "osl/running/group_description.h"
+#include "osl/running/machine.h"
 
 namespace etendue::osl {
 
@@ -31,6 +33,7 @@ struct ShadeArguments {
   int width = 1, height = 1, repetitions = 1;
   float u_scale = 1, v_scale = 1, u_offset = 0, v_offset = 0;
   bool centers = false, vary_point = false, vary_u = false, vary_v = false;
+  std::optional<Execute> execute;  ///< --interpreter, --compiler
   bool print = false, verbose = false, query = false, userdata_is_connected = false;
   std::vector<std::string> messages;  ///< what the reference prints for its arguments, before the run
   std::vector<std::string> warnings;  ///< options that have no effect

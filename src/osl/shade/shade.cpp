@@ -198,6 +198,7 @@ int run(ShadeArguments& a) {
     shaders.add("expr", fmt::format("shader expr(output color result = 0) {{ {}; }}\n", a.expression));
     a.group.layers.push_back({"expr", "expr_0", {}, {}});
   }
+  if (a.execute) set_execution_mode(*a.execute);
   for (const std::string& message : a.messages) fmt::print("{}", message);
   std::vector<GroupProblem> problems;
   const std::shared_ptr<const ShaderGroup> group = ShaderGroup::build(a.group, group_options(a, shaders), problems);
