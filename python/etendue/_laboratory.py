@@ -495,6 +495,12 @@ class Comparison:
         return (*what, threads, self.insets, state, report)
 
     @_errors_name_arguments
+    def missing(self, threads: int, state: str, report: str) -> tuple[int, int, list[tuple[int, int, int, str]]]:
+        """The seed, the number of all runs, and those that are not in the folder `state`: (scene, variant, run, name of its file)."""
+        seed, count, runs = _core.missing_runs(*self.arguments(threads, state, report))
+        return seed, count, runs
+
+    @_errors_name_arguments
     def analysed(self, threads: int, state: str, report: str, call: str, progress: Optional[Progress]) -> ErrorComparison:
         """The result. Renders the runs that are not in the folder `state`."""
         text, data, csv = _core.compare(*self.arguments(threads, state, report), call, progress)

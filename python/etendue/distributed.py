@@ -383,7 +383,7 @@ def compare(
     shown = "" if report is None else os.fspath(report)
     with contextlib.ExitStack() as temporary:
         kept = os.fspath(state) if state is not None else temporary.enter_context(tempfile.TemporaryDirectory())
-        first_seed, all_runs, missing = _core.missing_runs(*given.arguments(threads, kept, shown))
+        first_seed, all_runs, missing = given.missing(threads, kept, shown)
         scenes = [Sent(client, SentScene.of(given, number, there, files)) for number in range(len(given.scenes))]
         missing.reverse()
         done = all_runs - len(missing)
