@@ -466,6 +466,64 @@ def compare(
 
     Ctrl-C, or an exception of `progress`, ends it. Raises Error for what is wrong in a scene or an argument.
     """
+    given = comparison_of(
+        jobs, renderers, variants, time, samples, runs, reference, reference_time, tile, significance, seed, size, insets
+    )
+    return given.analysed(threads, _file(state), _file(report), "etendue.compare", progress)
+
+
+Variants = list[tuple[str, Union[None, str, Part], list[tuple[str, str]]]]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What `compare` compares: its arguments, checked, and jobs of its own."""
+
+    scenes: list[tuple[str, Any, Any]]  #: name, job, reference
+    variants: Variants
+    samples: int
+    seconds: float
+    runs: int
+    reference_seconds: float
+    tile: int
+    significance: float
+    insets: list[tuple[int, int, int, int]]
+
+    def arguments(self, threads: int, state: str, report: str) -> tuple[Any, ...]:
+        """Of _core.compare and _core.missing_runs."""
+        what = (self.scenes, self.variants, self.samples, self.seconds, self.runs, self.reference_seconds, self.tile, self.significance)
+        return (*what, threads, self.insets, state, report)
+
+    @_errors_name_arguments
+    def missing(self, threads: int, state: str, report: str) -> tuple[int, int, list[tuple[int, int, int, str]]]:
+        """The seed, the number of all runs, and those that are not in the folder `state`: (scene, variant, run, name of its file)."""
+        seed, count, runs = _core.missing_runs(*self.arguments(threads, state, report))
+        return seed, count, runs
+
+    @_errors_name_arguments
+    def analysed(self, threads: int, state: str, report: str, call: str, progress: Optional[Progress]) -> ErrorComparison:
+        """The result. Renders the runs that are not in the folder `state`."""
+        text, data, csv = _core.compare(*self.arguments(threads, state, report), call, progress)
+        return ErrorComparison(text, json.loads(data), csv)
+
+
+@_errors_name_arguments
+def comparison_of(
+    jobs: Any,
+    renderers: Optional[Renderers],
+    variants: Optional[Mapping[str, Mapping[str, Any]]],
+    time: Optional[float],
+    samples: Optional[int],
+    runs: int,
+    reference: Any,
+    reference_time: Optional[float],
+    tile: int,
+    significance: float,
+    seed: Optional[int],
+    size: Optional[tuple[int, int]],
+    insets: Sequence[tuple[int, int, int, int]],
+) -> Comparison:
+    """The arguments of `compare`, checked. Raises Error."""
     if (time is None) == (samples is None):
         raise Error("give one of time= (CPU time of each run [s]) and samples= (per pixel of each run)")
     if reference is not None and reference_time is not None:
@@ -478,7 +536,7 @@ def compare(
     _require_positive("reference_time", reference_time)
     scenes = _scenes(jobs)
     references = _references(reference, len(scenes))
-    text, data, csv = _core.compare(
+    return Comparison(
         [(name, _described(job, seed, size), r) for (name, job), r in zip(scenes, references)],
         _variants(renderers, variants),
         samples or 0,
@@ -487,14 +545,8 @@ def compare(
         reference_time or 0,
         tile,
         significance,
-        threads,
         list(insets),
-        _file(state),
-        _file(report),
-        "etendue.compare",
-        progress,
     )
-    return ErrorComparison(text, json.loads(data), csv)
 
 
 # ---- conform ----------------------------------------------------------------------------------------------------------------
@@ -689,10 +741,8 @@ def _shown(renderer: Union[Part, type]) -> str:
     return renderer.__name__ if isinstance(renderer, type) else repr(renderer).removesuffix("()")
 
 
-def _variants(
-    renderers: Optional[Renderers], variants: Optional[Mapping[str, Mapping[str, Any]]]
-) -> list[tuple[str, Union[None, str, Part], list[tuple[str, str]]]]:
-    all_of_them: list[tuple[str, Union[None, str, Part], list[tuple[str, str]]]] = [(n, r, []) for n, r in _named(renderers)]
+def _variants(renderers: Optional[Renderers], variants: Optional[Mapping[str, Mapping[str, Any]]]) -> Variants:
+    all_of_them: Variants = [(n, r, []) for n, r in _named(renderers)]
     for name, sets in (variants or {}).items():
         texts = [(path, value if isinstance(value, str) else _core.write_value(value)) for path, value in sets.items()]
         all_of_them.append((name, None, texts))

@@ -17,6 +17,7 @@ from typing import Any, Optional
 from . import _core
 from ._classes import Part
 from ._errors import Error, Fault
+from ._laboratory import Comparison
 from ._progress import Progress
 from ._render import Render
 
@@ -89,6 +90,7 @@ def render_part(sent: SentJob, begin: int, end: int, threads: int) -> RenderedPa
         render = _renders.get(sent)
         if render is None:
             _renders.clear()  # another job's, which may be waiting for more parts, but memory holds one
+            _scenes.clear()
             job = sent.job()
             job.time_limit = job.error_limit = 0  # the client observes the limits of the whole picture
             render = _renders[sent] = _prepared(job, threads, warn=False)  # the client warns of the scene
@@ -107,6 +109,7 @@ def render_whole(sent: SentJob, threads: int) -> tuple[Any, list[str], dict[str,
     """Renders all of a job: pixels, names of the channels, metadata."""
     with _rendering:
         _renders.clear()
+        _scenes.clear()
         job = sent.job()
         try:
             with _prepared(job, threads, warn=True) as render:
@@ -136,13 +139,84 @@ def _worker_and_task() -> tuple[Any, Optional[str]]:
     return worker, getattr(state, "key", None)
 
 
-def _ends_when_unwanted() -> Callable[[Progress], None]:
+def _ends_when_unwanted() -> Callable[[Optional[Progress]], None]:
     """A progress function that aborts the render once the scheduler has withdrawn the task. Dask by itself would go on to its end."""
     worker, key = _worker_and_task()
 
-    def look(progress: Progress) -> None:
+    def look(progress: Optional[Progress]) -> None:
         task = worker.state.tasks.get(key) if worker is not None else None
         if worker is not None and (task is None or task.state == "cancelled"):
             raise Unwanted()
 
     return look
+
+
+# ---- runs of a comparison -------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class SentScene:
+    """A scene of a comparison on its way to other machines, with what is compared on it."""
+
+    name: str
+    job: SentJob
+    variants: tuple[tuple[str, bool, Optional[str], tuple[tuple[str, str], ...]], ...]  #: name, whether a part, text, members
+    samples: int
+    seconds: float
+    reference_seconds: float
+
+    @staticmethod
+    def of(given: Comparison, scene: int, folder: Optional[str], plugins: tuple[str, ...]) -> SentScene:
+        name, job, _ = given.scenes[scene]
+        variants = []
+        for variant, renderer, sets in given.variants:
+            text = _core.write_description(renderer, False, "") if isinstance(renderer, Part) else renderer
+            variants.append((variant, isinstance(renderer, Part), text, tuple(sets)))
+        sent = SentJob.of(job, folder, plugins)
+        return SentScene(name, sent, tuple(variants), given.samples, given.seconds, given.reference_seconds)
+
+    def cells(self, threads: int) -> Any:
+        """What renders the scene's runs on this machine."""
+        job = self.job.job()
+        variants = [
+            (name, _core.parse_component(text, "variants", "") if is_part else text, list(sets))
+            for name, is_part, text, sets in self.variants
+        ]
+        return _core.Cells(self.name, job, variants, self.samples, self.seconds, self.reference_seconds, threads)
+
+
+@dataclass(frozen=True)
+class RenderedCell:
+    """A run of a comparison, as its file in the folder of runs."""
+
+    content: bytes
+    processor: str
+
+
+#: The scenes of comparisons that this process has prepared.
+_scenes: weakref.WeakKeyDictionary[SentScene, Any] = weakref.WeakKeyDictionary()
+
+
+def render_cell(sent: SentScene, seed: int, key: tuple[int, int, int], threads: int) -> RenderedCell:
+    """Renders one run: (scene, variant, run). threads: 0: as many as the worker of Dask has."""
+    with _rendering:
+        _renders.clear()
+        worker, _ = _worker_and_task()
+        unwanted = _ends_when_unwanted()
+        try:
+            cells = _scenes.get(sent)
+            if cells is None:
+                _scenes.clear()
+                cells = _scenes[sent] = sent.cells(threads or (worker.state.nthreads if worker is not None else 0))
+            return RenderedCell(cells.render(seed, *key, lambda fraction, what: unwanted(None)), _processor())
+        except Error as e:
+            raise located(e) from None
+
+
+def _processor() -> str:
+    """The model of this machine's processor."""
+    try:
+        with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
+            return next((line.partition(":")[2].strip() for line in file if line.startswith("model name")), "unknown")
+    except OSError:
+        return "unknown"

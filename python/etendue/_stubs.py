@@ -82,7 +82,8 @@ def _literals_of(name: str) -> Iterable[str]:
 def _single_given(member: dict[str, Any]) -> str:
     kind = member["type"]
     if kind == "component":
-        return " | ".join([member["class"], *_literals_of(member["class"])])
+        image = ["_npt.NDArray[_t.Any]"] if member["class"] == "ObjectMap" else []
+        return " | ".join([member["class"], *_literals_of(member["class"]), *image])
     return _literal(member) or ("_npt.ArrayLike" if kind in _VECTORS else _GIVEN[kind])
 
 

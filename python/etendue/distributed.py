@@ -13,136 +13,29 @@ renders. The job travels as a description; its files do not, but are read by eac
 
 from __future__ import annotations
 
-import importlib
+import contextlib
 import math
 import os
-import queue
+import tempfile
 import time as clock
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Literal, Optional, Union
 
 from . import _core
 from ._classes import Part
 from ._errors import Error, _warn
 from ._images import Image
-from ._parts import RenderedPart, SentJob, render_part, render_whole
+from ._laboratory import ErrorComparison, Renderers, comparison_of
+from ._laboratory import Progress as ToldProgress
+from ._parts import RenderedPart, SentJob, SentScene, render_cell, render_part, render_whole
 from ._progress import Progress, Shown, display_for
 from ._render import FileName, Render, _loaded, _overridden, _prepared_outputs, _result
+from ._tasks import Sent, Tasks, dask
 
-__all__ = ["frames", "render", "run"]
+__all__ = ["compare", "frames", "render", "run"]
 
-#: How often a part may lose its machine: more often, and the part is probably the reason.
-_MOST_LOSSES = 10
-_PARTS_PER_WORKER = 2  # one is rendered, and the next one is there when it ends
 _CHECKPOINT_INTERVAL = 60.0  # [s]
-
-
-# ---- tasks of Dask --------------------------------------------------------------------------------------------------------------
-
-
-def _dask(client: Any) -> Any:
-    """The package distributed. Raises Error if it is missing, or if this is no client of it that can be used here."""
-    try:
-        package = importlib.import_module("distributed")
-    except ImportError as e:
-        raise Error(f"renders over many machines need Dask: pip install etendue[distributed] ({e})") from None
-    if not isinstance(client, package.Client):
-        raise Error(f"client is a dask.distributed.Client, not {client!r}")
-    if client.asynchronous:
-        raise Error("client is asynchronous: make it by Client(…) without asynchronous=True, outside of a coroutine")
-    if client.status != "running":
-        raise Error(f"the client is not connected to a scheduler: it is {client.status}")
-    return package
-
-
-@dataclass
-class _Task:
-    what: Any  # what the caller calls it by
-    submit: Callable[[], Any]
-    losses: int = 0
-
-
-class _Sent:
-    """A job as the result of a task of its own, which each worker fetches once."""
-
-    def __init__(self, client: Any, job: SentJob) -> None:
-        self._client = client
-        self._job = job
-        self._future: Any = None
-
-    def future(self) -> Any:
-        # Workers that are lost while they have the job may take its task along.
-        if self._future is None or self._future.status in ("error", "lost", "cancelled"):
-            job = self._job
-            self._future = self._client.submit(SentJob, job.text, job.folder, job.plugins, job.identity, pure=False)
-        return self._future
-
-
-class _Tasks:
-    """Tasks under way. There are few for each worker, so that results do not pile up, and each result is released once it is here."""
-
-    def __init__(self, client: Any) -> None:
-        self._package = _dask(client)
-        self._client = client
-        self._under_way: dict[Any, _Task] = {}
-        self._done: queue.SimpleQueue[Any] = queue.SimpleQueue()
-
-    @property
-    def workers(self) -> int:
-        """Processes, at least 1: without any the tasks wait for the first one to come."""
-        return max(1, len(self._client.scheduler_info(n_workers=-1)["workers"]))
-
-    @property
-    def wanted(self) -> bool:
-        """Whether the workers could do with one more."""
-        return len(self._under_way) < _PARTS_PER_WORKER * self.workers
-
-    def __len__(self) -> int:
-        return len(self._under_way)
-
-    def submit(self, what: Any, function: Callable[..., Any], sent: _Sent, *arguments: Any) -> None:
-        """Submits function(job, …)."""
-        self._begin(_Task(what, lambda: self._client.submit(function, sent.future(), *arguments, pure=False)))
-
-    def _begin(self, task: _Task) -> None:
-        future = task.submit()
-        self._under_way[future] = task
-        future.add_done_callback(self._done.put)
-
-    def next(self, seconds: float) -> Optional[tuple[Any, Any]]:
-        """What was submitted, and its result; None: nothing has arrived for this time. Raises the task's exception."""
-        try:
-            future = self._done.get(timeout=seconds)
-        except queue.Empty:
-            return None
-        task = self._under_way.pop(future)
-        try:
-            result = future.result()
-        except self._package.KilledWorker:
-            task.losses += 1
-            if task.losses >= _MOST_LOSSES:
-                raise Error(
-                    f"{task.what}: every worker that began it was lost, {task.losses} times in a row: "
-                    "their logs say why (memory is the usual reason)"
-                ) from None
-            self._begin(task)
-            return None
-        except ModuleNotFoundError as e:
-            raise Error(f"a worker has no module {e.name}: install the package there, in the version of the client") from None
-        except Exception as e:
-            if type(e).__name__ in ("FutureCancelledError", "CancelledError"):
-                raise Error("the parts under way were cancelled, or the scheduler was lost; what has arrived is kept") from None
-            raise
-        finally:
-            future.release()
-        return task.what, result
-
-    def cancel(self) -> None:
-        """Withdraws all that is under way; the workers abort it."""
-        if self._under_way and self._client.status == "running":
-            self._client.cancel(list(self._under_way))
-        self._under_way.clear()
 
 
 # ---- parts of one render --------------------------------------------------------------------------------------------------------
@@ -278,7 +171,7 @@ def run(
     algorithm's steps depend on each other; if a machine would render another picture, as one of its files differs or its version
     of Étendue is another: with the machine's name; and if a part has lost its machine ten times.
     """
-    tasks = _Tasks(client)
+    tasks = Tasks(client)
     _require_independent_steps(render)
     if not part_seconds > 0:
         raise Error(f"part_seconds is a time, more than 0, not {part_seconds}")
@@ -289,7 +182,7 @@ def run(
         if limits:
             render.edit([(part, name, value) for (part, name), value in limits.items()])
         left = _Steps(render, steps, part_seconds)
-        sent = _Sent(client, SentJob.of(render.job, None if folder is None else os.fspath(folder), _paths(plugins)))
+        sent = Sent(client, SentJob.of(render.job, None if folder is None else os.fspath(folder), _paths(plugins)))
         return _collect(render, tasks, left, sent, threads, seconds, _Checkpoint(render, checkpoint), display)
     finally:
         tasks.cancel()
@@ -302,9 +195,9 @@ def run(
 
 def _collect(
     render: Render,
-    tasks: _Tasks,
+    tasks: Tasks,
     left: _Steps,
-    sent: _Sent,
+    sent: Sent,
     threads: int,
     seconds: Optional[float],
     checkpoint: _Checkpoint,
@@ -379,7 +272,7 @@ def render(
     The picture is, byte for byte, that of one process, unless a limit of time or error ends it. Ctrl-C raises KeyboardInterrupt;
     `run` with a Render of one's own keeps what has arrived in memory. Raises Error as `run` does.
     """
-    _dask(client)
+    dask(client)
     rendered = _overridden(_loaded(job), samples, None, error, seed, renderer, size, layers, changes)
     stem = _prepared_outputs(rendered, outputs)
     with Render(rendered, warn=warn) as made:
@@ -420,7 +313,7 @@ def frames(
 
     Each job's own limits end its picture. Leaving the loop withdraws all that is under way. Raises Error as `run` does.
     """
-    tasks = _Tasks(client)
+    tasks = Tasks(client)
     there = None if folder is None else os.fspath(folder)
     files = _paths(plugins)
     waiting = enumerate(jobs)
@@ -435,7 +328,7 @@ def frames(
                     break
                 job = _loaded(given)
                 tone_maps[number] = None if job.tone_map is None else _core.copy(job.tone_map)
-                tasks.submit(number, render_whole, _Sent(client, SentJob.of(job, there, files)), threads)
+                tasks.submit(number, render_whole, Sent(client, SentJob.of(job, there, files)), threads)
             if not len(tasks):
                 return
             arrived = tasks.next(0.25)
@@ -444,3 +337,81 @@ def frames(
                 yield number, Image(_core.picture_from(pixels, channels, metadata), tone_maps.pop(number))
     finally:
         tasks.cancel()
+
+
+# ---- comparisons ----------------------------------------------------------------------------------------------------------------
+
+
+def compare(
+    jobs: Union[Part, FileName, Sequence[Union[Part, FileName]], Mapping[str, Union[Part, FileName]]],
+    client: Any,
+    renderers: Optional[Renderers] = None,
+    *,
+    variants: Optional[Mapping[str, Mapping[str, Any]]] = None,
+    time: Optional[float] = None,
+    samples: Optional[int] = None,
+    runs: int = 8,
+    reference: Any = None,
+    reference_time: Optional[float] = None,
+    tile: int = 0,
+    significance: float = 0.01,
+    seed: Optional[int] = None,
+    size: Optional[tuple[int, int]] = None,
+    insets: Sequence[tuple[int, int, int, int]] = (),
+    threads: int = 0,
+    state: Optional[FileName] = None,
+    report: Optional[FileName] = None,
+    folder: Optional[FileName] = None,
+    plugins: Sequence[FileName] = (),
+    progress: Optional[ToldProgress] = None,
+) -> ErrorComparison:
+    """etendue.compare over many machines: each run of a variant on a scene is a task of its own.
+
+    client, folder, plugins: as of `run`. threads: of each worker; 0: as many as Dask gives it. All other arguments are those of
+    etendue.compare. With equal samples, the errors are those of one process, to the last digit. CPU time is measured where a run is
+    rendered: for `time`, all workers should have the same processor, and a warning says if they have not.
+
+    state: the folder on this machine where finished runs are kept. Ctrl-C, or an exception of `progress`, withdraws what is under
+    way; the same call, or etendue.compare with that folder, goes on with the runs that are kept. Raises Error as etendue.compare
+    and `run` do.
+    """
+    tasks = Tasks(client)
+    given = comparison_of(
+        jobs, renderers, variants, time, samples, runs, reference, reference_time, tile, significance, seed, size, insets
+    )
+    there, files = None if folder is None else os.fspath(folder), _paths(plugins)
+    shown = "" if report is None else os.fspath(report)
+    with contextlib.ExitStack() as temporary:
+        kept = os.fspath(state) if state is not None else temporary.enter_context(tempfile.TemporaryDirectory())
+        first_seed, all_runs, missing = given.missing(threads, kept, shown)
+        scenes = [Sent(client, SentScene.of(given, number, there, files)) for number in range(len(given.scenes))]
+        missing.reverse()
+        done = all_runs - len(missing)
+        processors: set[str] = set()
+        try:
+            while missing or len(tasks):
+                while missing and tasks.wanted:
+                    scene, variant, run_number, name = missing.pop()
+                    tasks.submit(name, render_cell, scenes[scene], first_seed, (scene, variant, run_number), threads)
+                arrived = tasks.next(0.25)
+                if arrived is not None:
+                    name, cell = arrived
+                    _write_whole(os.path.join(kept, name), cell.content)
+                    processors.add(cell.processor)
+                    done += 1
+                if progress is not None:
+                    progress(done / max(all_runs, 1), f"{done} of {all_runs} runs")
+        finally:
+            tasks.cancel()
+        if len(processors) > 1 and (time is not None or reference_time is not None):
+            _warn(
+                f"the runs were rendered on {len(processors)} kinds of processors ({', '.join(sorted(processors))}), so that CPU times "
+                "cannot be compared: give samples=, or use workers of one kind"
+            )
+        return given.analysed(threads, kept, shown, "etendue.distributed.compare", None)
+
+
+def _write_whole(path: str, content: bytes) -> None:
+    with open(path + ".part", "wb") as file:
+        file.write(content)
+    os.replace(path + ".part", path)

@@ -49,6 +49,8 @@ struct Opaque {
 /// From a Python object to a value for a member; null: for no certain member. Numbers without a unit are in the member's unit.
 /// Throws Error, or Python's TypeError for objects of which no value can be made.
 Value to_value(nb::handle, const Member* member, Location = {});
+/// The array of an object that has a shape and is no list; an invalid object for all others.
+nb::object as_array(nb::handle);
 /// From a value to a Python object. Numbers are in the member's unit, without a member in base units.
 nb::object to_python(const Value&, const Member* member);
 

@@ -13,6 +13,7 @@
 #include "kept_lists.h"
 #include "live_render.h"
 #include "parts.h"
+#include "shaped_arrays.h"
 #include "snapshots.h"
 #include "trees.h"
 
@@ -53,33 +54,28 @@ void note_origin(Component& c, const std::string& member, Location at) {
   c.origin->members.emplace_back(member, at);
 }
 
-/// to_value, with the member's name in the messages of what cannot be a value at all.
-Value value_for(const Component& c, const std::string& name, const Member* member, nb::handle value, Location at) {
-  try {
-    return to_value(value, member, at);
-  } catch (const Error& e) {
-    throw Error(c.class_info().name + "." + name + " " + e.what(), e.location.known() ? e.location : at);
-  }
-}
-
 void set_member(nb::handle self, const std::string& name, nb::handle value) {
   const Ref<Component> c = component_of(self);
   const Location at = calling_line();
   const Member* member = c->class_info().find(name);
-  const Value given = value_for(*c, name, member, value, at);
+  if (!member) throw Error(no_member(c->class_info(), name), at);
+  const std::vector<Given> given = given_values(*c, *member, value, at);
   forget_snapshots(*c);
   LiveRender* const live = render_of(*c);
-  if (member && member->kind == Kind::component) refuse_cycle(*c, live ? Value() : member->get(*c, *member), given);
-  if (live && member) {
-    const LiveRender::Change change{c, member, given};
-    live->edit(std::span(&change, 1));
+  if (member->kind == Kind::component) refuse_cycle(*c, live ? Value() : member->get(*c, *member), given.front().value);
+  if (live) {
+    std::vector<LiveRender::Change> changes;
+    for (const Given& g : given) changes.push_back({c, g.member, g.value});
+    live->edit(changes);
     if (const LiveRender* still = render_of(*c); !still || still->idle()) note_origin(*c, name, at);
     return;
   }
-  const KeptList kept(*c, member);
-  set(*c, name, given);
-  kept.replaced();
-  note_origin(*c, name, at);
+  for (const Given& g : given) {
+    const KeptList kept(*c, g.member);
+    set(*c, g.member->name, g.value);
+    kept.replaced();
+    note_origin(*c, g.member->name, at);
+  }
 }
 
 nb::object get_member(nb::handle self, const std::string& name) {

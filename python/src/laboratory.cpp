@@ -12,6 +12,7 @@
 #include <atomic>
 
 #include "binding.h"
+#include "check/compare/cells.h"
 #include "check/compare/laboratory.h"
 #include "check/compare/tables.h"
 #include "check/compare/text.h"
@@ -22,7 +23,6 @@
 #include "files/input_files.h"
 #include "files/output_files.h"
 #include "files/whole_file.h"
-#include "parts.h"
 #include "watched_work.h"
 
 namespace etendue::python {
@@ -94,13 +94,6 @@ struct Texts {
   std::string text, json;
 };
 
-/// Whether any of the renderers is written in Python. These do not report their light by path length, and refuse such layers.
-bool written_in_python(const verify::Choice& choice) {
-  return std::any_of(choice.candidates.begin(), choice.candidates.end(), [](const verify::Candidate& candidate) {
-    return dynamic_cast<const PythonPart*>(candidate.renderer.get()) != nullptr;
-  });
-}
-
 Texts verified(const VerifyRequest& request, Abortable& abortable, WorkProgress& progress) {
   if (!request.report.empty()) note_inputs_of(*request.job);
   refuse_output(request.report);
@@ -108,7 +101,8 @@ Texts verified(const VerifyRequest& request, Abortable& abortable, WorkProgress&
   Render render(request.job, {.threads = request.threads});
   verify::Choice choice = verify::choose_renderers(*request.job, named(*request.job, request.renderers), request.force);
   verify::require_two(choice);
-  if (request.lengths == 0 || written_in_python(choice)) render.edit(*render.job().image, "path_lengths", Value(Number{0}));
+  if (request.lengths == 0 || !verify::without_lengths(choice).empty())
+    render.edit(*render.job().image, "path_lengths", Value(Number{0}));
   verify::CollectOptions collecting = request.collecting;
   collecting.leave_out_refusing = request.renderers.empty();
   collecting.go_on = [&](size_t renderer, size_t passes) {
@@ -232,22 +226,43 @@ std::vector<comparing::Variant> compared_variants(const nb::list& variants) {
   return all;
 }
 
+/// What a comparison is of: the arguments of compare_jobs and missing_runs, in this order.
+struct ComparisonArguments {
+  const nb::list& scenes;
+  const nb::list& variants;
+  std::uint32_t samples;
+  double seconds;
+  size_t runs;
+  double reference_seconds;
+  int tile;
+  double significance;
+  int threads;
+  const std::vector<std::tuple<int, int, int, int>>& insets;
+  const std::string &state, &report;
+};
+
+comparing::ComparisonOptions options_of(const ComparisonArguments& given) {
+  comparing::ComparisonOptions options;
+  options.scenes = compared_scenes(given.scenes);
+  options.variants = compared_variants(given.variants);
+  options.budget = {given.samples, given.seconds};
+  options.runs = given.runs;
+  options.reference_seconds = given.reference_seconds;
+  options.tile = given.tile;
+  options.significance = given.significance;
+  options.threads = given.threads;
+  options.state_folder = given.state;
+  options.pictures = !given.report.empty();
+  for (const auto& [x, y, width, height] : given.insets) options.insets.push_back({x, y, x + width, y + height});
+  return options;
+}
+
 nb::tuple compare_jobs(const nb::list& scenes, const nb::list& variants, std::uint32_t samples, double seconds, size_t runs,
                        double reference_seconds, int tile, double significance, int threads,
                        const std::vector<std::tuple<int, int, int, int>>& insets, const std::string& state,
                        const std::string& report, const std::string& call, nb::object told) {
-  comparing::ComparisonOptions options;
-  options.scenes = compared_scenes(scenes);
-  options.variants = compared_variants(variants);
-  options.budget = {samples, seconds};
-  options.runs = runs;
-  options.reference_seconds = reference_seconds;
-  options.tile = tile;
-  options.significance = significance;
-  options.threads = threads;
-  options.state_folder = state;
-  options.pictures = !report.empty();
-  for (const auto& [x, y, width, height] : insets) options.insets.push_back({x, y, x + width, y + height});
+  comparing::ComparisonOptions options = options_of(
+      {scenes, variants, samples, seconds, runs, reference_seconds, tile, significance, threads, insets, state, report});
   Abortable abortable;
   WorkProgress progress;
   Texts texts;
@@ -265,6 +280,61 @@ nb::tuple compare_jobs(const nb::list& scenes, const nb::list& variants, std::ui
   do_watched(work, [&] { abortable.abort(); }, progress, std::move(told));
   return nb::make_tuple(texts.text, texts.json, csv);
 }
+
+/// The seed of a comparison, the number of all its runs, and those that are not in its folder: (scene, variant, run, file's
+/// name).
+nb::tuple missing_runs(const nb::list& scenes, const nb::list& variants, std::uint32_t samples, double seconds, size_t runs,
+                       double reference_seconds, int tile, double significance, int threads,
+                       const std::vector<std::tuple<int, int, int, int>>& insets, const std::string& state,
+                       const std::string& report) {
+  comparing::ComparisonOptions options = options_of(
+      {scenes, variants, samples, seconds, runs, reference_seconds, tile, significance, threads, insets, state, report});
+  std::uint64_t seed = 0;
+  size_t all = 0;
+  std::vector<comparing::RunKey> keys;
+  WorkProgress progress;
+  const auto work = [&] {
+    comparing::Laboratory laboratory(std::move(options));
+    refuse_output(report);
+    keys = laboratory.missing_runs();
+    seed = laboratory.seed();
+    all = laboratory.all_runs();
+  };
+  do_watched(work, [] {}, progress, nb::none());
+  nb::list missing;
+  for (const comparing::RunKey& key : keys)
+    missing.append(nb::make_tuple(key.scene, key.variant, key.run, comparing::run_file_name(key)));
+  return nb::make_tuple(seed, all, missing);
+}
+
+/// A scene's runs, one at a time.
+class Cells {
+ public:
+  Cells(const std::string& name, nb::handle job, const nb::list& variants, std::uint32_t samples, double seconds,
+        double reference_seconds, int threads) {
+    nb::list scenes;
+    scenes.append(nb::make_tuple(name, job, nb::none()));
+    comparing::CellRequest request{
+        compared_scenes(scenes).front(), compared_variants(variants), {samples, seconds}, reference_seconds, threads};
+    WorkProgress progress;
+    do_watched([&] { renderer_ = std::make_unique<comparing::CellRenderer>(std::move(request)); }, [] {}, progress, nb::none());
+  }
+  nb::bytes render(std::uint64_t seed, size_t scene, size_t variant, size_t run, nb::object told) {
+    Abortable abortable;
+    WorkProgress progress;
+    std::optional<std::string> bytes;
+    const auto work = [&] {
+      Watcher watcher(abortable, progress, 1);
+      bytes = renderer_->render(seed, {scene, variant, run}, watcher);
+    };
+    do_watched(work, [&] { abortable.abort(); }, progress, std::move(told));
+    if (!bytes) throw Error("the run was ended");
+    return nb::bytes(bytes->data(), bytes->size());
+  }
+
+ private:
+  std::unique_ptr<comparing::CellRenderer> renderer_;
+};
 
 // ---- conform ---------------------------------------------------------------------------------------------------------------
 
@@ -318,6 +388,11 @@ void bind_laboratory(nb::module_& m) {
         nb::arg("runs"), nb::arg("reference_seconds"), nb::arg("tile"), nb::arg("significance"), nb::arg("threads"),
         nb::arg("insets"), nb::arg("state"), nb::arg("report"), nb::arg("call"), nb::arg("progress").none(),
         "The text, the JSON and the CSV of `etendue compare`.");
+  m.def("missing_runs", &missing_runs);
+  nb::class_<Cells>(m, "Cells", "Renders single runs of a comparison on a scene.")
+      .def(nb::init<const std::string&, nb::handle, const nb::list&, std::uint32_t, double, double, int>())
+      .def("render", &Cells::render, nb::arg("seed"), nb::arg("scene"), nb::arg("variant"), nb::arg("run"),
+           nb::arg("progress").none());
   m.def("conform", &conform_classes, nb::arg("classes"), nb::arg("effort"), nb::arg("drawn"), nb::arg("seed"),
         nb::arg("threads"), nb::arg("report"), nb::arg("call"), nb::arg("progress").none(),
         "The text of `etendue conform`, and its outcomes.");

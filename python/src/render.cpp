@@ -23,6 +23,7 @@
 #include "render/checkpoint.h"
 #include "render/denoising.h"
 #include "render/file_hash.h"
+#include "shaped_arrays.h"
 
 namespace etendue::python {
 
@@ -139,7 +140,7 @@ void edit(LiveRender& live, const nb::list& given) {
     const auto name = nb::cast<std::string>(entry[1]);
     const Member* member = part->class_info().find(name);
     if (!member) get(*part, name);  // throws Error with the list of members
-    changes.push_back({part, member, to_value(entry[2], member, at)});
+    for (Given& g : given_values(*part, *member, entry[2], at)) changes.push_back({part, g.member, std::move(g.value)});
   }
   live.edit(changes);
 }

@@ -14,6 +14,7 @@
 
 #include "etendue/language/language.h"
 #include "language/calls.h"
+#include "shaped_arrays.h"
 
 namespace etendue::python {
 
@@ -51,19 +52,13 @@ Value transform_from(const std::vector<double>& m, Location at) {
   return Value(Transform(rows), at);
 }
 
-/// The array of an object that has a shape and is no list; empty for all others.
-nb::object as_array(nb::handle object) {
-  if (!nb::hasattr(object, "__array__") && !nb::hasattr(object, "__array_interface__") && !nb::hasattr(object, "__dlpack__") &&
-      !nb::isinstance<nb::ndarray<>>(object))
-    return {};
-  return nb::module_::import_("numpy").attr("asarray")(object);
-}
-
 Value from_array(nb::object array, const Member* member, Location at) {
   const std::string kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
   if (kind == "U" || kind == "S" || kind == "O") return to_value(array.attr("tolist")(), member, at);
   if (kind != "b" && kind != "i" && kind != "u" && kind != "f")
     throw Error("cannot be an array of " + text_of(array.attr("dtype")), at);
+  if (member && !member->list && member->component_class == "ObjectMap" && nb::cast<size_t>(array.attr("ndim")) >= 2)
+    return Value(image_map_of(array, at), at);
   const nb::object numpy = nb::module_::import_("numpy");
   if (nb::cast<size_t>(array.attr("ndim")) == 0) {
     if (kind == "b") return Value(nb::cast<bool>(array.attr("item")()), at);
@@ -103,6 +98,13 @@ Value from_sequence(nb::handle sequence, const Member* member, Location at) {
 }
 
 }  // namespace
+
+nb::object as_array(nb::handle object) {
+  if (!nb::hasattr(object, "__array__") && !nb::hasattr(object, "__array_interface__") && !nb::hasattr(object, "__dlpack__") &&
+      !nb::isinstance<nb::ndarray<>>(object))
+    return {};
+  return nb::module_::import_("numpy").attr("asarray")(object);
+}
 
 Value to_value(nb::handle object, const Member* member, Location at) {
   if (object.is_none()) return Value();

@@ -19,6 +19,7 @@ namespace etendue {
 
 class ImageTexture;
 struct LinearImage;
+struct ListedImage;
 
 /// The type in which a file stores the numbers of a channel.
 enum class NumberType : std::uint8_t { uint8, uint16, half, single };
@@ -65,6 +66,8 @@ class ImageLibrary {
   /// See ImageTexture::open.
   virtual std::shared_ptr<const ImageTexture> open_texture(const std::string& path, const std::string& transfer,
                                                            const std::string& channel) const = 0;
+  /// See ImageTexture::of.
+  virtual std::shared_ptr<const ImageTexture> texture_of(ListedImage) const = 0;
   /// The bytes of a file in the format of an extension (".png").
   virtual std::vector<unsigned char> encode(const std::string& extension, const ImageHeader&, const PixelValues&) const = 0;
 };

@@ -7,6 +7,7 @@
 #include "files/file_kind.h"
 #include "files/regular_file.h"
 #include "image_library.h"
+#include "listed_image.h"
 
 namespace etendue {
 namespace {
@@ -53,5 +54,7 @@ std::shared_ptr<const ImageTexture> read_texture(const std::string& path, const 
                                                  const std::string& channel) {
   return reading(path, [&](const ImageLibrary& library) { return library.open_texture(path, transfer, channel); });
 }
+
+std::shared_ptr<const ImageTexture> texture_of(ListedImage image) { return image_library().texture_of(std::move(image)); }
 
 }  // namespace etendue

@@ -33,8 +33,11 @@ struct LinearImage {
 LinearImage read_linear_image(const std::string& path, const std::string& transfer, const std::string& channel = {});
 
 class ImageTexture;
+struct ListedImage;
 /// Implements ImageTexture::open, see there.
 std::shared_ptr<const ImageTexture> read_texture(const std::string& path, const std::string& transfer,
                                                  const std::string& channel);
+/// Implements ImageTexture::of, see there.
+std::shared_ptr<const ImageTexture> texture_of(ListedImage);
 
 }  // namespace etendue

@@ -58,6 +58,9 @@ class Halving {
   std::vector<float> row_;
 };
 
+/// No image has more MIP levels, so that references into `levels_` stay valid while further levels are made.
+constexpr size_t most_levels = 32;
+
 /// Half of the machine's memory. Textures are looked up at full resolution and in random order, and after a cache miss a strip
 /// of the file is read again.
 float cache_megabytes() {
@@ -99,6 +102,21 @@ std::shared_ptr<const CachedTexture> CachedTexture::open(const std::string& path
   });
 }
 
+std::shared_ptr<const CachedTexture> CachedTexture::of(const ListedImage& image) {
+  const auto texture = std::make_shared<CachedTexture>();
+  texture->channels_ = image.channels;
+  texture->pixels_x_ = image.width;
+  texture->pixels_y_ = image.height;
+  texture->levels_.reserve(most_levels);
+  texture->levels_.push_back({image.width, image.height, {}});
+  for (const float value : image.texels) texture->largest_ = std::max(texture->largest_, value);
+  texture->kept_ = std::make_unique<KeptTexels>(image.texels.size());
+  const size_t row = size_t(image.width) * size_t(image.channels);
+  for (size_t begin = 0; begin < image.texels.size(); begin += row) texture->kept_->add(image.texels.data() + begin, row);
+  texture->kept_whole_ = true;
+  return texture;
+}
+
 void CachedTexture::read_header(const OIIO::ImageSpec& spec) {
   channels_ = spec.nchannels;
   from_cube_ = spec.get_int_attribute(made_of_cube) != 0;
@@ -112,7 +130,7 @@ void CachedTexture::read_header(const OIIO::ImageSpec& spec) {
   const double area = double(width) * height;
   if (width < 1 || height < 1) throw Error("its display window is empty");
   if (area > 0x1p26 && area > 16.0 * pixels_x_ * pixels_y_) throw Error("its display window is far larger than what it shows");
-  levels_.reserve(32);  // the largest possible number: references into levels_ stay valid while further levels are made
+  levels_.reserve(most_levels);
   levels_.push_back({width, height, {}});
 }
 

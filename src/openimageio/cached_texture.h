@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "components/maps/image_texture.h"
+#include "images/listed_image.h"
 #include "kept_texels.h"
 
 namespace etendue {
@@ -22,6 +23,8 @@ class CachedTexture final : public ImageTexture {
   /// See ImageTexture::open; errors state the reason without the path.
   static std::shared_ptr<const CachedTexture> open(const std::string& path, const std::string& transfer,
                                                    const std::string& channel);
+  /// See ImageTexture::of. The texels are stored in memory whatever it takes, as there is no file to read them from again.
+  static std::shared_ptr<const CachedTexture> of(const ListedImage&);
 
   int channels() const override { return channels_; }
   bool from_cube() const override { return from_cube_; }

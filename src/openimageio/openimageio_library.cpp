@@ -6,6 +6,7 @@
 #include "file_output.h"
 #include "images/image_library.h"
 #include "images/linear_image.h"
+#include "images/listed_image.h"
 #include "linear_input.h"
 
 namespace etendue {
@@ -26,6 +27,7 @@ class OpenImageIoLibrary final : public ImageLibrary {
                                                    const std::string& channel) const override {
     return CachedTexture::open(path, transfer, channel);
   }
+  std::shared_ptr<const ImageTexture> texture_of(ListedImage image) const override { return CachedTexture::of(image); }
   std::vector<unsigned char> encode(const std::string& extension, const ImageHeader& header,
                                     const PixelValues& pixels) const override {
     return encode_file(extension, header, pixels);

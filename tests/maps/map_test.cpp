@@ -196,6 +196,39 @@ TEST(ImageMap, FiltersOverTheFootprint) {
   EXPECT_NEAR(map->scalar(p), 0.5f, 1e-3f);
 }
 
+// The texels of a list and those of a file are the same to the bit, whatever the lookup and the encoding.
+TEST(ImageMap, AListOfNumbersIsTheImageOfAFile) {
+  test::Random random(3);
+  test::TestSquare square(2);
+  square.reference();
+  for (const bool integers : {false, true})
+    for (const int channels : {1, 3}) {
+      constexpr int width = 13, height = 9;
+      std::vector<double> listed;
+      std::vector<float> stored;
+      for (int i = 0; i < width * height * channels; ++i) {
+        listed.push_back(integers ? std::floor(256.0 * double(random())) : double(random()));
+        stored.push_back(float(listed.back()) / (integers ? 255.0f : 1.0f));
+      }
+      const ImageFile file(integers ? "listed.png" : "listed.exr",
+                           {width, height, channels, integers ? NumberType::uint8 : NumberType::single}, stored);
+      for (const char* interpolation : {"nearest", "bilinear"}) {
+        const Ref<ObjectMap> of_file = create<ObjectMap>("ImageMap", {{"file", file.path}, {"interpolation", interpolation}}),
+                             of_list = create<ObjectMap>("ImageMap", {{"resolution", std::vector<double>{width, height}},
+                                                                      {"values", listed},
+                                                                      {"number_type", integers ? "uint8" : "float"},
+                                                                      {"interpolation", interpolation}});
+        EXPECT_EQ(of_list->largest(), of_file->largest());
+        for (int i = 0; i < 200; ++i) {
+          SurfacePoint p = at(3 * random() - 1, 3 * random() - 1);
+          p.object = &square;
+          p.footprint = i % 2 == 0 ? 0 : random();
+          EXPECT_EQ(of_list->scalar(p), of_file->scalar(p)) << p.uv.x << " " << p.uv.y << " " << p.footprint;
+        }
+      }
+    }
+}
+
 TEST(ImageMap, LargeTiledAndUntiledFiles) {
   std::vector<float> values;
   for (int y = 0; y < 150; ++y)

@@ -117,3 +117,52 @@ def test_what_is_no_client_is_refused(job, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(etendue.Error, match=r"pip install etendue\[distributed\]"):
         distributed.render(job, None)
+
+
+def test_a_comparison_is_that_of_one_process(cluster, job, tmp_path):
+    """Errors over samples to the last digit, also where workers die; the runs that were kept are used again."""
+    others = {"one bounce": {"renderer.max_depth": 1}}
+    how = {"variants": others, "samples": 4, "runs": 3, "size": (24, 16), "seed": 5}
+    alone = etendue.compare(job, ["PathTracer", etendue.LightTracer()], **how)
+    killed, told = [], []
+
+    def kill_one(fraction, what):
+        told.append(fraction)
+        if fraction > 0.3 and not killed and clusters.kill_a_worker(cluster[0]):
+            killed.append(what)
+
+    kept = tmp_path / "runs"
+    found = distributed.compare(job, cluster[1], ["PathTracer", etendue.LightTracer()], state=kept, progress=kill_one, **how)
+    assert killed and told == sorted(told) and told[-1] == 1
+    errors = [[(p.samples, p.relative_mean_square_error) for p in row.curve] for row in found]
+    assert errors == [[(p.samples, p.relative_mean_square_error) for p in row.curve] for row in alone]
+    assert [row.name for row in found] == [row.name for row in alone]
+    assert len(list(kept.glob("*.run"))) == 9 and not list(kept.glob("*.part"))
+    (kept / "scene1-variant2-run3.run").unlink()
+    again = distributed.compare(job, cluster[1], ["PathTracer", etendue.LightTracer()], state=kept, **how)
+    assert [[(p.samples, p.relative_mean_square_error) for p in row.curve] for row in again] == errors
+    with pytest.raises(etendue.Error, match="of another comparison"):
+        distributed.compare(job, cluster[1], ["PathTracer"], samples=4, runs=3, state=kept)
+
+
+def test_a_comparison_that_is_interrupted_keeps_its_runs(client, job, tmp_path):
+    kept = tmp_path / "runs"
+
+    def interrupt(fraction, what):
+        if fraction > 0.4:
+            raise KeyboardInterrupt
+
+    how = {"samples": 2, "runs": 4, "size": (24, 16), "state": kept}
+    with pytest.raises(KeyboardInterrupt):
+        distributed.compare(job, client, ["PathTracer", "LightTracer"], progress=interrupt, **how)
+    assert 3 < len(list(kept.glob("*.run"))) < 8
+    assert len(etendue.compare(job, ["PathTracer", "LightTracer"], **how)) == 2
+
+
+def test_a_comparison_says_what_is_wrong(client, job):
+    with pytest.raises(etendue.Error, match="NoSuchTracer"):
+        distributed.compare(job, client, ["NoSuchTracer"], samples=2)
+    with pytest.raises(etendue.Error, match="give one of time="):
+        distributed.compare(job, client, ["PathTracer"])
+    with pytest.raises(etendue.Error, match="reference_time"):
+        distributed.compare(job, client, ["WhittedRenderer"], samples=2, reference_time=1)

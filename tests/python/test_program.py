@@ -68,6 +68,14 @@ def test_commands_have_the_classes_of_a_plugin(folder, command):
     assert "HalfMap" in done.stdout or command[0] == "check"
 
 
+@pytest.mark.parametrize("renderer, agrees", [("ArrayTracer", True), ("DarkTracer", False)])
+def test_a_renderer_of_a_plugin_is_verified(folder, renderer, agrees):
+    (folder / "mine.py").write_text(pathlib.Path(__file__).with_name("parts_examples.py").read_text())
+    done = run(folder, "verify", "plain.etd", "--plugin", "mine.py", "--renderers", f"PathTracer{{max_depth: 5}},{renderer}", "--samples", "64")
+    assert done.returncode == (0 if agrees else 1), (done.stdout, done.stderr)
+    assert f"path lengths are not tested apart, as {renderer}" in done.stderr
+
+
 def test_what_is_missing_is_named(folder):
     done = run(folder, "classes", "--plugin", "half.py", ETENDUE_PYTHON="/nowhere/python3")
     assert done.returncode == 2

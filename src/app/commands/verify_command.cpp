@@ -138,6 +138,11 @@ int verify_file(const VerifyOptions& options) {
 
   verify::Choice choice = verify::choose_renderers(*job, options.renderers, options.force);
   verify::require_two(choice);
+  if (const std::string name = verify::without_lengths(choice); !name.empty()) {
+    render.edit(*render.job().image, "path_lengths", Value(Number{0}));
+    if (!options.quiet)
+      fmt::print(stderr, "note: path lengths are not tested apart, as {} does not report its light by path length\n", name);
+  }
   const verify::Collected collected = collect(render, choice, options);
   if (!collected.complete) {
     fmt::print(stderr, "interrupted: no verdict\n");

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "cells.h"
 #include "check/verify/collect.h"
 #include "check/verify/report_pictures.h"
 #include "etendue/language/language.h"
@@ -12,18 +13,6 @@
 #include "report.h"
 
 namespace etendue::comparing {
-namespace {
-
-constexpr size_t reference_runs = 8;
-
-std::optional<size_t> reference_variant(const SceneSubjects& subjects) {
-  for (size_t v = 0; v < subjects.subjects().size(); ++v)
-    if (subjects.subjects()[v].reaches_truth()) return v;
-  return {};
-}
-
-}  // namespace
-
 struct Laboratory::Members {
   ComparisonOptions options;
   ComparisonIdentity identity = {};
@@ -38,7 +27,8 @@ struct Laboratory::Members {
   void look_at(size_t scene);
   ReferenceSource reference_of(size_t scene, const SceneSubjects&) const;
   void open_store();
-  bool render_one(const RunKey&, SceneSubjects&, size_t subject, const Budget&, ComparisonWatcher&);
+  bool is_stored(const RunKey&) const;
+  std::vector<RunKey> runs_of(size_t scene) const;
   bool render(size_t scene, SceneSubjects&, ComparisonWatcher&);
   void analyse(size_t scene, const SceneSubjects&);
 };
@@ -105,47 +95,39 @@ void Laboratory::Members::open_store() {
   store = std::make_unique<RunStore>();
 }
 
-/// Renders one run unless it is stored. Returns false if the watcher ends it.
-bool Laboratory::Members::render_one(const RunKey& key, SceneSubjects& subjects, size_t subject, const Budget& budget,
-                                     ComparisonWatcher& watcher) {
-  const bool for_reference = key.variant == options.variants.size();
-  if (store->has(key) && !(for_reference && store->run(key).marks.back().seconds < budget.seconds)) {
-    watcher.end(store->run(key).wall_seconds);
-    return true;
-  }
-  Render& render = subjects.ready(subject);
-  const std::shared_ptr<void> stoppable =
-      watcher.begin(fmt::format("{}: {} run {}", std::filesystem::path(options.scenes[key.scene].name).stem().string(),
-                                for_reference ? "reference," : options.variants[subject].name + ",", key.run + 1),
-                    render);
-  const double began = processor_seconds();
-  std::optional<RunResult> result = render_run(render, seed_of(identity.seed, key), budget, [&] {
-    const double part = budget.seconds > 0 ? (processor_seconds() - began) / budget.seconds
-                                           : double(render.progress().samples) / double(budget.samples);
-    watcher.at(part);
-    return watcher.go_on();
-  });
-  if (!result) return false;
-  if (for_reference) {  // only the final image is used
-    result->run.marks.erase(result->run.marks.begin(), result->run.marks.end() - 1);
-    result->pictures.erase(result->pictures.begin(), result->pictures.end() - 1);
-  }
-  const double seconds = result->run.wall_seconds;
-  store->keep(key, std::move(*result));
-  watcher.end(seconds);
-  return watcher.go_on();
+/// A run for the reference is of use only if it had its time.
+bool Laboratory::Members::is_stored(const RunKey& key) const {
+  if (!store->has(key)) return false;
+  return key.variant < options.variants.size() ||
+         store->run(key).marks.back().seconds >= options.reference_seconds / double(reference_runs);
 }
 
-bool Laboratory::Members::render(size_t scene, SceneSubjects& subjects, ComparisonWatcher& watcher) {
+/// All runs of a scene, in order. Variants take turns, so that other load of the machine affects all of them alike.
+std::vector<RunKey> Laboratory::Members::runs_of(size_t scene) const {
+  std::vector<RunKey> keys;
   if (references[scene].variant)
-    for (size_t run = 0; run < reference_runs; ++run)
-      if (!render_one({scene, options.variants.size(), run}, subjects, *reference_variant(subjects),
-                      {0, options.reference_seconds / double(reference_runs)}, watcher))
-        return false;
-  // Variants take turns, so that other load of the machine affects all of them alike.
+    for (size_t run = 0; run < reference_runs; ++run) keys.push_back({scene, options.variants.size(), run});
   for (size_t run = 0; run < options.runs; ++run)
-    for (size_t v = 0; v < options.variants.size(); ++v)
-      if (!render_one({scene, v, run}, subjects, v, options.budget, watcher)) return false;
+    for (size_t v = 0; v < options.variants.size(); ++v) keys.push_back({scene, v, run});
+  return keys;
+}
+
+/// Renders the scene's runs that are not stored. Returns false if the watcher ends it.
+bool Laboratory::Members::render(size_t scene, SceneSubjects& subjects, ComparisonWatcher& watcher) {
+  const CellRequest request{options.scenes[scene], options.variants, options.budget, options.reference_seconds,
+                            options.threads};
+  for (const RunKey& key : runs_of(scene)) {
+    if (is_stored(key)) {
+      watcher.end(store->run(key).wall_seconds);
+      continue;
+    }
+    std::optional<RunResult> result = render_cell(request, subjects, identity.seed, key, watcher);
+    if (!result) return false;
+    const double seconds = result->run.wall_seconds;
+    store->keep(key, std::move(*result));
+    watcher.end(seconds);
+    if (!watcher.go_on()) return false;
+  }
   return true;
 }
 
@@ -187,6 +169,17 @@ Laboratory::Laboratory(ComparisonOptions options) : members_(new Members{std::mo
 }
 
 Laboratory::~Laboratory() = default;
+
+std::uint64_t Laboratory::seed() const { return members_->identity.seed; }
+
+std::vector<RunKey> Laboratory::missing_runs() {
+  members_->open_store();
+  std::vector<RunKey> missing;
+  for (size_t scene = 0; scene < members_->options.scenes.size(); ++scene)
+    for (const RunKey& key : members_->runs_of(scene))
+      if (!members_->is_stored(key)) missing.push_back(key);
+  return missing;
+}
 
 size_t Laboratory::all_runs() const {
   const ComparisonOptions& options = members_->options;

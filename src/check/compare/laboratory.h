@@ -58,6 +58,12 @@ class Laboratory {
   /// Renders and analyses all runs. False: the watcher ended it. Throws Error if the folder holds other runs.
   bool run(ComparisonWatcher&);
 
+  /// The seed of the comparison, from which those of the runs follow (seed_of).
+  std::uint64_t seed() const;
+  /// The runs that are not in the folder of runs, in the order in which `run` renders them. Requires a folder, which is created
+  /// if it does not exist; throws Error if it holds other runs.
+  std::vector<RunKey> missing_runs();
+
   size_t all_runs() const;
   size_t stored_runs() const;  ///< those that are rendered
   /// Complete after `run`.

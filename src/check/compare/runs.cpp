@@ -132,6 +132,25 @@ std::optional<RunResult> render_run(Render& render, std::uint64_t seed, const Bu
 // ---- keeping them
 // -------------------------------------------------------------------------------------------------------------
 
+std::string run_file(const RunResult& result) {
+  Json marks = Json::array(), hashes = Json::array();
+  for (const Mark& mark : result.run.marks) marks.push_back({{"samples", mark.samples}, {"seconds", mark.seconds}});
+  for (const Pixels& pixels : result.pictures) hashes.push_back(hash_of(std::as_bytes(std::span(pixels))));
+  const Json json = {{"bad_samples", result.run.bad_samples},
+                     {"wall_seconds", result.run.wall_seconds},
+                     {"marks", marks},
+                     {"numbers", result.pictures.front().size()},
+                     {"hashes", hashes}};
+  std::string bytes = std::string(magic) + json.dump() + "\n";
+  for (const Pixels& pixels : result.pictures)
+    bytes.append(reinterpret_cast<const char*>(pixels.data()), pixels.size() * sizeof(float));
+  return bytes;
+}
+
+std::string run_file_name(const RunKey& key) {
+  return fmt::format("scene{}-variant{}-run{}.run", key.scene + 1, key.variant + 1, key.run + 1);
+}
+
 RunStore::RunStore(std::string folder, const ComparisonIdentity& identity) : folder_(std::move(folder)) {
   const std::string manifest = folder_ + "/comparison.json";
   std::error_code error;
@@ -155,9 +174,7 @@ RunStore::RunStore(std::string folder, const ComparisonIdentity& identity) : fol
   write_whole_file(manifest, identity_json(identity).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-std::string RunStore::file(const RunKey& key) const {
-  return fmt::format("{}/scene{}-variant{}-run{}.run", folder_, key.scene + 1, key.variant + 1, key.run + 1);
-}
+std::string RunStore::file(const RunKey& key) const { return folder_ + "/" + run_file_name(key); }
 
 bool RunStore::has(const RunKey& key) const {
   std::error_code error;
@@ -165,7 +182,6 @@ bool RunStore::has(const RunKey& key) const {
   return runs_.contains(key);
 }
 
-/// The format of a run's file: the magic line, a line of JSON, and the numbers of its images.
 void RunStore::find(const RunKey& key) const {
   const std::string path = file(key);
   try {
@@ -216,18 +232,7 @@ void RunStore::keep(const RunKey& key, RunResult result) {
     runs_[key] = std::move(result.run);
     return;
   }
-  Json marks = Json::array(), hashes = Json::array();
-  for (const Mark& mark : result.run.marks) marks.push_back({{"samples", mark.samples}, {"seconds", mark.seconds}});
-  for (const Pixels& pixels : result.pictures) hashes.push_back(hash_of(std::as_bytes(std::span(pixels))));
-  const Json json = {{"bad_samples", result.run.bad_samples},
-                     {"wall_seconds", result.run.wall_seconds},
-                     {"marks", marks},
-                     {"numbers", result.pictures.front().size()},
-                     {"hashes", hashes}};
-  const std::string head = std::string(magic) + json.dump() + "\n";
-  std::vector<std::span<const std::byte>> pieces{std::as_bytes(std::span(head))};
-  for (const Pixels& pixels : result.pictures) pieces.push_back(std::as_bytes(std::span(pixels)));
-  write_whole_file(file(key), pieces);
+  write_whole_file(file(key), run_file(result));
   find(key);
 }
 

@@ -52,6 +52,11 @@ struct RunKey {
 /// The seed of a run: no two runs of a comparison have the same random numbers.
 std::uint64_t seed_of(std::uint64_t base, const RunKey&);
 
+/// The contents of a run's file: a line that says what it is, a line of JSON, and the numbers of its images.
+std::string run_file(const RunResult&);
+/// The name of a run's file in the folder.
+std::string run_file_name(const RunKey&);
+
 /// Identifies the comparison that a folder of runs belongs to, so that another one does not continue with it.
 struct ComparisonIdentity {
   struct Part {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "describe/guard.h"
+#include "etendue/describe/declared_class.h"
 #include "etendue/language/language.h"
 #include "etendue/render/shrinking_bias.h"
 #include "limit.h"
@@ -184,6 +185,12 @@ void require_two(const Choice& choice) {
   for (const LeftOut& left : choice.left_out) message += fmt::format("\n  {}: {}", left.name, left.reason);
   throw Error(message +
               "\nname others with --renderers, such as 'PathTracer{next_event: false}'; --force keeps those that miss light");
+}
+
+std::string without_lengths(const Choice& choice) {
+  for (const Candidate& candidate : choice.candidates)
+    if (dynamic_cast<const DeclaredMembers*>(candidate.renderer.get())) return candidate.name;
+  return {};
 }
 
 void prepare_picture(Job& job, int lengths) {

@@ -61,6 +61,9 @@ Choice choose_renderers(const Job&, const std::vector<NamedRenderer>& named, boo
 Choice choose_renderers(const Job&, const std::string& list, bool force);
 /// Throws Error, with the reasons why others are left out, if there are not two renderers to compare.
 void require_two(const Choice&);
+/// The name of a renderer that does not report its light by path length, as no class that is declared at run time does, such as
+/// one written in Python: the picture has to be without path lengths then. Empty: all renderers report it.
+std::string without_lengths(const Choice&);
 
 struct CollectOptions {
   int samples = 4;     ///< per pixel and pass

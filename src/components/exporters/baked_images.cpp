@@ -7,6 +7,7 @@
 #include "etendue/describe/color.h"
 #include "etendue/describe/registry.h"
 #include "images/linear_image.h"
+#include "images/listed_image.h"
 #include "members.h"
 
 namespace etendue {
@@ -34,6 +35,9 @@ Ref<Component> with_pixels(Exporting& exporting, const Component& image, const c
   const std::string name = exporting.write_beside(what, "pfm", as_pfm(pixels));
   const FilePath file{(std::filesystem::path(exporting.folder()) / name).string(), {}};
   Ref<Component> made = changed(image, "file", Value(file));
+  set(*made, "values", Value(Value::List{}));
+  set(*made, "resolution", Value(Numbers{{1, 1}, 1, Dimension::none}));
+  set(*made, "number_type", Value(std::string("float")));
   set(*made, "transfer", Value(std::string("linear")));
   set(*made, "channel", Value(std::string()));
   return made;
@@ -46,10 +50,29 @@ std::array<double, 3> times(const std::array<double, 9>& m, const std::array<dou
           m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
 }
 
+/// The texels of an ImageMap that is given by its numbers.
+LinearImage listed_texels(const Component& image) {
+  const std::vector<double> size = numbers_of(image, "resolution"), numbers = numbers_of(image, "values");
+  const std::string type = word_of(image, "number_type");
+  ListedImage listed = listed_image(image, {size.begin(), size.end()}, {numbers.begin(), numbers.end()},
+                                    type == "uint8"    ? ListedNumbers::uint8
+                                    : type == "uint16" ? ListedNumbers::uint16
+                                                       : ListedNumbers::single,
+                                    word_of(image, "transfer"), word_of(image, "channel"));
+  LinearImage linear{listed.width, listed.height, std::move(listed.texels)};
+  if (listed.channels == 1) {
+    std::vector<float> rgb;
+    rgb.reserve(3 * linear.rgb.size());
+    for (const float grey : linear.rgb) rgb.insert(rgb.end(), 3, grey);
+    linear.rgb = std::move(rgb);
+  }
+  return linear;
+}
+
 /// Applies `change` to an ImageMap's linear texels; the value of a single channel is repeated three times.
 template <class Change>
 LinearImage texels(const Component& image, Change change) {
-  LinearImage pixels = read_linear_image(word_of(image, "file"), word_of(image, "transfer"), word_of(image, "channel"));
+  LinearImage pixels = image_texels(image);
   for (float* rgb = pixels.rgb.data(); rgb != pixels.rgb.data() + pixels.rgb.size(); rgb += 3)
     std::ranges::transform(change(std::array<double, 3>{double(rgb[0]), double(rgb[1]), double(rgb[2])}), rgb,
                            [](double value) { return float(value); });
@@ -58,13 +81,20 @@ LinearImage texels(const Component& image, Change change) {
 
 }  // namespace
 
+bool is_listed(const Component& image) { return class_of(image) == "ImageMap" && word_of(image, "file").empty(); }
+
+LinearImage image_texels(const Component& image) {
+  if (is_listed(image)) return listed_texels(image);
+  return read_linear_image(word_of(image, "file"), word_of(image, "transfer"), word_of(image, "channel"));
+}
+
 Ref<Component> baked_product(Exporting& exporting, const Component& product) {
   const Ref<Component> first = part_of(product, "first"), second = part_of(product, "second");
   if (!first || !second || !constant_of(*second)) return nullptr;
   const bool moved = class_of(*first) == "UvTransformMap";
   const Ref<Component> image = moved ? part_of(*first, "map") : first;
   if (!image || class_of(*image) != "ImageMap" || !word_of(*image, "channel").empty() || !one_file(*image)) return nullptr;
-  LinearImage pixels = read_linear_image(word_of(*image, "file"), word_of(*image, "transfer"));
+  LinearImage pixels = image_texels(*image);
   const std::vector<double> factor = numbers_of(product, "factor"), offset = numbers_of(product, "offset");
   const std::array<double, 3> other = rgb_of(constant_of(*second), ColorUse::reflectance);
   for (size_t i = 0; i < pixels.rgb.size(); ++i)
@@ -108,8 +138,9 @@ Ref<Component> baked_number(Exporting& exporting, const Component& image, AsNumb
   if (!one_file(image)) return nullptr;
   const bool mean = word_of(image, "as_number") == "mean",
              same = mean == (there == AsNumber::mean) && (mean || space == "srgb");
-  if (channel.empty() && decoded_there && (same || image_channels(file).size() < 3)) return nullptr;
-  bool grey = channel.empty() && decoded_there;
+  const bool listed = is_listed(image);
+  if (!listed && channel.empty() && decoded_there && (same || image_channels(file).size() < 3)) return nullptr;
+  bool grey = !listed && channel.empty() && decoded_there;
   const std::array<double, 9>& to_xyz = rgb_space(space).to_xyz;
   const LinearImage pixels = texels(image, [&](const std::array<double, 3>& rgb) {
     grey = grey && rgb[0] == rgb[1] && rgb[0] == rgb[2];

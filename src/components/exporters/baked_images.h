@@ -5,6 +5,14 @@
 
 namespace etendue {
 
+struct LinearImage;
+
+/// Whether an image is an ImageMap that is given by its numbers, which other programs do not have: it has to be written to a
+/// file.
+bool is_listed(const Component& image);
+/// The linear texels of an ImageMap of one file, or of its numbers; a single channel is repeated three times. Throws Error.
+LinearImage image_texels(const Component& image);
+
 /// A product of an image and a colour (RgbProductMap) as an image of the products, written beside the exported file: an
 /// ImageMap, or a UvTransformMap of one as in the product. Null: the product has other factors.
 Ref<Component> baked_product(Exporting&, const Component& product);

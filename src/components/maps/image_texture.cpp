@@ -1,6 +1,7 @@
 #include "image_texture.h"
 
 #include "images/linear_image.h"
+#include "images/listed_image.h"
 
 namespace etendue {
 
@@ -10,5 +11,7 @@ std::shared_ptr<const ImageTexture> ImageTexture::open(const std::string& path, 
                                                        const std::string& channel) {
   return read_texture(path, transfer, channel);
 }
+
+std::shared_ptr<const ImageTexture> ImageTexture::of(ListedImage image) { return texture_of(std::move(image)); }
 
 }  // namespace etendue

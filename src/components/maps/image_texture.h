@@ -8,6 +8,8 @@
 
 namespace etendue {
 
+struct ListedImage;
+
 /// How an image is continued outside the unit square.
 enum class Wrap : std::uint8_t { repeat, mirror, clamp, black };
 /// u: to the left and right of the image; v: above and below it.
@@ -26,6 +28,8 @@ class ImageTexture {
   /// Error with the file's name and the reason.
   static std::shared_ptr<const ImageTexture> open(const std::string& path, const std::string& transfer,
                                                   const std::string& channel);
+  /// A texture of an image that is no file.
+  static std::shared_ptr<const ImageTexture> of(ListedImage);
 
   /// 3 or 1.
   virtual int channels() const = 0;

@@ -5,19 +5,41 @@
 #include <filesystem>
 #include <numbers>
 
+#include "components/exporters/baked_images.h"
 #include "files/regular_file.h"
+#include "images/image_library.h"
 #include "images/linear_image.h"
 #include "images/udim_files.h"
 #include "writer.h"
 
 namespace etendue::gltf_export {
 
-Json Writer::image_entry(const std::string& file, const std::string& ending) {
-  if (!binary_) return {{"uri", as_uri(exporting.copy_beside(file))}};
+/// The numbers of an ImageMap as a PNG file of 8 bits: in glTF, colours are encoded as sRGB and numbers are linear.
+std::string Writer::as_png(const Component& image, bool colors) {
+  const LinearImage texels = image_texels(image);
+  std::vector<std::uint8_t> bytes;
+  bool exact = true;
+  for (const float value : texels.rgb) {
+    const double encoded = 255 * (colors ? encode_transfer("srgb", double(value)) : double(value));
+    bytes.push_back(std::uint8_t(std::clamp(std::round(encoded), 0.0, 255.0)));
+    exact = exact && std::abs(encoded - double(bytes.back())) < 1e-3;
+  }
+  if (!exact) exporting.inexact("the numbers of an image are rounded to 8 bits, and cut to 0 and 1, in glTF", &image);
+  const std::vector<unsigned char> png = image_library().encode(
+      ".png", ImageHeader(texels.width, texels.height, 3, NumberType::uint8), std::span<const std::uint8_t>(bytes));
+  return {png.begin(), png.end()};
+}
+
+Json Writer::image_entry(const Component& image, const std::string& ending, bool colors) {
+  const std::string file = word_of(image, "file");
+  if (!binary_)
+    return {{"uri", as_uri(file.empty() ? exporting.write_beside("image", "png", as_png(image, colors))
+                                        : exporting.copy_beside(file))}};
   std::string bytes;
   try {
-    bytes = read_regular_file(file);
+    bytes = file.empty() ? as_png(image, colors) : read_regular_file(file);
   } catch (const Error& reason) {
+    if (file.empty()) throw;
     throw Error(fmt::format("cannot read '{}': {}", file, reason.what()));
   }
   document_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes.size()}});
@@ -31,7 +53,8 @@ Json Writer::image_entry(const std::string& file, const std::string& ending) {
 std::optional<Json> Writer::texture(const Placed& placed, bool colors) {
   const Component& image = *placed.image;
   const std::string file = word_of(image, "file");
-  std::string ending = std::filesystem::path(file).extension().string();
+  const bool listed = is_listed(image);
+  std::string ending = listed ? ".png" : std::filesystem::path(file).extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   if (ending != ".png" && ending != ".jpg" && ending != ".jpeg") {
     exporting.inexact("images are PNG or JPEG files in glTF: another becomes a grey of 0.5", &image);
@@ -42,22 +65,24 @@ std::optional<Json> Writer::texture(const Placed& placed, bool colors) {
     return std::nullopt;
   }
   const bool map = class_of(image) == "ImageMap";  // the image of a NormalMapShader has no wrap and interpolation modes
-  const std::string transfer = word_of(image, "transfer");
-  if (map && colors && !word_of(image, "channel").empty())
+  const std::string transfer = listed ? "auto" : word_of(image, "transfer");  // as_png decodes, and selects the channel
+  if (map && !listed && colors && !word_of(image, "channel").empty())
     exporting.inexact("the choice of an image's channels is left out", &image);
   if (colors && transfer == "linear") exporting.inexact("the colours of an image are encoded as sRGB in glTF", &image);
-  if (!colors && transfer != "linear") exporting.inexact("numbers of an image, such as normals, are linear in glTF", &image);
+  if (!colors && !listed && transfer != "linear")
+    exporting.inexact("numbers of an image, such as normals, are linear in glTF", &image);
   const std::string wrap = map ? word_of(image, "wrap") : "repeat", above = map ? word_of(image, "wrap_v") : "same";
   const std::string wrap_v = above == "same" ? wrap : above;
   if (wrap == "black" || wrap_v == "black") exporting.inexact("an image that is black outside is clamped in glTF", &image);
   const bool nearest = map && word_of(image, "interpolation") == "nearest";
-  size_t& known = textures_[{file, wrap + " " + wrap_v + (nearest ? " nearest" : "")}];
+  const std::string source = listed ? exporting.name_for(image) + (colors ? " colors" : " numbers") : file;
+  size_t& known = textures_[{source, wrap + " " + wrap_v + (nearest ? " nearest" : "")}];
   if (known == 0) {
     constexpr int clamp = 33071, mirror = 33648, repeated = 10497, filter_nearest = 9728, filter_linear = 9729;
     const auto code = [](const std::string& w) {
       return w == "mirror" ? mirror : (w == "clamp" || w == "black" ? clamp : repeated);
     };
-    document_["images"].push_back(image_entry(file, ending));
+    document_["images"].push_back(image_entry(image, ending, colors));
     document_["samplers"].push_back(
         {{"wrapS", code(wrap)}, {"wrapT", code(wrap_v)}, {"magFilter", nearest ? filter_nearest : filter_linear}});
     document_["textures"].push_back(
@@ -93,10 +118,15 @@ std::optional<Writer::Amount> Writer::amount_of(const Component& map) {
   if (const Color c = constant_of(map)) return Amount{double(c->at(at_d_line, ColorUse::coefficient))};
   if (const auto placed = placed_of(map)) {
     Amount made{1, placed, word_of(*placed->image, "channel")};
-    try {
-      made.grey = image_channels(word_of(*placed->image, "file")).size() < 3;
-    } catch (const Error&) {  // reported when the image is opened
-    }
+    if (is_listed(*placed->image)) {  // as_png writes the selected channel alone
+      const std::vector<double> size = numbers_of(*placed->image, "resolution");
+      made.grey = !made.channel.empty() || double(numbers_of(*placed->image, "values").size()) < 3 * size[0] * size[1];
+      made.channel.clear();
+    } else
+      try {
+        made.grey = image_channels(word_of(*placed->image, "file")).size() < 3;
+      } catch (const Error&) {  // reported when the image is opened
+      }
     return made;
   }
   if (class_of(map) == "AttributeMap") {

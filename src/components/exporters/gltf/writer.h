@@ -113,7 +113,8 @@ class Writer {
   Look look_of(const Component& map, ColorUse);
   void base_color(Json& m, const Look&);
   /// The JSON entry of an image: in a .glb its bytes are in the buffer, otherwise it names the file.
-  Json image_entry(const std::string& file, const std::string& ending);
+  Json image_entry(const Component& image, const std::string& ending, bool colors);
+  std::string as_png(const Component& image, bool colors);
   /// `colors`: the image contains colours, not numbers.
   std::optional<Json> texture(const Placed&, bool colors);
   void extend(Json& m, const char* extension, Json content);

@@ -139,11 +139,11 @@ Ref<Component> Writer::readable(const Component& image) {
   if (readable_.contains(&image) || word_of(image, "file").find("<UDIM>") != std::string::npos) return nullptr;
   Ref<Component>& made = baked_[{&image, read_as_}];
   if (made) return made;
-  const bool decoded = decoded_alike(image, read_as_);
+  const bool listed = is_listed(image), decoded = !listed && decoded_alike(image, read_as_);
   const bool kept = read_as_ == Texels::normals || word_of(image, "color_space") == "srgb";
   if (read_as_ == Texels::numbers)
     made = baked_number(exporting, image, AsNumber::luminance, decoded);
-  else if (!decoded || !kept || !word_of(image, "channel").empty() || says_it_is_a_cube(word_of(image, "file")))
+  else if (listed || !decoded || !kept || !word_of(image, "channel").empty() || says_it_is_a_cube(word_of(image, "file")))
     made = baked_color(exporting, image);
   if (made) readable_.insert(made.get());
   return made;

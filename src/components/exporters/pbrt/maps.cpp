@@ -24,7 +24,15 @@ std::string Writer::number_map(const char* name, const Component& of, const char
   return map ? value_or_texture(name, map, true, ColorUse::coefficient) : std::string();
 }
 
-std::string Writer::image(const Component& map, const std::string& more, bool numbers) {
+const Component& Writer::with_file(const Component& image, bool numbers) {
+  if (!is_listed(image)) return image;
+  Ref<Component>& made = listed_[{&image, numbers}];
+  if (!made) made = numbers ? baked_number(exporting, image, AsNumber::mean) : baked_color(exporting, image);
+  return *made;
+}
+
+std::string Writer::image(const Component& written, const std::string& more, bool numbers) {
+  const Component& map = with_file(written, numbers);
   const std::string wrap = word_of(map, "wrap"), transfer = word_of(map, "transfer"),
                     file = exporting.copy_beside(word_of(map, "file"));
   std::string text = fmt::format(" \"imagemap\" \"string filename\" \"{}\"", file);

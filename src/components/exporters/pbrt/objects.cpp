@@ -120,7 +120,7 @@ std::string Writer::emission_of(const SceneObject& object, bool& reversed) {
   std::string text = "AreaLightSource \"diffuse\"";
   const Ref<Component> map = part_of(*emission, "radiance");
   if (map && map->class_info().name == "ImageMap")
-    text += fmt::format(" \"string filename\" \"{}\"", exporting.copy_beside(word_of(*map, "file")));
+    text += fmt::format(" \"string filename\" \"{}\"", exporting.copy_beside(word_of(with_file(*map, false), "file")));
   else
     text += light_of(*emission, "L", object);
   if (sides == "both") text += " \"bool twosided\" true";

@@ -42,6 +42,8 @@ class Writer {
   std::string texture(const Component& map, bool numbers);
   std::string value_or_texture(const char* name, const Ref<Component>& map, bool numbers, ColorUse);
   std::string image(const Component& map, const std::string& more, bool numbers);
+  /// The ImageMap, or one with a file that is written beside the scene instead of one given by its numbers.
+  const Component& with_file(const Component& image, bool numbers);
 
   // shaders.cpp
   Surface surface_of(const Component* shader);
@@ -83,6 +85,8 @@ class Writer {
   std::string out_;
   std::string around_;                                ///< the medium that surrounds the scene; empty: none
   std::map<const Component*, Ref<Component>> baked_;  // by images read as numbers, and products of images and colours
+  std::map<std::pair<const Component*, bool>, Ref<Component>>
+      listed_;  // files of images given by numbers; as numbers or colours
   std::map<const Component*, std::string> materials_, textures_, media_, instanced_;
 };
 

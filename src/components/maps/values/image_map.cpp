@@ -1,4 +1,4 @@
-// ImageMap: an image file on a surface.
+// ImageMap: an image on a surface, from a file or a list of numbers.
 
 #include "components/maps/footprint.h"
 #include "components/maps/image_texture.h"
@@ -7,6 +7,7 @@
 #include "etendue/describe/read_ahead.h"
 #include "etendue/object_map.h"
 #include "images/linear_image.h"
+#include "images/listed_image.h"
 #include "images/udim_files.h"
 
 namespace etendue {
@@ -25,15 +26,23 @@ enum class AsNumber : std::uint8_t { mean, luminance };
 class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
  public:
   static void describe(Description<ImageMap>& d) {
-    d.summary("An image file over the surface coordinates: its lower left corner is at (0, 0), its upper right one at (1, 1).")
+    d.summary("An image over the surface coordinates: its lower left corner is at (0, 0), its upper right one at (1, 1).")
         .group("Image")
         .member<&ImageMap::file>("file", "",
                                  "the image: OpenEXR, HDR, PNG, JPEG, TIFF, PNM, PFM, WebP, BMP or TGA. With <UDIM> in its "
                                  "name: one image for each unit "
                                  "square of u and v, from files with 1001 + u + 10 v in that place; black where there is none. "
                                  "An OpenEXR file that says it is a cube of surroundings (envmap = cube) is laid in longitude "
-                                 "and latitude, as Environment's u and v go",
-                                 required)
+                                 "and latitude, as Environment's u and v go. None: the numbers below")
+        .member<&ImageMap::resolution>("resolution", "1", "width and height of the image [pixels]", unless("file"))
+        .member<&ImageMap::values>("values", "1",
+                                   "its values, from left to right in rows from the top: for each pixel grey; grey and alpha; "
+                                   "red, green and blue; or these and alpha",
+                                   unless("file"))
+        .member<&ImageMap::number_type>("number_type", "",
+                                        "of the values; float: they are used as they are; uint8 and uint16: integers, of which "
+                                        "255 or 65535 stands for 1",
+                                        choices("float", "uint8", "uint16"), unless("file"))
         .group("Placement")
         .member<&ImageMap::interpolation>(
             "interpolation", "",
@@ -46,7 +55,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
         .member<&ImageMap::transfer>("transfer", "", "how its numbers are encoded; auto: srgb for integers, linear for floats",
                                      image_transfer_names())
         .member<&ImageMap::channel>("channel", "",
-                                    "which channels of the file: \"\" the first three or its only one, else the name of one "
+                                    "which channels of the image: \"\" the first three or its only one, else the name of one "
                                     "(\"A\", \"depth.Z\") or of a layer (\"diffuse\" for diffuse.R, diffuse.G, diffuse.B)")
         .member<&ImageMap::as_number>("as_number", "",
                                       "what a colour is where a number is asked for, as a roughness or a height; mean: of its "
@@ -60,8 +69,11 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
     space_ = &rgb_space(color_space);
     for (size_t i = 0; i < 3; ++i) weights_[i] = as_number == AsNumber::mean ? 1.0f / 3 : float(space_->to_xyz[3 + i]);
     if (!(std::isfinite(repeat.x) && std::isfinite(repeat.y))) fail("repeat", "must be finite numbers");
-    if (file.empty()) fail("file", "an image file is needed");
-    load(file.resolved());
+    if (file.empty() && values.empty()) fail("file", "an image file is needed, or `resolution` and `values`");
+    if (file.empty())
+      use_values();
+    else
+      load(file.resolved());
     ahead_.clear();
   }
 
@@ -91,6 +103,9 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
   }
 
   FilePath file;
+  std::vector<int> resolution{1, 1};
+  std::vector<float> values;
+  ListedNumbers number_type = ListedNumbers::single;
   Interpolation interpolation = Interpolation::bilinear;
   Wrap wrap = Wrap::repeat;
   WrapV wrap_v = WrapV::same;
@@ -101,6 +116,10 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
  private:
   static std::vector<UdimFile> files_of(const std::string& path) {
     return path.find(udim_mark) != std::string::npos ? udim_files(path) : std::vector<UdimFile>{{0, 0, path}};
+  }
+  void use_values() {
+    tiles_ = {ImageTexture::of(listed_image(*this, resolution, values, number_type, transfer, channel))};
+    tiled_ = cube_ = false;
   }
   void load(const std::string& path) {
     tiles_.clear();
