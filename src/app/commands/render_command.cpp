@@ -157,6 +157,7 @@ void require_outputs(const Job& job, const std::vector<Ref<Output>>& outputs, co
 int render(const RenderOptions& options, Series& series) {
   const std::optional<TevAddress> tev = options.tev.empty() ? std::nullopt : std::optional(parse_tev_address(options.tev));
   const TeamRender with_others(options);
+  const InputsRead inputs;
   const Ref<Job> job = options.load();
   if (!options.pixel.empty()) return replay(job, options);
 
@@ -185,6 +186,7 @@ int render(const RenderOptions& options, Series& series) {
   std::vector<Ref<Output>> described = std::exchange(job->outputs, outputs);
   Render render(job, settings);
   job->outputs = std::move(described);
+  with_others.send_scene(inputs, options);
   show_warnings(scene_warnings(*job));
   warn_of_wide_filter(*job, outputs);
   advise(*job);

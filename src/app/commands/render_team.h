@@ -2,6 +2,7 @@
 // Renders of `etendue render` that several processes compute (program_team.h).
 
 #include "app/render_options.h"
+#include "files/input_files.h"
 #include "render/team/process_team.h"
 
 namespace etendue {
@@ -11,6 +12,8 @@ class TeamRender {
  public:
   explicit TeamRender(const RenderOptions&);
   ~TeamRender();
+  /// With --send-scene: lets the other processes have the files that were read or are named.
+  void send_scene(const InputsRead&, const RenderOptions&) const;
   TeamRender(const TeamRender&) = delete;
   TeamRender& operator=(const TeamRender&) = delete;
 

@@ -177,7 +177,9 @@ void ProcessTeam::received(int from, std::vector<std::byte> bytes) {
       return;
     }
     const std::lock_guard lock(mutex_);
-    if (leads())
+    if (letter.kind == LetterKind::scene)
+      scene_letters_.push_back(std::move(letter));
+    else if (leads())
       lead(letter);
     else
       follow(letter);
@@ -295,6 +297,18 @@ std::optional<std::vector<std::byte>> ProcessTeam::next_render() {
     render_ = letter.take<std::uint64_t>();
     epoch_ = 0;
     return letter.take<std::vector<std::byte>>();
+  }
+}
+
+std::optional<Reading> ProcessTeam::next_scene_letter() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    // To a follower the next order after that to render is that the render has ended, as a step needs it to be prepared.
+    wait(lock, [&] { return !scene_letters_.empty() || !orders_.empty() || over_; });
+    if (scene_letters_.empty()) return {};
+    Reading letter = std::move(scene_letters_.front());
+    scene_letters_.pop_front();
+    if (letter.take<std::uint64_t>() == render_) return letter;  // else of a render that could not be prepared
   }
 }
 

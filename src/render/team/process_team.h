@@ -43,6 +43,20 @@ class ProcessTeam final : public Team {
   /// Follower: the leader warns the user, once if several have the same warning.
   void warn(const std::string& text, const Location&);
 
+  // ---- the scene's files, within a render (scene_transfer.h) -----------------------------------------------------------------
+
+  const std::string& host_of(int rank) const { return members_[size_t(rank)].host; }
+  /// The beginning of a letter of this render; `word` says what it is about.
+  template <class Word>
+  Writing scene_letter(Word word) const {
+    Writing letter(LetterKind::scene);
+    letter.add(render_).add(word);
+    return letter;
+  }
+  void send_scene_letter(int to, Parcel parcel) { post_.send(to, std::move(parcel)); }
+  /// Waits for the next one. Follower: nothing if the leader's render has ended. Throws what is wrong with the team.
+  std::optional<Reading> next_scene_letter();
+
   // ---- Team ----------------------------------------------------------------------------------------------------------------
 
   bool leads() const override { return rank() == 0; }
@@ -95,6 +109,7 @@ class ProcessTeam final : public Team {
   std::vector<std::optional<std::uint64_t>> finished_;  ///< hashes of the followers' states after the current step
   std::optional<std::uint64_t> common_;                 ///< hash of the state that all processes have
   bool step_at_hand_ = false;
+  std::deque<Reading> scene_letters_;  ///< followers' as well
 
   // Followers'.
   std::deque<Reading> orders_;

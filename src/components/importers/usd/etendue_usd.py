@@ -227,6 +227,7 @@ def main():
     glb = Glb()
     files = Files(path, sys.argv[3:], glb.note)
     files.check_layers()
+    glb.json["asset"]["extras"]["files"] = files.outer_paths()
     stage = Usd.Stage.Open(path)
     if hasattr(stage, "GetCompositionErrors"):
         for error in stage.GetCompositionErrors()[:20]:

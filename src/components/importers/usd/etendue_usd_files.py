@@ -41,6 +41,10 @@ class Files:
             if unread:
                 take_out(layer, unread)
 
+    def outer_paths(self):
+        """All files that layers were read from."""
+        return sorted({Ar.SplitPackageRelativePathOuter(path)[0] for path, layer in self.layers.items() if layer is not None})
+
     def opened(self, path):
         """A layer, or None, which is told; an error where it is the scene itself."""
         if path in self.layers:
