@@ -26,7 +26,7 @@ class FilesWithin : public Assimp::IOSystem {
  private:
   /// The path to open, or "" if it is not allowed.
   std::string allowed(const std::string& path) const;
-  std::vector<std::string> folders_;                            // with all symbolic links resolved
+  std::vector<std::string> folders_;  // with all symbolic links resolved
   std::set<std::string> opened_;
   std::map<std::string, std::optional<std::string>> prepared_;  // result of prepared(), by path
 };

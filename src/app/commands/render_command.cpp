@@ -156,7 +156,7 @@ void require_outputs(const Job& job, const std::vector<Ref<Output>>& outputs, co
 
 int render(const RenderOptions& options, Series& series) {
   const std::optional<TevAddress> tev = options.tev.empty() ? std::nullopt : std::optional(parse_tev_address(options.tev));
-  const TeamRender with_others(options);
+  TeamRender with_others(options);
   const InputsRead inputs;
   const Ref<Job> job = options.load();
   if (!options.pixel.empty()) return replay(job, options);
@@ -187,6 +187,7 @@ int render(const RenderOptions& options, Series& series) {
   Render render(job, settings);
   job->outputs = std::move(described);
   with_others.send_scene(inputs, options);
+  with_others.leave_word(options, outputs);
   show_warnings(scene_warnings(*job));
   warn_of_wide_filter(*job, outputs);
   advise(*job);

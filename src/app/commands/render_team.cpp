@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <csignal>
+#include <filesystem>
 
 #include "describe/guard.h"
 #include "etendue/describe/component.h"
@@ -66,6 +67,7 @@ TeamRender::TeamRender(const RenderOptions& options) {
 }
 
 TeamRender::~TeamRender() {
+  if (witness_ && team_->orphaned()) witness_->act();  // nobody shows what this process prints
   if (team_) team_->end_render();
 }
 
@@ -74,9 +76,27 @@ void TeamRender::send_scene(const InputsRead& inputs, const RenderOptions& optio
   const std::set<std::string> paths = inputs.paths();
   const SceneSent sent = etendue::send_scene(*team_, {paths.begin(), paths.end()});
   if (sent.receivers == 0 || options.quiet || options.progress == "json") return;
-  fmt::print("sent {} of the scene's {} file{} to {} process{}\n", amount_text(sent.bytes), sent.files, sent.files == 1 ? "" : "s",
-             sent.receivers, sent.receivers == 1 ? "" : "es");
+  fmt::print("sent {} of the scene's {} file{} to {} process{}\n", amount_text(sent.bytes), sent.files,
+             sent.files == 1 ? "" : "s", sent.receivers, sent.receivers == 1 ? "" : "es");
   std::fflush(stdout);
+}
+
+void TeamRender::leave_word(const RenderOptions& options, const std::vector<Ref<Output>>& outputs) {
+  if (!team_) return;
+  std::string beside = options.checkpoint_file();
+  const bool continues = !beside.empty();
+  if (!continues) beside = outputs.empty() ? options.stem() : outputs.front()->path(options.stem());
+  std::error_code ignored;
+  const std::string text = fmt::format(
+      "{}, the first of {}, ended before its render was finished, and so did what had started it (mpirun, srun): both were "
+      "killed, "
+      "or the machine is short of memory. {}",
+      team_->name_of(0), team_->size(),
+      continues ? "The checkpoint is that of the last whole pass that was saved. To continue, with any number of processes: " +
+                      options.resume_command()
+                : "There is no checkpoint: --continue FILE keeps one.");
+  witness_.emplace(
+      Witness::Task{.remove = {}, .file = std::filesystem::absolute(beside + ".killed.txt", ignored).string(), .text = text});
 }
 
 int follow_renders(const RenderOptions& options, ProcessTeam& team) {

@@ -120,6 +120,10 @@ void Post::watch() {
   if (now - watched_ > 5 * sign_interval)
     for (Clock::time_point& heard : heard_) heard = now;
   watched_ = now;
+  if (starter_ != 0 && ::getppid() != starter_) {
+    starter_ = 0;
+    if (handlers_.orphaned) handlers_.orphaned();
+  }
   const int first = rank_ == 0 ? 1 : 0, end = rank_ == 0 ? size_ : 1;
   if (now - signed_ >= sign_interval) {
     signed_ = now;

@@ -1,6 +1,8 @@
 #pragma once
 // Post: the one thread of a process that sends and receives its messages, and notices when another process falls silent.
 
+#include <unistd.h>
+
 #include <chrono>
 #include <condition_variable>
 #include <functional>
@@ -19,6 +21,8 @@ class Post {
     std::function<void(int from, std::vector<std::byte>)> received;
     /// Nothing, not even a sign of life, has come from this process for `patience`; called once.
     std::function<void(int silent)> lost;
+    /// The process that started this one has ended.
+    std::function<void()> orphaned;
   };
   /// Opens the messages, on its thread. Each process gives a sign of life every second; the first rank watches over all others,
   /// which watch over the first. Throws Error.
@@ -74,6 +78,7 @@ class Post {
   std::vector<Clock::time_point> heard_;  ///< when the last message of each rank came
   Clock::time_point watched_, signed_;
   bool silent_ = false;
+  pid_t starter_ = ::getppid();
   std::thread thread_;
 };
 

@@ -88,6 +88,11 @@ ProcessTeam::ProcessTeam(std::unique_ptr<Messages> messages, const TeamSettings&
          if (over_) return;
          lose(fmt::format("{} has not answered for {:.0f} seconds: it has ended or is stopped, or the connection is broken",
                           name_of(silent), settings_.patience));
+       },
+       [this] {
+         const std::lock_guard lock(mutex_);
+         orphaned_ = true;
+         if (!over_) lose(fmt::format("what started {} has ended (mpirun, srun)", name_of(this->rank())));
        }});
   if (leads())
     meet();

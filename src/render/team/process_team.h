@@ -30,6 +30,8 @@ class ProcessTeam final : public Team {
 
   int rank() const { return post_.rank(); }
   int size() const { return post_.size(); }
+  /// Whether the process that started this one has ended, which can thus show no messages.
+  bool orphaned() const { return orphaned_; }
   /// "process 3 on node7"
   std::string name_of(int rank) const;
 
@@ -43,7 +45,8 @@ class ProcessTeam final : public Team {
   /// Follower: the leader warns the user, once if several have the same warning.
   void warn(const std::string& text, const Location&);
 
-  // ---- the scene's files, within a render (scene_transfer.h) -----------------------------------------------------------------
+  // ---- the scene's files, within a render (scene_transfer.h)
+  // -----------------------------------------------------------------
 
   const std::string& host_of(int rank) const { return members_[size_t(rank)].host; }
   /// The beginning of a letter of this render; `word` says what it is about.
@@ -99,6 +102,7 @@ class ProcessTeam final : public Team {
   std::string lost_;                      ///< why the team is no longer whole; empty: it is
   std::vector<Error> errors_;             ///< of followers, about the current render or step
   std::atomic<bool> trouble_{false};      ///< one of these two
+  std::atomic<bool> orphaned_{false};
   std::uint64_t render_ = 0, epoch_ = 0;  ///< numbers of the current render, and of the current step among all that were begun
   std::atomic<int> share_{1};             ///< the number of threads for this process that the cores suffice for
   std::vector<int> threads_;              ///< of each process, in the current step

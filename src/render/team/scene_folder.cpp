@@ -44,7 +44,8 @@ int locked(const std::string& folder) {
 /// Removes the folders of processes that were killed. Others may do the same at the same time.
 void remove_leftovers(const fs::path& parent) {
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(parent, fs::directory_options::skip_permission_denied, error)) {
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(parent, fs::directory_options::skip_permission_denied, error)) {
     const std::string name = entry.path().filename().string();
     // A folder without a lock is being made, or removed.
     std::error_code ignored;
@@ -78,6 +79,7 @@ SceneFolder::SceneFolder() {
     remove();
     refuse(fmt::format("'{}' cannot be locked", name), reason);
   }
+  witness_.emplace(Witness::Task{.remove = path_, .file = {}, .text = {}});
   make_folder(path_ + "/contents");
 }
 
@@ -181,7 +183,9 @@ void SceneFolder::show(const std::vector<SentFile>& files, const std::string& wo
 
 std::string amount_text(std::uint64_t bytes) {
   const auto n = double(bytes);
-  return n < 1e6 ? fmt::format("{:.1f} kB", n * 1e-3) : n < 1e9 ? fmt::format("{:.1f} MB", n * 1e-6) : fmt::format("{:.1f} GB", n * 1e-9);
+  return n < 1e6   ? fmt::format("{:.1f} kB", n * 1e-3)
+         : n < 1e9 ? fmt::format("{:.1f} MB", n * 1e-6)
+                   : fmt::format("{:.1f} GB", n * 1e-9);
 }
 
 FileContent content_on_disk(const std::string& path) {

@@ -6,11 +6,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "files/file_content.h"
+#include "witness.h"
 
 namespace etendue {
 
@@ -25,7 +27,7 @@ class SceneFolder {
   /// Makes the folder below $TMPDIR, or /tmp, for this user alone, and removes those there that killed processes have left
   /// behind. Throws Error.
   SceneFolder();
-  /// Removes the folder.
+  /// Removes the folder, which is removed as well if this process is killed.
   ~SceneFolder();
   SceneFolder(const SceneFolder&) = delete;
   SceneFolder& operator=(const SceneFolder&) = delete;
@@ -63,6 +65,7 @@ class SceneFolder {
   void remove();
   std::string path_;  ///< without symbolic links
   int lock_ = -1;     ///< held while the process lives
+  std::optional<Witness> witness_;
 };
 
 /// "3.2 MB"

@@ -1,10 +1,10 @@
 #pragma once
 // The leader sends the files of a scene to the processes that do not see them.
 //
-// Each follower is told the paths, sizes and hashes. One that has all these files at the same paths uses them. The others make a
-// SceneFolder. On each machine the first of them takes from the leader what is missing, in pieces that it asks for; after it the
-// others take from its folder what they can reach, and from the leader the rest. So each content crosses the network once for
-// each machine, and nobody gets more than it can write.
+// Each follower is told the paths, sizes and hashes. One that has all these files at the same paths uses them. The others make
+// a SceneFolder. On each machine the first of them takes from the leader what is missing, in pieces that it asks for; after it
+// the others take from its folder what they can reach, and from the leader the rest. So each content crosses the network once
+// for each machine, and nobody gets more than it can write.
 
 #include <memory>
 
