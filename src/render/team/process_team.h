@@ -99,9 +99,9 @@ class ProcessTeam final : public Team {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<Member> members_;
-  std::string lost_;                      ///< why the team is no longer whole; empty: it is
-  std::vector<Error> errors_;             ///< of followers, about the current render or step
-  std::atomic<bool> trouble_{false};      ///< one of these two
+  std::string lost_;                  ///< why the team is no longer whole; empty: it is
+  std::vector<Error> errors_;         ///< of followers, about the current render or step
+  std::atomic<bool> trouble_{false};  ///< one of these two
   std::atomic<bool> orphaned_{false};
   std::uint64_t render_ = 0, epoch_ = 0;  ///< numbers of the current render, and of the current step among all that were begun
   std::atomic<int> share_{1};             ///< the number of threads for this process that the cores suffice for
