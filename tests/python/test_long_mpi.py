@@ -75,8 +75,13 @@ def kill_one(folder, team, chance):
     return victim, time.monotonic() - killed
 
 
-def told(folder, victim):
-    if "signal 9" in (folder / "err").read_text():
+def told(folder, victim, began):
+    """Whether somebody said what happened. Before the render has begun, mpirun's own death is told by nobody but the shell, and of another
+    process mpirun says only that one has failed."""
+    said = (folder / "err").read_text()
+    if "signal 9" in said or "process " in said and not began:
+        return True
+    if victim == -1 and not began:
         return True
     deadline = time.monotonic() + 10
     while time.monotonic() < deadline and not (folder / "state.killed.txt").exists():
@@ -95,17 +100,17 @@ def test_random_kills(tmp_path):
         for left in tmp_path.glob("rank.*"):
             left.unlink()
         team = start(tmp_path, chance.choice([2, 3, 4]), "--threads", "1", "--samples", str(samples), "--every", "0s",
-                     "--continue", "state", "-o", "team.npy")
+                     "--continue", "state", "-o", "team.npy", "--progress", "json")
         try:
             team.wait(timeout=chance.uniform(0.3, 3))
         except subprocess.TimeoutExpired:
-            began = (tmp_path / "state").exists()
+            began = (tmp_path / "out").stat().st_size > 0
             victim, seconds = kill_one(tmp_path, team, chance)
             kills += 1
+            print(kills, victim, began, f"{seconds:.1f} s", flush=True)
             longest = max(longest, seconds)
             whom[min(victim, 1)] = whom.get(min(victim, 1), 0) + 1
-            # Before the render has begun, mpirun's death is told by nobody but the shell.
-            assert told(tmp_path, victim) or (victim == -1 and not began), (victim, (tmp_path / "err").read_text())
+            assert told(tmp_path, victim, began), f"{victim}, {began}: " + (tmp_path / "err").read_text()
             if (tmp_path / "state").exists():
                 subprocess.run([PROGRAM, "image", "merge", "state", "-o", "some.npy"], cwd=tmp_path, check=True, capture_output=True)
             continue

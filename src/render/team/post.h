@@ -36,6 +36,12 @@ class Post {
   int size() const { return size_; }
   /// Begins to receive.
   void start(Handlers);
+  /// What was sent to others, and the processor time of the thread.
+  struct Traffic {
+    std::uint64_t bytes = 0, messages = 0;
+    double seconds = 0;
+  };
+  Traffic traffic() const;    ///< any thread
   void send(int to, Parcel);  ///< any thread
   /// The same when the thread looks next, which spares waking it.
   void send_soon(int to, Parcel);
@@ -66,8 +72,9 @@ class Post {
   int rank_ = 0, size_ = 1;
   Handlers handlers_;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
+  Traffic traffic_;
   std::vector<std::pair<int, Parcel>> outgoing_;
   bool urgent_ = false;  ///< something was sent that must not wait
   int waiting_ = 0;
