@@ -14,14 +14,19 @@ extern char** environ;
 namespace etendue {
 namespace {
 
-// $1: the folder, $2: the file, $3: the text, $4: the process that started ours, which has a second to notice.
+// $1: the folder, $2: the file, $3: the text, $4: the process that started ours, which has a second to notice. A process that
+// has ended and that nobody collects, as in containers without an init, has no command line.
 constexpr const char* script = R"(
 read -r word
 [ "$word" = done ] && exit
 [ -n "$1" ] && rm -rf -- "$1"
 [ -n "$2" ] || exit
 sleep 1
-kill -0 "$4" 2>/dev/null && exit
+if [ -r /proc/self/cmdline ]; then
+  grep -q . "/proc/$4/cmdline" 2>/dev/null && exit
+else
+  kill -0 "$4" 2>/dev/null && exit
+fi
 printf '%s\n' "$3" > "$2"
 )";
 
@@ -38,6 +43,10 @@ Witness::Witness(const Task& task) {
   ::posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
   for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
     ::posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
+#if __GLIBC_PREREQ(2, 34)
+  // Else it would keep MPI's sockets open.
+  ::posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
+#endif
   // In a session of its own, as signals are sent to the group of this process; and these are what a shell expects.
   ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
   sigset_t none;
