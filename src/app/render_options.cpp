@@ -42,6 +42,9 @@ void RenderOptions::add_to(Command& command) {
                "Write a second, denoised picture beside each, NAME.denoised.ENDING, by Open Image Denoise (pip install "
                "pyoidn) unless the file chooses another denoiser");
   add_threads_option(command, threads, ". The picture does not depend on it");
+  command.flag("--send-scene", send_scene,
+               "Started by mpirun or srun: processes that do not see the file and all it names, or see others, get them from "
+               "the first process, in a temporary folder");
   command.flag("--quiet", quiet, "Print nothing but errors and warnings");
   command
       .option("--progress KIND", progress,

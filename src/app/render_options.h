@@ -29,6 +29,7 @@ struct RenderOptions : SceneOptions {
   int paths = 5;         ///< number of the pixel's samples that are printed
   std::string replay;    ///< the JSON file the paths are written to; empty: none
   int fireflies = 0;     ///< number of samples that are listed after the render
+  bool send_scene = false;  ///< to processes that do not see its files
   Team* team = nullptr;  ///< the processes that render together; null: this one alone
   std::string tev;       ///< address of the tev that shows the image, as written; empty: none
 

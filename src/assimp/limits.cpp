@@ -59,6 +59,7 @@ bool FilesWithin::Exists(const char* path) const { return !allowed(path).empty()
 Assimp::IOStream* FilesWithin::Open(const char* path, const char*) {
   const std::string found = allowed(path);
   if (found.empty()) return nullptr;
+  opened_.insert(path);
   // Assimp opens a file several times: to detect its format, and to read it.
   auto known = prepared_.find(found);
   if (known == prepared_.end()) known = prepared_.emplace(found, prepared(found)).first;

@@ -47,7 +47,8 @@ int run(const std::string& path, std::vector<std::string> folders) {
   }
   const SecondReading second;
   Assimp::Importer importer;
-  importer.SetIOHandler(new FilesWithin(folders));                      // the importer deletes it
+  auto* const files = new FilesWithin(folders);  // the importer deletes it
+  importer.SetIOHandler(files);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // else it invents meshes for models without any
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 60);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -67,6 +68,7 @@ int run(const std::string& path, std::vector<std::string> folders) {
   for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
   notes.insert(notes.end(), left_out().begin(), left_out().end());
   for (const std::string& note : notes) glb.note(note);
+  for (const std::string& file : files->opened()) glb.json["asset"]["extras"]["files"].push_back(clean(file));
   convert(*scene, glb, ending.empty() ? ending : ending.substr(1), unit);
   const std::uint64_t digest = glb.digest();
   if (second.here()) {

@@ -11,6 +11,7 @@
 #include "etendue/describe/abi.h"
 #include "etendue/describe/registry.h"
 #include "files/regular_file.h"
+#include "files/sent_files.h"
 #include "plugin_probe.h"
 
 namespace etendue {
@@ -27,6 +28,7 @@ std::string find_plugin(const std::string& path) {
       if (!folder.empty()) candidates.push_back(fs::path(folder) / path);
   }
   candidates.emplace_back(path);
+  for (fs::path& candidate : candidates) candidate = where_sent(candidate.string());
   for (const fs::path& candidate : candidates) {
     std::error_code error;
     if (!fs::exists(candidate, error)) continue;

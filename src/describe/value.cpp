@@ -4,6 +4,7 @@
 #include <map>
 
 #include "etendue/describe/registry.h"
+#include "files/sent_files.h"
 
 namespace etendue {
 
@@ -57,7 +58,7 @@ std::string with_article(std::string_view word) {
 }
 
 std::string FilePath::resolved() const {
-  if (folder.empty() || text.empty() || text.front() == '/') return text;
+  if (folder.empty() || text.empty() || text.front() == '/') return where_sent(text);
   return folder + "/" + text;
 }
 

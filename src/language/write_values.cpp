@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "color/named.h"
+#include "files/sent_files.h"
 #include "writer.h"
 
 namespace etendue::language {
@@ -101,7 +102,8 @@ std::filesystem::path absolute(const std::string& path) {
 }  // namespace
 
 std::string path_text(const FilePath& file, const std::string& folder) {
-  if (file.text.empty() || file.text.front() == '/' || file.folder == folder) return file.text;
+  if (file.text.empty() || file.folder == folder) return file.text;
+  if (file.text.front() == '/') return where_sent_from(file.text);
   const std::string path = file.resolved();
   if (folder.empty()) return absolute(path).string();
   if (path.starts_with(folder + "/")) return path.substr(folder.size() + 1);  // keeps the spelling
@@ -126,7 +128,9 @@ std::string color_text(const SpectralFunction& color, const std::string& folder)
       path += escaped == 'n' ? '\n' : (escaped == 't' ? '\t' : escaped);
     }
     // Only paths in the folder or near it are written relative to it: a path that goes up to the root would be less clear.
-    const std::filesystem::path here = absolute(folder), relative = absolute(path).lexically_relative(here);
+    path = where_sent_from(path);
+    const std::filesystem::path here = where_sent_from(absolute(folder).string()),
+                                relative = absolute(path).lexically_relative(here);
     const auto up = std::count(relative.begin(), relative.end(), "..");
     const bool near = !relative.empty() && up < std::distance(here.begin(), here.end()) - 1;
     result +=

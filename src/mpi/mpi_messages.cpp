@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <utility>
 
 #include "etendue/core/error.h"
 #include "render/team/message_library.h"

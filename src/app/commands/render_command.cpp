@@ -113,6 +113,20 @@ struct Written {
   std::string choice;         ///< of a renderer that chooses an algorithm, in a sentence; empty: none did
 };
 
+/// What each process of a team has done, for who wants to know where its time goes.
+nlohmann::ordered_json efforts_json(const ProcessTeam& team) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  const std::vector<Effort> efforts = team.efforts();
+  for (size_t rank = 0; rank < efforts.size(); ++rank)
+    list.push_back({{"name", team.name_of(int(rank))},
+                    {"sent_bytes", efforts[rank].bytes},
+                    {"sent_messages", efforts[rank].messages},
+                    {"item_seconds", efforts[rank].items},
+                    {"message_seconds", efforts[rank].post},
+                    {"processor_seconds", efforts[rank].all}});
+  return list;
+}
+
 void report_result(const Progress& progress, Ended ended, const Written& written, ProgressDisplay::Kind kind,
                    const Render& render, const RenderOptions& options) {
   const std::string& checkpoint = render.settings().checkpoint_file;
@@ -127,7 +141,8 @@ void report_result(const Progress& progress, Ended ended, const Written& written
     if (!written.denoised.empty()) json["denoised"] = written.denoised;  // all denoised images are biased
     if (!checkpoint.empty()) json["checkpoint"] = checkpoint;
     if (!written.choice.empty()) json["choice"] = written.choice;
-    if (render.settings().steps) json["samples_per_pass"] = render.samples_per_step();
+    if (render.settings().steps || options.team) json["samples_per_pass"] = render.samples_per_step();
+    if (const auto* team = dynamic_cast<const ProcessTeam*>(options.team)) json["processes"] = efforts_json(*team);
     fmt::print("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   } else if (!options.quiet) {
     for (const std::string& path : written.pictures) fmt::print("{}\n", path);
@@ -156,7 +171,8 @@ void require_outputs(const Job& job, const std::vector<Ref<Output>>& outputs, co
 
 int render(const RenderOptions& options, Series& series) {
   const std::optional<TevAddress> tev = options.tev.empty() ? std::nullopt : std::optional(parse_tev_address(options.tev));
-  const TeamRender with_others(options);
+  TeamRender with_others(options);
+  const InputsRead inputs;
   const Ref<Job> job = options.load();
   if (!options.pixel.empty()) return replay(job, options);
 
@@ -185,6 +201,8 @@ int render(const RenderOptions& options, Series& series) {
   std::vector<Ref<Output>> described = std::exchange(job->outputs, outputs);
   Render render(job, settings);
   job->outputs = std::move(described);
+  with_others.send_scene(inputs, options);
+  with_others.leave_word(options, outputs);
   show_warnings(scene_warnings(*job));
   warn_of_wide_filter(*job, outputs);
   advise(*job);

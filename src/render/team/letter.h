@@ -22,6 +22,7 @@ enum class LetterKind : std::uint8_t {
   want,      ///< of a follower, within a step: more items
   deal,      ///< of the leader: these items
   item,      ///< of anybody: the results of an item
+  scene,     ///< of anybody, before `prepared`: about the scene's files (scene_transfer.h)
 };
 
 /// Writes a letter.

@@ -1,5 +1,7 @@
 #include "post.h"
 
+#include <time.h>
+
 #include <exception>
 
 namespace etendue {
@@ -11,6 +13,13 @@ constexpr auto sign_interval = 1s;
 // The thread looks for messages again after these times, as messages cannot wake it: a look takes some 10 microseconds. While
 // nobody waits, what is needed next is there already.
 constexpr std::chrono::microseconds shortest_rest = 100us, rest_of_waiting = 1ms, rest_of_busy = 4ms;
+
+/// The processor time of this thread [s].
+double own_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + double(now.tv_nsec) * 1e-9;
+}
 
 /// An empty message is a sign of life.
 const Parcel& sign_of_life() {
@@ -54,6 +63,11 @@ void Post::start(Handlers handlers) {
   handlers_ = std::move(handlers);
   started_ = true;
   changed_.notify_all();
+}
+
+Post::Traffic Post::traffic() const {
+  const std::lock_guard lock(mutex_);
+  return traffic_;
 }
 
 void Post::send(int to, Parcel parcel) {
@@ -102,6 +116,9 @@ bool Post::exchange() {
   {
     const std::lock_guard lock(mutex_);
     outgoing.swap(outgoing_);
+    for (const auto& [to, parcel] : outgoing) traffic_.bytes += parcel->size();
+    traffic_.messages += outgoing.size();
+    traffic_.seconds = own_seconds();
   }
   bool any = !outgoing.empty();
   for (auto& [to, parcel] : outgoing) messages_->send(to, std::move(parcel));
@@ -120,6 +137,10 @@ void Post::watch() {
   if (now - watched_ > 5 * sign_interval)
     for (Clock::time_point& heard : heard_) heard = now;
   watched_ = now;
+  if (starter_ != 0 && ::getppid() != starter_) {
+    starter_ = 0;
+    if (handlers_.orphaned) handlers_.orphaned();
+  }
   const int first = rank_ == 0 ? 1 : 0, end = rank_ == 0 ? size_ : 1;
   if (now - signed_ >= sign_interval) {
     signed_ = now;

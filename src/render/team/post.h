@@ -1,6 +1,8 @@
 #pragma once
 // Post: the one thread of a process that sends and receives its messages, and notices when another process falls silent.
 
+#include <unistd.h>
+
 #include <chrono>
 #include <condition_variable>
 #include <functional>
@@ -19,6 +21,8 @@ class Post {
     std::function<void(int from, std::vector<std::byte>)> received;
     /// Nothing, not even a sign of life, has come from this process for `patience`; called once.
     std::function<void(int silent)> lost;
+    /// The process that started this one has ended.
+    std::function<void()> orphaned;
   };
   /// Opens the messages, on its thread. Each process gives a sign of life every second; the first rank watches over all others,
   /// which watch over the first. Throws Error.
@@ -32,6 +36,12 @@ class Post {
   int size() const { return size_; }
   /// Begins to receive.
   void start(Handlers);
+  /// What was sent to others, and the processor time of the thread.
+  struct Traffic {
+    std::uint64_t bytes = 0, messages = 0;
+    double seconds = 0;
+  };
+  Traffic traffic() const;    ///< any thread
   void send(int to, Parcel);  ///< any thread
   /// The same when the thread looks next, which spares waking it.
   void send_soon(int to, Parcel);
@@ -62,8 +72,9 @@ class Post {
   int rank_ = 0, size_ = 1;
   Handlers handlers_;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
+  Traffic traffic_;
   std::vector<std::pair<int, Parcel>> outgoing_;
   bool urgent_ = false;  ///< something was sent that must not wait
   int waiting_ = 0;
@@ -74,6 +85,7 @@ class Post {
   std::vector<Clock::time_point> heard_;  ///< when the last message of each rank came
   Clock::time_point watched_, signed_;
   bool silent_ = false;
+  pid_t starter_ = ::getppid();
   std::thread thread_;
 };
 

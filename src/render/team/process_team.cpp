@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sched.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <array>
@@ -79,6 +80,7 @@ ProcessTeam::ProcessTeam(std::unique_ptr<Messages> messages, const TeamSettings&
   members_.resize(count);
   prepared_.resize(count);
   finished_.resize(count);
+  efforts_.resize(count);
   threads_.assign(count, 1);
   members_[size_t(rank())] = {own_host(), std::uint64_t(getpid()), own_cores()};
   post_.start(
@@ -88,6 +90,11 @@ ProcessTeam::ProcessTeam(std::unique_ptr<Messages> messages, const TeamSettings&
          if (over_) return;
          lose(fmt::format("{} has not answered for {:.0f} seconds: it has ended or is stopped, or the connection is broken",
                           name_of(silent), settings_.patience));
+       },
+       [this] {
+         const std::lock_guard lock(mutex_);
+         orphaned_ = true;
+         if (!over_) lose(fmt::format("what started {} has ended (mpirun, srun)", name_of(this->rank())));
        }});
   if (leads())
     meet();
@@ -177,7 +184,9 @@ void ProcessTeam::received(int from, std::vector<std::byte> bytes) {
       return;
     }
     const std::lock_guard lock(mutex_);
-    if (leads())
+    if (letter.kind == LetterKind::scene)
+      scene_letters_.push_back(std::move(letter));
+    else if (leads())
       lead(letter);
     else
       follow(letter);
@@ -210,7 +219,9 @@ void ProcessTeam::lead(Reading& letter) {
       if (letter.take<std::uint64_t>() == render_) prepared_[size_t(letter.from)] = std::move(letter);
       break;
     case LetterKind::finished:
-      if (letter.take<std::uint64_t>() == epoch_) finished_[size_t(letter.from)] = letter.take<std::uint64_t>();
+      if (letter.take<std::uint64_t>() != epoch_) break;
+      finished_[size_t(letter.from)] = letter.take<std::uint64_t>();
+      efforts_[size_t(letter.from)] = letter.take<Effort>();
       break;
     case LetterKind::failed: {
       const auto render = letter.take<std::uint64_t>(), step = letter.take<std::uint64_t>();
@@ -276,6 +287,7 @@ void ProcessTeam::begin_render(std::vector<std::byte> what) {
   common_.reset();
   forget_errors();
   for (auto& prepared : prepared_) prepared.reset();
+  efforts_.assign(efforts_.size(), {});
   to_all(Writing(LetterKind::render).add(render_).add(what).parcel());
 }
 
@@ -298,12 +310,26 @@ std::optional<std::vector<std::byte>> ProcessTeam::next_render() {
   }
 }
 
+std::optional<Reading> ProcessTeam::next_scene_letter() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    // To a follower the next order after that to render is that the render has ended, as a step needs it to be prepared.
+    wait(lock, [&] { return !scene_letters_.empty() || !orders_.empty() || over_; });
+    if (scene_letters_.empty()) return {};
+    Reading letter = std::move(scene_letters_.front());
+    scene_letters_.pop_front();
+    if (letter.take<std::uint64_t>() == render_) return letter;  // else of a render that could not be prepared
+  }
+}
+
 void ProcessTeam::warn(const std::string& text, const Location& at) {
   post_.send(0, Writing(LetterKind::warning).add(text).add(std::string(at.file)).add(at.line).add(at.column).parcel());
 }
 
 void ProcessTeam::assemble(const Prepared& own) {
   const int threads = own.threads > 0 ? own.threads : share_.load();
+  before_ = {};
+  before_ = effort();
   if (!leads()) {
     Writing letter(LetterKind::prepared);
     letter.add(render_).add(threads).add(own.seed).add(own.samples_per_step).add(own.command);
@@ -317,6 +343,22 @@ void ProcessTeam::assemble(const Prepared& own) {
   });
   threads_[0] = threads;
   for (int other = 1; other < size(); ++other) require_same(other, *prepared_[size_t(other)], own);
+}
+
+Effort ProcessTeam::effort() const {
+  const Post::Traffic traffic = post_.traffic();
+  timespec now{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return {.bytes = traffic.bytes - before_.bytes,
+          .messages = traffic.messages - before_.messages,
+          .items = items_ - before_.items,
+          .post = traffic.seconds - before_.post,
+          .all = double(now.tv_sec) + double(now.tv_nsec) * 1e-9 - before_.all};
+}
+
+std::vector<Effort> ProcessTeam::efforts() const {
+  const std::lock_guard lock(mutex_);
+  return efforts_;
 }
 
 void ProcessTeam::require_same(int other, Reading& letter, const Prepared& own) {
@@ -374,6 +416,7 @@ void ProcessTeam::end_step(const std::vector<std::byte>& state) {
                       name_of(other), name_of(0)));
   common_ = own;
   step_at_hand_ = false;
+  efforts_[0] = effort();
 }
 
 void ProcessTeam::drop_step() noexcept {
@@ -416,7 +459,7 @@ std::optional<Team::Task> ProcessTeam::next_step(std::atomic<bool>& abort) {
 }
 
 void ProcessTeam::finished(const std::vector<std::byte>& state) {
-  post_.send(0, Writing(LetterKind::finished).add(epoch_).add(hash_of(state)).parcel());
+  post_.send(0, Writing(LetterKind::finished).add(epoch_).add(hash_of(state)).add(effort()).parcel());
 }
 
 void ProcessTeam::failed(const std::vector<Error>& errors) noexcept {

@@ -1,5 +1,7 @@
 #include "team_schedule.h"
 
+#include <time.h>
+
 #include <numeric>
 
 namespace etendue {
@@ -10,6 +12,13 @@ struct Made {
   std::unique_ptr<ImageTile> tile;
   std::shared_ptr<void> results;
 };
+
+/// The processor time of this thread [s].
+double own_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + double(now.tv_nsec) * 1e-9;
+}
 
 /// A process asks for so many items.
 struct Wish {
@@ -159,6 +168,7 @@ class TeamSchedule::Call {
     Made made;
     const auto began = std::chrono::steady_clock::now();
     unlocked(lock, [&] {
+      const double before = own_seconds();
       if (items_.film) {
         made.tile = schedule_.tile();
         made.tile->keep_largest(team_.largest_);
@@ -166,6 +176,7 @@ class TeamSchedule::Call {
       made.results = work_.make();
       work_.fill(item, made.tile.get(), made.results.get(), arena);
       if (!items_.film) arena.reset();
+      team_.items_ += own_seconds() - before;
       if (schedule_.stopped()) return;  // it may be incomplete
       send(item, made);
     });

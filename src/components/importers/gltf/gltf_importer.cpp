@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "files/gzip.h"
+#include "files/input_files.h"
 #include "import_document.h"
 #include "materials.h"
 #include "scene_builder.h"
@@ -36,12 +38,16 @@ void check_extensions(Importing& importing, const Document& document) {
       importing.inexact(fmt::format("it uses the extension {}, which is not read", name.get<std::string>()), importing.at());
 }
 
-/// Forwards the warnings of a converter from another format (see src/assimp).
+/// Forwards the warnings of a converter from another format (see src/assimp), and the names of the files that it has opened.
 void tell_notes(Importing& importing, const Document& document) {
   const Json& extras = object_in(document.json(), "asset");
   if (!find(extras, "extras") || !extras["extras"].is_object()) return;
   for (const Json& note : list_in(extras["extras"], "notes"))
     if (note.is_string()) importing.inexact(note.get<std::string>(), importing.at());
+  const std::string ending = ending_of_contents(importing.path());
+  if (ending == "gltf" || ending == "glb" || !find(extras["extras"], "files")) return;  // only of a converter
+  for (const Json& file : list_in(extras["extras"], "files"))
+    if (file.is_string()) note_input(file.get<std::string>());
 }
 
 Ref<Component> job_of(Importing& importing, const Ref<Scene>& scene, const MadeCamera& camera) {

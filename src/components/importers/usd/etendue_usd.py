@@ -232,6 +232,7 @@ def main():
     glb = Glb()
     files = Files(path, sys.argv[3:], glb.note)
     files.check_layers()
+    glb.json["asset"]["extras"]["files"] = files.outer_paths()
     stage = Usd.Stage.Open(path)
     if only_materials:
         sys.stdout.write(document_of(stage, Usd.TimeCode.Default()))

@@ -57,6 +57,10 @@ class Files:
                 self.documents[path] = Sdf.Layer.CreateAnonymous()
         return self.documents[path]
 
+    def outer_paths(self):
+        """All files that layers were read from."""
+        return sorted({Ar.SplitPackageRelativePathOuter(path)[0] for path, layer in self.layers.items() if layer is not None})
+
     def opened(self, path):
         """A layer, or None, which is told; an error where it is the scene itself."""
         if path in self.layers:
