@@ -60,6 +60,13 @@ class Environment final : public InfiniteObject {
     return emission->incident_pdf(inside(direction, p.time));
   }
 
+  std::optional<Point2> visible_place(const Vector3& direction, float time) const override {
+    if (emission && emission->knows_incident()) return emission->incident_place(inside(direction, time));
+    // The inverse of warp::sphere.
+    return Point2{clamp((1 - direction.z) / 2, 0, one_minus_epsilon),
+                  std::min(positive_atan2(direction.y, direction.x) * (1 / (2 * pi)), one_minus_epsilon)};
+  }
+
  private:
   Vector3 inside(const Vector3& direction, float time) const {
     Transform scratch;

@@ -1,0 +1,123 @@
+#include "etendue/guiding/environment_guide.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "etendue/core/math.h"
+
+namespace etendue {
+namespace {
+
+constexpr int dimensions = 6;
+using Coordinates = std::array<float, dimensions>;
+
+/// The dimension in which points are spread furthest, by their variance.
+std::uint32_t widest(std::span<const std::uint32_t> some, const std::vector<Coordinates>& at) {
+  std::uint32_t best = 0;
+  double most = -1;
+  for (std::uint32_t d = 0; d < dimensions; ++d) {
+    double sum = 0, squares = 0;
+    for (const std::uint32_t i : some) {
+      const double x = double(at[i][d]) - double(at[some.front()][d]);
+      sum += x;
+      squares += x * x;
+    }
+    const double variance = squares - sum * sum / double(some.size());
+    if (variance > most) {
+      most = variance;
+      best = d;
+    }
+  }
+  return best;
+}
+
+/// The first entry of a CDF that exceeds u, and the position within it, uniform in [0, 1).
+int find(const float* cumulative, float& u) {
+  int i = 0;
+  for (int k = 0; k < EnvironmentGuide::side - 1; ++k) i += cumulative[k] <= u;
+  const float low = i == 0 ? 0 : cumulative[i - 1];
+  u = clamp((u - low) / (cumulative[i] - low), 0, one_minus_epsilon);
+  return i;
+}
+
+float share(const float* cumulative, int i) { return cumulative[i] - (i == 0 ? 0 : cumulative[i - 1]); }
+
+/// A place's coordinate as a tile's, with the position within the tile.
+int tile_of(float u) { return std::min(int(u * EnvironmentGuide::side), EnvironmentGuide::side - 1); }
+
+}  // namespace
+
+void EnvironmentGuide::divide(const std::vector<Place>& places, int each, int deepest) {
+  depth_ = 0;
+  while (depth_ < deepest && (places.size() >> (depth_ + 1)) >= size_t(each)) ++depth_;
+  nodes_.assign(size_t(1) << depth_, {infinity, 0});
+  tables_.assign(size_t(1) << depth_, {});
+
+  // A unit of normals is as long as places are apart, by the median: a few far away count for nothing.
+  std::vector<float> spread;
+  for (int d = 0; d < 3 && !places.empty(); ++d) {
+    std::vector<float> x;
+    for (const Place& p : places) x.push_back(d == 0 ? p.position.x : d == 1 ? p.position.y : p.position.z);
+    const auto quartile = [&](size_t k) {
+      std::nth_element(x.begin(), x.begin() + std::ptrdiff_t(x.size() * k / 4), x.end());
+      return x[x.size() * k / 4];
+    };
+    const float low = quartile(1);
+    spread.push_back(quartile(3) - low);
+  }
+  stretch_ = spread.empty() ? 1 : *std::max_element(spread.begin(), spread.end()) / 2;
+
+  std::vector<Coordinates> at;
+  for (const auto& [p, n] : places) at.push_back({p.x, p.y, p.z, stretch_ * n.x, stretch_ * n.y, stretch_ * n.z});
+  std::vector<std::uint32_t> order(places.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto divide = [&](const auto& self, std::uint32_t node, std::span<std::uint32_t> some, int levels) -> void {
+    if (levels == 0 || some.empty()) return;
+    const std::uint32_t d = widest(some, at);
+    const auto middle = some.begin() + std::ptrdiff_t(some.size() / 2);
+    std::nth_element(some.begin(), middle, some.end(), [&](std::uint32_t a, std::uint32_t b) { return at[a][d] < at[b][d]; });
+    const float border = at[*middle][d];
+    nodes_[node] = {border, d};
+    const auto right = std::partition(some.begin(), some.end(), [&](std::uint32_t i) { return !(at[i][d] > border); });
+    self(self, 2 * node, std::span(some.begin(), right), levels - 1);
+    self(self, 2 * node + 1, std::span(right, some.end()), levels - 1);
+  };
+  divide(divide, 1, order, depth_);
+  for (std::uint32_t r = 0; r < regions(); ++r) learn(r, {}, 1);
+}
+
+void EnvironmentGuide::learn(std::uint32_t region, const Squares& squares, float defensive) {
+  double sum = 0;
+  for (const float s : squares) sum += std::sqrt(double(s));
+  if (!(sum > 0)) defensive = 1;
+  const auto probability = [&](int row, int column) {
+    const double learned = sum > 0 ? std::sqrt(double(squares[size_t(row * side + column)])) / sum : 0;
+    return double(defensive) / tiles + (1 - double(defensive)) * learned;
+  };
+  Table& table = tables_[region];
+  double below = 0;
+  for (int row = 0; row < side; ++row) {
+    double whole = 0, left = 0;
+    for (int column = 0; column < side; ++column) whole += probability(row, column);
+    for (int column = 0; column < side; ++column)
+      table.columns[row][column] = column + 1 == side ? 1 : float((left += probability(row, column)) / whole);
+    table.rows[row] = row + 1 == side ? 1 : float(below += whole);
+  }
+}
+
+EnvironmentGuide::Guided EnvironmentGuide::sample(std::uint32_t region, Point2 r) const {
+  const Table& table = tables_[region];
+  const int row = find(table.rows, r.y), column = find(table.columns[row], r.x);
+  return {{std::min((float(column) + r.x) / side, one_minus_epsilon), std::min((float(row) + r.y) / side, one_minus_epsilon)},
+          tiles * share(table.rows, row) * share(table.columns[row], column)};
+}
+
+float EnvironmentGuide::ratio(std::uint32_t region, Point2 place) const {
+  const Table& table = tables_[region];
+  const int row = tile_of(place.y);
+  return tiles * share(table.rows, row) * share(table.columns[row], tile_of(place.x));
+}
+
+}  // namespace etendue
