@@ -33,6 +33,19 @@ std::uint32_t widest(std::span<const std::uint32_t> some, const std::vector<Coor
   return best;
 }
 
+/// A value that divides points as evenly as it can in a dimension. Many coordinates are equal, as walls are flat: it lies
+/// half-way between two different ones.
+float halving(std::span<const std::uint32_t> some, const std::vector<Coordinates>& at, std::uint32_t dimension) {
+  std::vector<float> x;
+  for (const std::uint32_t i : some) x.push_back(at[i][dimension]);
+  std::ranges::sort(x);
+  const auto middle = x.begin() + std::ptrdiff_t(x.size() / 2);
+  const auto from = std::lower_bound(x.begin(), middle, *middle), to = std::upper_bound(middle, x.end(), *middle);
+  const bool below = to == x.end() || (from != x.begin() && middle - from < to - middle);
+  const auto first = below ? from : to;  // of the upper half
+  return first == x.begin() ? infinity : first[-1] + (*first - first[-1]) / 2;
+}
+
 /// The first entry of a CDF that exceeds u, and the position within it, uniform in [0, 1).
 int find(const float* cumulative, float& u) {
   int i = 0;
@@ -76,9 +89,7 @@ void EnvironmentGuide::divide(const std::vector<Place>& places, int each, int de
   const auto divide = [&](const auto& self, std::uint32_t node, std::span<std::uint32_t> some, int levels) -> void {
     if (levels == 0 || some.empty()) return;
     const std::uint32_t d = widest(some, at);
-    const auto middle = some.begin() + std::ptrdiff_t(some.size() / 2);
-    std::nth_element(some.begin(), middle, some.end(), [&](std::uint32_t a, std::uint32_t b) { return at[a][d] < at[b][d]; });
-    const float border = at[*middle][d];
+    const float border = halving(some, at, d);
     nodes_[node] = {border, d};
     const auto right = std::partition(some.begin(), some.end(), [&](std::uint32_t i) { return !(at[i][d] > border); });
     self(self, 2 * node, std::span(some.begin(), right), levels - 1);

@@ -1,7 +1,7 @@
 #include "etendue/render/adaptive_environment.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <cmath>
 
 #include "camera_path.h"
 #include "etendue/transport/roulette.h"
@@ -20,15 +20,21 @@ struct Viewpoint {
   float time = 0;
 };
 
-int env(const char* n, int d) {
-  const char* v = std::getenv(n);
-  return v ? std::atoi(v) : d;
-}
-const int paths = env("AE_PATHS", 4096), paths_at_once = 64;
-const int each = env("AE_EACH", 16), deepest = env("AE_DEEP", 10);
-const int rays_of_tile = env("AE_RAYS", 1);
-const float defensive = float(env("AE_DEF", 10)) / 100;
+// How much is learned. Few regions about which much is known are better than many about which little is: with the same number
+// of rays, 256 regions with 8 rays for each tile had less error indoors than 512 with 4, 1024 with 2, or 128 with 8
+// (docs/decisions/060-price-of-samples.md).
+constexpr int rays_of_tile = 8;
+constexpr int places_of_region = 16;
 constexpr int longest = 8;  // segments of a path
+constexpr float defensive = 0.05f;
+constexpr std::uint32_t paths_at_once = 64;
+
+/// Learning takes as many rays as a part of a sample for each pixel does: so many candidates, half of which are below the
+/// surface. Returns the logarithm of the number of regions.
+int depth_for(double pixels) {
+  const double rays = std::clamp(16 * pixels, 0x1p11, 0x1p21);
+  return int(std::log2(rays / (EnvironmentGuide::tiles * rays_of_tile)));
+}
 
 /// The vertices of one camera path at which next event estimation finds light.
 void look_around(const RenderProcess& process, const PixelArea& picture, SampleKey key, Arena& arena,
@@ -121,8 +127,10 @@ void AdaptiveEnvironment::learn(Schedule& schedule, const RenderProcess& process
   if (guide_.regions() > 0) return;
   const ImageBuffer& image = process.context.image;
   const PixelArea picture{0, 0, image.width, image.height};
-  const std::vector<Viewpoint> viewpoints =
-      schedule.collect<Viewpoint>(paths / paths_at_once, [&](std::uint64_t item, std::vector<Viewpoint>& found, Arena& arena) {
+  const int depth = depth_for(double(image.width) * double(image.height));
+  const std::uint64_t paths = std::uint64_t(places_of_region) << depth;  // of which each has some vertices
+  const std::vector<Viewpoint> viewpoints = schedule.collect<Viewpoint>(
+      (paths + paths_at_once - 1) / paths_at_once, [&](std::uint64_t item, std::vector<Viewpoint>& found, Arena& arena) {
         for (std::uint32_t i = 0; i < paths_at_once; ++i)
           look_around(process, picture, SampleKey(0, 0, 0, std::uint32_t(item) * paths_at_once + i), arena, found);
       });
@@ -131,7 +139,7 @@ void AdaptiveEnvironment::learn(Schedule& schedule, const RenderProcess& process
   std::vector<EnvironmentGuide::Place> places;
   for (const Viewpoint& v : viewpoints) places.push_back({v.position, v.normal});
   EnvironmentGuide guide;
-  guide.divide(places, each, deepest);
+  guide.divide(places, places_of_region, depth);
   std::vector<std::vector<std::uint32_t>> there(guide.regions());
   for (std::uint32_t i = 0; i < viewpoints.size(); ++i)
     there[guide.region(viewpoints[i].position, viewpoints[i].normal)].push_back(i);
