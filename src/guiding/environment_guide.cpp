@@ -46,10 +46,11 @@ float halving(std::span<const std::uint32_t> some, const std::vector<Coordinates
   return first == x.begin() ? infinity : first[-1] + (*first - first[-1]) / 2;
 }
 
-/// The first entry of a CDF that exceeds u, and the position within it, uniform in [0, 1).
+/// The first entry of a CDF that exceeds u, and the position within it, uniform in [0, 1). Six comparisons, without jumps.
 int find(const float* cumulative, float& u) {
-  int i = 0;
-  for (int k = 0; k < EnvironmentGuide::side - 1; ++k) i += cumulative[k] <= u;
+  static_assert(EnvironmentGuide::side == 16);
+  int i = 4 * ((cumulative[3] <= u) + (cumulative[7] <= u) + (cumulative[11] <= u));
+  i += (cumulative[i] <= u) + (cumulative[i + 1] <= u) + (cumulative[i + 2] <= u);
   const float low = i == 0 ? 0 : cumulative[i - 1];
   u = clamp((u - low) / (cumulative[i] - low), 0, one_minus_epsilon);
   return i;

@@ -13,7 +13,7 @@
 // In a medium the phase function takes the place of f |cos|. The weights compare the pdfs [1/sr] of directions alone, without
 // transmittances. Both strategies compute the same weights for a path, so the weights add up to one.
 
-#include "etendue/render/adaptive_environment.h"
+#include "etendue/render/adaptive_lights.h"
 #include "etendue/render/renderer.h"
 #include "etendue/transport/camera_walk.h"
 #include "etendue/transport/renderer_members.h"
@@ -24,7 +24,7 @@ namespace etendue {
 class PathTracer final : public Renderer {
   int max_depth = 64;
   int roulette_depth = 5;
-  Heuristic heuristic = Heuristic::power;
+  Heuristic heuristic = Heuristic::balance;
   bool next_event = true;
   int split_depth = 0, split_wavelengths = 3;
 

@@ -1,7 +1,7 @@
 // Environments are sampled where they are seen: the probabilities of tiles, their regions, a closed form indoors, the same bits
 // for any threads.
 
-#include "etendue/render/adaptive_environment.h"
+#include "etendue/render/adaptive_lights.h"
 
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ std::string room(const std::string& renderer) {
                         "Environment { emission: EnvironmentEmission { radiance: 1 } }");
 }
 
-TEST(AdaptiveEnvironment, LightThroughAHoleHasItsClosedFormAndLittleNoise) {
+TEST(AdaptiveLights, LightThroughAHoleHasItsClosedFormAndLittleNoise) {
   // The view factor of a disc of radius r at the height h: r^2 / (h^2 + r^2).
   const double factor = 0.5 * 0.04 / 1.04;
   // The mean Y of a flat spectrum of radiance 1 is 1 (the equal-energy white).
@@ -81,7 +81,7 @@ TEST(AdaptiveEnvironment, LightThroughAHoleHasItsClosedFormAndLittleNoise) {
   EXPECT_LT(adaptive.error, 0.45 * plain.error);
 }
 
-TEST(AdaptiveEnvironment, TheSameBitsForAnyThreads) {
+TEST(AdaptiveLights, TheSameBitsForAnyThreads) {
   const auto picture = [](int threads) {
     const Ref<Job> job = load_job_text(room("PathTracer { samples: 2 }"), "test.etd");
     return test::rendered(job, {.threads = threads})->picture();
