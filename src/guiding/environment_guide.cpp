@@ -46,17 +46,34 @@ float halving(std::span<const std::uint32_t> some, const std::vector<Coordinates
   return first == x.begin() ? infinity : first[-1] + (*first - first[-1]) / 2;
 }
 
-/// The first entry of a CDF that exceeds u, and the position within it, uniform in [0, 1). Six comparisons, without jumps.
-int find(const float* cumulative, float& u) {
-  static_assert(EnvironmentGuide::side == 16);
-  int i = 4 * ((cumulative[3] <= u) + (cumulative[7] <= u) + (cumulative[11] <= u));
-  i += (cumulative[i] <= u) + (cumulative[i + 1] <= u) + (cumulative[i + 2] <= u);
-  const float low = i == 0 ? 0 : cumulative[i - 1];
-  u = clamp((u - low) / (cumulative[i] - low), 0, one_minus_epsilon);
+using Sums = std::array<std::uint8_t, EnvironmentGuide::side>;
+
+/// The probability of an entry, in parts of 256.
+int share(const Sums& sums, int i) { return (i + 1 < EnvironmentGuide::side ? sums[size_t(i) + 1] : 256) - sums[size_t(i)]; }
+
+/// The entry that contains u, and the position within it, uniform in [0, 1).
+int find(const Sums& sums, float& u) {
+  const auto part = std::uint8_t(256 * u);
+  std::uint8_t up_to = 0;
+  for (const std::uint8_t sum : sums) up_to = std::uint8_t(up_to + (sum <= part));  // one instruction for all
+  const int i = up_to - 1;
+  u = std::min((256 * u - float(sums[size_t(i)])) / float(share(sums, i)), one_minus_epsilon);
   return i;
 }
 
-float share(const float* cumulative, int i) { return cumulative[i] - (i == 0 ? 0 : cumulative[i - 1]); }
+/// Rounds probabilities: each entry has one part of 256, and its share of the others.
+Sums rounded(const std::array<double, EnvironmentGuide::side>& weights) {
+  constexpr int side = EnvironmentGuide::side;
+  const double whole = std::accumulate(weights.begin(), weights.end(), 0.0);
+  Sums sums;
+  double below = 0;
+  for (int i = 0; i < side; ++i) {
+    const double before = whole > 0 ? below / whole : double(i) / side;
+    sums[size_t(i)] = std::uint8_t(i + int(std::lround(std::min(before, 1.0) * (256 - side))));
+    below += weights[size_t(i)];
+  }
+  return sums;
+}
 
 /// A place's coordinate as a tile's, with the position within the tile.
 int tile_of(float u) { return std::min(int(u * EnvironmentGuide::side), EnvironmentGuide::side - 1); }
@@ -97,39 +114,34 @@ void EnvironmentGuide::divide(const std::vector<Place>& places, int each, int de
     self(self, 2 * node + 1, std::span(right, some.end()), levels - 1);
   };
   divide(divide, 1, order, depth_);
-  for (std::uint32_t r = 0; r < regions(); ++r) learn(r, {}, 1);
+  for (std::uint32_t r = 0; r < regions(); ++r) learn(r, {});
 }
 
-void EnvironmentGuide::learn(std::uint32_t region, const Squares& squares, float defensive) {
-  double sum = 0;
-  for (const float s : squares) sum += std::sqrt(double(s));
-  if (!(sum > 0)) defensive = 1;
-  const auto probability = [&](int row, int column) {
-    const double learned = sum > 0 ? std::sqrt(double(squares[size_t(row * side + column)])) / sum : 0;
-    return double(defensive) / tiles + (1 - double(defensive)) * learned;
-  };
+void EnvironmentGuide::learn(std::uint32_t region, const Squares& squares) {
   Table& table = tables_[region];
-  double below = 0;
-  for (int row = 0; row < side; ++row) {
-    double whole = 0, left = 0;
-    for (int column = 0; column < side; ++column) whole += probability(row, column);
-    for (int column = 0; column < side; ++column)
-      table.columns[row][column] = column + 1 == side ? 1 : float((left += probability(row, column)) / whole);
-    table.rows[row] = row + 1 == side ? 1 : float(below += whole);
+  std::array<double, side> rows{};
+  for (size_t row = 0; row < side; ++row) {
+    std::array<double, side> columns{};
+    for (size_t column = 0; column < side; ++column) {
+      columns[column] = std::sqrt(double(squares[row * side + column]));
+      rows[row] += columns[column];
+    }
+    table.columns[row] = rounded(columns);
   }
+  table.rows = rounded(rows);
 }
 
 EnvironmentGuide::Guided EnvironmentGuide::sample(std::uint32_t region, Point2 r) const {
   const Table& table = tables_[region];
-  const int row = find(table.rows, r.y), column = find(table.columns[row], r.x);
+  const int row = find(table.rows, r.y), column = find(table.columns[size_t(row)], r.x);
   return {{std::min((float(column) + r.x) / side, one_minus_epsilon), std::min((float(row) + r.y) / side, one_minus_epsilon)},
-          tiles * share(table.rows, row) * share(table.columns[row], column)};
+          float(share(table.rows, row) * share(table.columns[size_t(row)], column)) / tiles};
 }
 
 float EnvironmentGuide::ratio(std::uint32_t region, Point2 place) const {
   const Table& table = tables_[region];
   const int row = tile_of(place.y);
-  return tiles * share(table.rows, row) * share(table.columns[row], tile_of(place.x));
+  return float(share(table.rows, row) * share(table.columns[size_t(row)], tile_of(place.x))) / tiles;
 }
 
 }  // namespace etendue

@@ -26,7 +26,6 @@ struct Viewpoint {
 constexpr int rays_of_tile = 8;
 constexpr int places_of_region = 16;
 constexpr int longest = 8;  // segments of a path
-constexpr float defensive = 0.05f;
 constexpr int rays_of_luminaire = 64;
 constexpr float by_others = 0.25f;  // d
 constexpr std::uint32_t paths_at_once = 64;
@@ -156,7 +155,7 @@ AdaptiveLights::AdaptiveLights(const LightSampler& lights, const Scene& scene)
 }
 
 void AdaptiveLights::learn(Schedule& schedule, const RenderProcess& process) {
-  if (guide_.regions() > 0) return;
+  if (!applies() || guide_.regions() > 0) return;
   const ImageBuffer& image = process.context.image;
   const PixelArea picture{0, 0, image.width, image.height};
   const int depth = depth_for(double(image.width) * double(image.height));
@@ -200,7 +199,7 @@ void AdaptiveLights::learn(Schedule& schedule, const RenderProcess& process) {
       });
   if (schedule.aborted()) return;
   for (const Seen& seen : all) {
-    if (environment_) guide.learn(std::uint32_t(&seen - all.data()), seen.tiles, defensive);
+    if (environment_) guide.learn(std::uint32_t(&seen - all.data()), seen.tiles);
     if (!chooses_) continue;
     double whole = 0, below = 0;
     for (const float root : seen.roots) whole += double(root);

@@ -19,14 +19,15 @@ TEST(EnvironmentGuide, SamplesHaveTheProbabilitiesOfTheirTiles) {
   EnvironmentGuide::Squares squares{};
   squares[5 * EnvironmentGuide::side + 3] = 4;
   squares[5 * EnvironmentGuide::side + 4] = 1;
-  guide.learn(0, squares, 0.25f);
+  guide.learn(0, squares);
   const auto ratio_at = [&](int column, int row) {
     return guide.ratio(0, {(float(column) + 0.5f) / EnvironmentGuide::side, (float(row) + 0.5f) / EnvironmentGuide::side});
   };
-  // The roots of the squares are as 2 to 1; a quarter is equal everywhere.
-  EXPECT_NEAR(ratio_at(3, 5), 0.25 + 0.75 * 256 * 2 / 3, 1e-3);
-  EXPECT_NEAR(ratio_at(4, 5), 0.25 + 0.75 * 256 / 3, 1e-3);
-  EXPECT_NEAR(ratio_at(15, 15), 0.25, 1e-4);
+  // The roots of the squares are as 2 to 1, in one row; in each dimension an entry has one part of 256, and its share of the
+  // other 240. A part of one dimension times one of the other is 1 / 256 of equal tiles.
+  EXPECT_NEAR(ratio_at(3, 5), 241 * 161 / 256.0, 1e-3);
+  EXPECT_NEAR(ratio_at(4, 5), 241 * 81 / 256.0, 1e-3);
+  EXPECT_NEAR(ratio_at(15, 15), 1 * 16 / 256.0, 1e-4);
 
   // Midpoints of a fine grid of numbers: the mean of 1 / ratio over samples is the area of the unit square, and as many samples
   // fall into a tile as its probability says.

@@ -48,8 +48,8 @@ class EnvironmentGuide {
 
   /// The mean square, of each tile row by row, of what a sample in it contributes by p_0.
   using Squares = std::array<float, tiles>;
-  /// Sets the probabilities in a region. `defensive`: the share of P_t that is equal for all tiles.
-  void learn(std::uint32_t region, const Squares&, float defensive);
+  /// Sets the probabilities in a region. They are rounded, and at least a sixteenth of those of equal tiles, in each dimension.
+  void learn(std::uint32_t region, const Squares&);
 
   /// The point u that replaces the uniform `r`, and n^2 P_t.
   struct Guided {
@@ -65,10 +65,12 @@ class EnvironmentGuide {
     float border;
     std::uint32_t dimension;
   };
-  /// CDFs: of the rows of tiles, and of the tiles in each row; a cache line for each.
-  struct alignas(64) Table {
-    float rows[side];
-    float columns[side][side];
+  /// CDFs of the rows of tiles, and of the tiles in each row: the sums of the entries before each, in parts of 256. Most of
+  /// what a sample costs is that its tables are not in the nearest cache, so they are small.
+  using Sums = std::array<std::uint8_t, side>;
+  struct Table {
+    Sums rows;
+    std::array<Sums, side> columns;
   };
 
   std::vector<Node> nodes_;  ///< of node i the halves are 2 i and 2 i + 1; the root is 1

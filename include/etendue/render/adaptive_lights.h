@@ -29,7 +29,7 @@ class AdaptiveLights final : public LightSampler {
 
   /// Whether anything can be learned of the scene's luminaires.
   bool applies() const { return environment_ || chooses_; }
-  /// Learns; does nothing if it has learned already. An aborted schedule leaves nothing.
+  /// Learns; does nothing if it has learned already, or nothing can be learned. An aborted schedule leaves nothing.
   void learn(Schedule&, const RenderProcess&);
 
   void build(const Scene&) override {}
