@@ -83,9 +83,15 @@ class Lookout {
     const std::uint64_t bits = next();
     return {to_unit_float(std::uint32_t(bits)), to_unit_float(std::uint32_t(bits >> 32))};
   }
-  /// What the sample `u` of a luminaire contributes at any viewpoint, cos L V / p, squared; as a mean over the wavelengths.
+  /// Goes to one of the viewpoints, for the rays of the i-th of several turns. Rays of one turn begin at one place, which takes
+  /// less time than if each began elsewhere.
+  void stand(int i, int turns) {
+    const double at = (double(i) + double(pair().x)) / turns;
+    from_ = &all_[some_[std::min(size_t(at * double(some_.size())), some_.size() - 1)]];
+  }
+  /// What the sample `u` of a luminaire contributes there, cos L V / p, squared; as a mean over the wavelengths.
   float square_of(const SceneObject& luminaire, Point2 u) {
-    const Viewpoint& from = all_[some_[next() % some_.size()]];
+    const Viewpoint& from = *from_;
     const SurfaceSample seen = luminaire.sample_visible(from.position, u, from.time);
     if (!(seen.pdf > 0)) return 0;
     const float cosine = from.side == Vector3{} ? 1 : dot(from.side, seen.direction);
@@ -96,11 +102,12 @@ class Lookout {
     shadow.maximum = infinity;
     shadow.time = from.time;
     if (!seen.infinite) SurfacePoint::end_at(seen.point, shadow);
-    const Spectrum light = luminaire.emission->radiance(seen.point, -seen.direction, wavelengths_);
-    if (light.black()) return 0;
-    const Spectrum seen_light = light * shadow_transmittance(scene_, shadow, nullptr, wavelengths_, numbers_, arena_);
+    // Most rays are occluded, and radiances may be far away in memory: visibility first.
+    const Spectrum visible = shadow_transmittance(scene_, shadow, nullptr, wavelengths_, numbers_, arena_);
     arena_.reset();
-    return square(cosine * seen_light.average() / seen.pdf);
+    if (visible.black()) return 0;
+    const Spectrum light = visible * luminaire.emission->radiance(seen.point, -seen.direction, wavelengths_);
+    return square(cosine * light.average() / seen.pdf);
   }
 
  private:
@@ -113,6 +120,7 @@ class Lookout {
   const Wavelengths wavelengths_;
   NumberStream numbers_;
   std::uint64_t random_;
+  const Viewpoint* from_ = nullptr;
 };
 
 /// The mean squares of what samples in each tile contribute.
@@ -121,6 +129,7 @@ EnvironmentGuide::Squares look_at_tiles(Lookout& lookout, const SceneObject& env
   EnvironmentGuide::Squares squares{};
   for (int i = 0; i < EnvironmentGuide::tiles * rays_of_tile; ++i) {
     const int tile = i % EnvironmentGuide::tiles;
+    if (tile == 0) lookout.stand(i / EnvironmentGuide::tiles, rays_of_tile);
     const Point2 within = lookout.pair();
     const Point2 u{(float(tile % side) + within.x) / side, (float(tile / side) + within.y) / side};
     squares[size_t(tile)] += lookout.square_of(environment, u) / float(rays_of_tile);
@@ -191,8 +200,10 @@ void AdaptiveLights::learn(Schedule& schedule, const RenderProcess& process) {
             for (const float s : seen.tiles) sum += std::sqrt(double(s));
             seen.roots[k] = float(sum / EnvironmentGuide::tiles);
           } else {
-            for (int i = 0; i < rays_of_luminaire; ++i)
+            for (int i = 0; i < rays_of_luminaire; ++i) {
+              lookout.stand(i, rays_of_luminaire);
               sum += double(lookout.square_of(*luminaires_[k], lookout.pair())) / rays_of_luminaire;
+            }
             seen.roots[k] = float(std::sqrt(sum));
           }
         }
