@@ -4,7 +4,9 @@
 //
 // A new emission must implement `radiance`, `sample` with `pdf` (directions of emission, for paths that start at lights) and
 // `power`. Optional, for light from infinity: `sample_incident`, `incident_pdf` and `knows_incident` (importance sampling of an
-// environment map), `only_at_infinity`. Optional: `objects_changed` to drop cached values.
+// environment map; `incident_place`, its inverse), `only_at_infinity`. Optional: `objects_changed` to drop cached values.
+
+#include <optional>
 
 #include "etendue/core/spectrum.h"
 #include "etendue/core/surface_point.h"
@@ -55,6 +57,10 @@ class EmissionShader : public Component {
     if (sides == Sides::both || point.normal == Normal3{}) return true;
     return (dot(point.normal, direction) > 0) == (sides == Sides::front);
   }
+
+  /// The inverse of `sample_incident`: the point of the unit square that it maps to this direction. Empty: the inverse is not
+  /// unique, or not implemented.
+  virtual std::optional<Point2> incident_place(const Vector3&) const { return {}; }
 
   Sides sides = Sides::front;
 };

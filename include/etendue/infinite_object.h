@@ -5,6 +5,8 @@
 // A new object at infinity must implement `surface_point`, which returns the point seen along a ray, `area`, `sample_visible`
 // and `visible_pdf`. A delta light overrides `extent`. A SurroundingObject must implement `reach`.
 
+#include <optional>
+
 #include "etendue/scene_object.h"
 
 namespace etendue {
@@ -16,6 +18,10 @@ class InfiniteObject : public SceneObject {
     centre_ = centre;
     radius_ = radius;
   }
+
+  /// The point u of the unit square that `sample_visible`, from any place, maps to this direction (unit). Empty: it is not
+  /// unique, or not known.
+  virtual std::optional<Point2> visible_place(const Vector3& /*direction*/, float /*time*/) const { return {}; }
 
   Extent extent() const override { return Extent::environment; }
   Bounds3 bounds() const final { return {}; }

@@ -2,7 +2,8 @@
 // LightSampler (of the same name in pbrt; part of Scene::sample_emitter in Mitsuba): chooses a luminaire for next event
 // estimation or for the start of a light path, with a probability.
 //
-// A new light sampler must implement all functions: `build`, and `choose` with `probability` for a point and by power.
+// A new light sampler must implement `build`, and `choose` with `probability` for a point and by power. One that knows more
+// about a luminaire than the luminaire itself, such as what hides it, also overrides `sample` with `pdf`.
 
 #include "etendue/describe/component.h"
 #include "etendue/describe/description.h"
@@ -31,6 +32,14 @@ class LightSampler : public Component {
   /// Chooses a luminaire by power alone, for paths that start at luminaires.
   virtual LightChoice choose(float u) const = 0;
   virtual float probability(const SceneObject& luminaire) const = 0;
+
+  /// Samples a point of a chosen luminaire for next event estimation, with its pdf [1/sr] at `from`; by default the luminaire
+  /// itself does (SceneObject::sample_visible).
+  virtual SurfaceSample sample(const SceneObject& luminaire, const Point3& from, const Normal3& normal, Point2 u,
+                               float time) const;
+  /// The pdf [1/sr] with which `sample` returns a point of a luminaire that is seen from `from` in `direction` (unit).
+  virtual float pdf(const SceneObject& luminaire, const Point3& from, const Normal3& normal, const Vector3& direction,
+                    const SurfacePoint&) const;
 };
 
 }  // namespace etendue

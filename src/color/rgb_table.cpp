@@ -1,5 +1,8 @@
 #include "rgb_table.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -28,6 +31,13 @@ std::array<double, 3> rgb_of(int largest, double z, double x, double y) {
   rgb[size_t((largest + 2) % 3)] = z * y;
   return rgb;
 }
+/// Calls `work(item)` for all items, on all cores. Isolated: a thread that waits for others here must not take up other work,
+/// which could ask for the same table and wait for itself.
+template <class Work>
+void in_parallel(int items, const Work& work) {
+  tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, items, work); });
+}
+
 /// Whether a cell, given by its lowest corner, overlaps the half of the cube that is used in look-ups.
 bool needed(int level, int iy, int ix) { return level_z(level) * (1 + node_ratio(std::max(0, std::min(ix, iy)))) <= 1; }
 
@@ -36,36 +46,38 @@ bool needed(int level, int iy, int ix) { return level_z(level) * (1 + node_ratio
 void RgbTable::compute(const RgbSpace& space) {
   fit_ = std::make_unique<SigmoidFit>(space, quadrature_step);
   storage_.resize(size_t(3 * levels * ratios * ratios));
-  for (int largest = 0; largest < 3; ++largest)
-    for (int iy = 0; iy < ratios; ++iy)
-      for (int ix = 0; ix < ratios; ++ix) {
-        const auto solve = [&](int level, Coefficients& c) {
-          const double z = level_z(level);
-          fit_->solve(rgb_of(largest, z, node_ratio(ix), node_ratio(iy)), c, 2e-5, 20);
-          Node& node = storage_[node_index(largest, level, iy, ix)];
-          for (size_t i = 0; i < 3; ++i) node.c[i] = float(c[i] * std::sqrt(z));
-        };
-        // From the middle level, where the fit is easiest, to both ends; each level starts from the solution of the one before.
-        Coefficients middle{}, c;
-        solve(levels / 2, middle);
-        c = middle;
-        for (int level = levels / 2 - 1; level >= 0; --level) solve(level, c);
-        c = middle;
-        for (int level = levels / 2 + 1; level < levels && needed(level - 1, iy - 1, ix - 1); ++level) solve(level, c);
-      }
+  in_parallel(3 * ratios, [&](int item) {
+    const int largest = item / ratios, iy = item % ratios;
+    for (int ix = 0; ix < ratios; ++ix) {
+      const auto solve = [&](int level, Coefficients& c) {
+        const double z = level_z(level);
+        fit_->solve(rgb_of(largest, z, node_ratio(ix), node_ratio(iy)), c, 2e-5, 20);
+        Node& node = storage_[node_index(largest, level, iy, ix)];
+        for (size_t i = 0; i < 3; ++i) node.c[i] = float(c[i] * std::sqrt(z));
+      };
+      // From the middle level, where the fit is easiest, to both ends; each level starts from the solution of the one before.
+      Coefficients middle{}, c;
+      solve(levels / 2, middle);
+      c = middle;
+      for (int level = levels / 2 - 1; level >= 0; --level) solve(level, c);
+      c = middle;
+      for (int level = levels / 2 + 1; level < levels && needed(level - 1, iy - 1, ix - 1); ++level) solve(level, c);
+    }
+  });
 
-  for (int largest = 0; largest < 3; ++largest)
-    for (int level = 0; level < levels - 1; ++level)
-      for (int iy = 0; iy < ratios - 1; ++iy)
-        for (int ix = 0; ix < ratios - 1; ++ix) {
-          if (!needed(level, iy, ix)) continue;
-          const double z = (level_z(level) + level_z(level + 1)) / 2;
-          Node& corner = storage_[node_index(largest, level, iy, ix)];
-          const RgbCoefficients found = between(&corner, ratios, size_t(ratios * ratios), 0.5f, 0.5f, 0.5f, float(z));
-          Coefficients c{double(found.c0), double(found.c1), double(found.c2)};
-          if (fit_->solve(rgb_of(largest, z, node_ratio(ix + 0.5), node_ratio(iy + 0.5)), c, 0, 0) > coarse_error)
-            corner.coarse = 1;
-        }
+  in_parallel(3 * (levels - 1), [&](int item) {
+    const int largest = item / (levels - 1), level = item % (levels - 1);
+    for (int iy = 0; iy < ratios - 1; ++iy)
+      for (int ix = 0; ix < ratios - 1; ++ix) {
+        if (!needed(level, iy, ix)) continue;
+        const double z = (level_z(level) + level_z(level + 1)) / 2;
+        Node& corner = storage_[node_index(largest, level, iy, ix)];
+        const RgbCoefficients found = between(&corner, ratios, size_t(ratios * ratios), 0.5f, 0.5f, 0.5f, float(z));
+        Coefficients c{double(found.c0), double(found.c1), double(found.c2)};
+        if (fit_->solve(rgb_of(largest, z, node_ratio(ix + 0.5), node_ratio(iy + 0.5)), c, 0, 0) > coarse_error)
+          corner.coarse = 1;
+      }
+  });
   divided_ = std::make_unique<std::atomic<const Divided*>[]>(storage_.size());
   nodes_.store(storage_.data(), std::memory_order_release);
 }

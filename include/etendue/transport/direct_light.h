@@ -34,7 +34,7 @@ template <class Scattering, class Leave>
                                                           const Scattering& scattering, const Leave& leave) {
   const LightChoice light = lights.choose(from, normal, choice);
   if (!light.luminaire) return false;
-  SurfaceSample sampled = light.luminaire->sample_visible(from, u, time);
+  SurfaceSample sampled = lights.sample(*light.luminaire, from, normal, u, time);
   if (!(sampled.pdf > 0)) return false;
   const ScatterValue f = scattering(sampled.direction);
   if (f.value.black()) return false;
@@ -84,7 +84,7 @@ inline float next_event_direction_pdf(const LightSampler& lights, const Point3& 
                                       const Vector3& direction, const SurfacePoint& on_luminaire) {
   const SceneObject& luminaire = *on_luminaire.object;
   const float probability = lights.probability(from, normal, luminaire);
-  return probability > 0 ? probability * luminaire.visible_pdf(from, direction, on_luminaire) : 0;
+  return probability > 0 ? probability * lights.pdf(luminaire, from, normal, direction, on_luminaire) : 0;
 }
 
 }  // namespace etendue

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "etendue/light_sampler.h"
 #include "etendue/transport/boundaries.h"
 #include "etendue/transport/light_groups.h"
 #include "etendue/transport/medium.h"
@@ -56,10 +57,12 @@ struct LuminaireSample {
   Ray shadow;
 };
 
-/// Samples a point on a luminaire as seen from a surface point; false: no light arrives from there.
-inline bool sample_luminaire(const Scene& scene, const SceneObject& luminaire, const SurfacePoint& point,
-                             const Wavelengths& wavelengths, Point2 u, LuminaireSample& light) {
-  SurfaceSample sampled = luminaire.sample_visible(point.position, u, point.time);
+/// Samples a point on a luminaire as seen from a surface point; false: no light arrives from there. `lights`: the sampler that
+/// chose it; null: it was not chosen.
+inline bool sample_luminaire(const Scene& scene, const LightSampler* lights, const SceneObject& luminaire,
+                             const SurfacePoint& point, const Wavelengths& wavelengths, Point2 u, LuminaireSample& light) {
+  SurfaceSample sampled = lights ? lights->sample(luminaire, point.position, point.normal, u, point.time)
+                                 : luminaire.sample_visible(point.position, u, point.time);
   if (!(sampled.pdf > 0)) return false;
   light.radiance = luminaire.emission->radiance(sampled.point, -sampled.direction, wavelengths);
   if (light.radiance.black() || !scene.in_front(sampled.point, -sampled.direction)) return false;

@@ -1,9 +1,11 @@
 #pragma once
 // TexelDistribution: sampling of an image's texels, first a row, then a texel within the row.
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
+#include "etendue/core/math.h"
 #include "etendue/core/vector.h"
 
 namespace etendue {
@@ -21,6 +23,10 @@ class TexelDistribution {
   /// The probability that `choose` returns a texel, over the texel's measure; computed from the rounded CDFs that `choose`
   /// uses.
   float pdf(size_t x, size_t y) const { return rows_.share(0, y) * columns_.share(y, x) / measures_[y]; }
+  /// The inverse of `choose`: the point of the unit square that gives this texel and the point within it.
+  Point2 place(size_t x, size_t y, Point2 within) const {
+    return {columns_.place(y, x, within.x), rows_.place(0, y, within.y)};
+  }
   /// Prefetches the memory that `pdf` will read.
   void prefetch(size_t x, size_t y) const { columns_.prefetch(y, x); }
 
@@ -45,6 +51,11 @@ class TexelDistribution {
     size_t find(size_t list, float& u) const;
     /// The probability of an entry.
     float share(size_t list, size_t i) const { return at(list, i) - (i == 0 ? 0 : at(list, i - 1)); }
+    /// The inverse of `find`.
+    float place(size_t list, size_t i, float within) const {
+      const float low = i == 0 ? 0 : at(list, i - 1);
+      return std::min(low + within * (at(list, i) - low), one_minus_epsilon);
+    }
     void prefetch(size_t list, size_t i) const { __builtin_prefetch(&lowest_[list * lowest_nodes_ + i / fanout]); }
 
    private:

@@ -248,6 +248,7 @@ void AutomaticProcess::hold_trial(Schedule& schedule, const Step& step, std::uin
     Candidate& one = candidates_[c];
     if (one.out) continue;
     if (!one.process) one.process = one.renderer->start(context);
+    one.process->prepare_step(schedule, step);
     if (pupil(*one.process)) teach(schedule, one, std::uint32_t(c), due, lessons_share * so_far);
     if (schedule.aborted()) return;
     measured.push_back(trial.measure(schedule, *one.process, std::uint32_t(c), one.lessons));

@@ -154,7 +154,9 @@ class DirectRenderer final : public Renderer {
       const float choice = std::min((float(i) + sample.numbers.next()) / n, one_minus_epsilon);
       const Point2 u = sample.numbers.next_pair();
       const LightChoice chosen = light_sampler->choose(point.position, point.normal, choice);
-      if (!chosen.luminaire || !sample_luminaire(tree.scene, *chosen.luminaire, point, branch.wavelengths, u, light)) continue;
+      if (!chosen.luminaire ||
+          !sample_luminaire(tree.scene, light_sampler.get(), *chosen.luminaire, point, branch.wavelengths, u, light))
+        continue;
       const ScatterValue f = scatter.value_and_pdf(out, light.direction, {.lobes = direct_lobes()});
       if (f.value.black()) continue;
       const bool rivalled = strategy == Strategy::both && !light.delta;

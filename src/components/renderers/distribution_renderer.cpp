@@ -247,7 +247,8 @@ class DistributionRenderer final : public Renderer {
       const float choice = std::min((float(i) + sample.numbers.next()) / float(count), one_minus_epsilon);
       const Point2 u = sample.numbers.next_pair();
       const LightChoice chosen = light_sampler->choose(place.point.position, place.point.normal, choice);
-      if (!chosen.luminaire || !sample_luminaire(tree.scene, *chosen.luminaire, place.point, branch.wavelengths, u, light))
+      if (!chosen.luminaire ||
+          !sample_luminaire(tree.scene, light_sampler.get(), *chosen.luminaire, place.point, branch.wavelengths, u, light))
         continue;
       const float pdf = float(count) * chosen.probability * light.pdf;
       const ScatterValue rivals = lobe_rays(place, light.direction);

@@ -18,6 +18,7 @@
 // variance in directions, most of the remaining variance is from roulette (docs/decisions/028-guiding.md has the numbers).
 
 #include "etendue/guiding/guided_scattering.h"
+#include "etendue/render/adaptive_lights.h"
 #include "etendue/render/guided_process.h"
 #include "etendue/render/renderer.h"
 #include "etendue/transport/camera_walk.h"
@@ -132,8 +133,10 @@ class GuidedPathProcess final : public GuidedProcess<ShownProcess> {
   GuidedPathProcess(const GuidedPathTracer& r, const RenderContext& c)
       : GuidedProcess(r, c, guide_settings(r), r.memory, Trail::longest),
         settings_(r),
+        lights_(*r.light_sampler, c.scene),
         clear_(!c.scene.has_interiors() && !c.scene.has_null_surfaces()) {}
 
+  void prepare_step(Schedule& schedule, const Step&) override { lights_.learn(schedule, *this); }
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
     Trail* const trail = trail_of(sample);  // allocated before the walk, which rewinds the arena to its own beginning
     return clear_ ? follow(CameraWalk<true>(context.scene, sample, ray, settings_.max_depth), trail)
@@ -157,7 +160,7 @@ class GuidedPathProcess final : public GuidedProcess<ShownProcess> {
 
   template <class Walk>
   [[gnu::always_inline]] Spectrum follow(Walk&& walk, Trail* trail) const {
-    const LightSampler& lights = *settings_.light_sampler;
+    const LightSampler& lights = lights_;
     const Roulette roulette{settings_.roulette_depth};
     float more = 1;  // the product of p / p_scatter; T times this is the throughput without a guide
     const auto met = [&](const SurfacePoint& luminaire) {
@@ -193,6 +196,7 @@ class GuidedPathProcess final : public GuidedProcess<ShownProcess> {
   }
 
   const GuidedPathTracer& settings_;
+  AdaptiveLights lights_;
   const bool clear_;
 };
 

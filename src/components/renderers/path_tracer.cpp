@@ -13,6 +13,7 @@
 // In a medium the phase function takes the place of f |cos|. The weights compare the pdfs [1/sr] of directions alone, without
 // transmittances. Both strategies compute the same weights for a path, so the weights add up to one.
 
+#include "etendue/render/adaptive_lights.h"
 #include "etendue/render/renderer.h"
 #include "etendue/transport/camera_walk.h"
 #include "etendue/transport/renderer_members.h"
@@ -23,7 +24,7 @@ namespace etendue {
 class PathTracer final : public Renderer {
   int max_depth = 64;
   int roulette_depth = 5;
-  Heuristic heuristic = Heuristic::power;
+  Heuristic heuristic = Heuristic::balance;
   bool next_event = true;
   int split_depth = 0, split_wavelengths = 3;
 
@@ -47,30 +48,42 @@ class PathTracer final : public Renderer {
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
-    const bool unattenuated = !context.scene.has_interiors() && !context.scene.has_null_surfaces();
-    return unattenuated ? follow(CameraWalk<true>(context.scene, sample, ray, max_depth))
-                        : follow(CameraWalk<false>(context.scene, sample, ray, max_depth));
+    return radiance(context.scene, *light_sampler, ray, sample);
   }
 
  private:
+  std::unique_ptr<RenderProcess> begin(const RenderContext& context) const override {
+    return next_event ? adaptive_process(
+                            *this, context,
+                            [this, &scene = context.scene](const LightSampler& lights, const Ray& ray, SampleContext& sample) {
+                              return radiance(scene, lights, ray, sample);
+                            })
+                      : Renderer::begin(context);
+  }
+
+  Spectrum radiance(const Scene& scene, const LightSampler& lights, const Ray& ray, SampleContext& sample) const {
+    const bool unattenuated = !scene.has_interiors() && !scene.has_null_surfaces();
+    return unattenuated ? follow(CameraWalk<true>(scene, sample, ray, max_depth), lights)
+                        : follow(CameraWalk<false>(scene, sample, ray, max_depth), lights);
+  }
   template <class Walk>
-  [[gnu::noinline]] Spectrum follow_branch(Walk& branch) const {
-    return follow(branch);
+  [[gnu::noinline]] Spectrum follow_branch(Walk& branch, const LightSampler& lights) const {
+    return follow(branch, lights);
   }
 
   template <class Walk>
-  [[gnu::always_inline]] Spectrum follow(Walk&& walk) const {
+  [[gnu::always_inline]] Spectrum follow(Walk&& walk, const LightSampler& lights) const {
     const Roulette roulette{roulette_depth};
     const Splitting splitting{split_depth, split_wavelengths};
     // The weight of an emitter hit against next event estimation.
     const auto met = [&](const SurfacePoint& luminaire) {
-      return next_event ? walk.emitter_hit_weight(*light_sampler, heuristic, luminaire) : 1.0f;
+      return next_event ? walk.emitter_hit_weight(lights, heuristic, luminaire) : 1.0f;
     };
     while (walk.next_vertex(met) && !walk.at_end()) {
       const NumberStream::Bounce u = walk.next_bounce();
-      if (next_event) walk.add_direct(*light_sampler, u, heuristic);
+      if (next_event) walk.add_direct(lights, u, heuristic);
       if (walk.splits(splitting))
-        walk.split(splitting, u, [&](auto& branch) { return follow_branch(branch); });
+        walk.split(splitting, u, [&](auto& branch) { return follow_branch(branch, lights); });
       else if (walk.scatter(u) && !roulette.survives(walk))
         walk.end();
     }

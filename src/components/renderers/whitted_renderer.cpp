@@ -97,7 +97,8 @@ class WhittedRenderer final : public Renderer {
     Spectrum sum;
     LuminaireSample light;
     for (const SceneObject* luminaire : tree.scene.luminaires()) {
-      if (!luminaire->delta() || !sample_luminaire(tree.scene, *luminaire, point, branch.wavelengths, {0.5f, 0.5f}, light))
+      if (!luminaire->delta() ||
+          !sample_luminaire(tree.scene, nullptr, *luminaire, point, branch.wavelengths, {0.5f, 0.5f}, light))
         continue;
       const Spectrum f = scatter.evaluate(out, light.direction, {.lobes = smooth_lobes});
       if (f.black()) continue;

@@ -22,7 +22,7 @@ class Environment final : public InfiniteObject {
 
   /// The point where a ray that left the scene hits the environment: far outside the scene, with its normal towards the ray.
   void surface_point(const Ray& ray, const Hit&, SurfacePoint& p) const override {
-    fill(ray.origin, normalize(ray.direction), ray.time, p);
+    fill(ray.origin, normalize(ray.direction), ray.time, p, true);
   }
 
   void tangents(SurfacePoint& p) const override {
@@ -51,13 +51,20 @@ class Environment final : public InfiniteObject {
     }
     s.infinite = true;
     s.distance = infinity;
-    fill(from, s.direction, time, s.point);
+    fill(from, s.direction, time, s.point, !emission || !emission->only_at_infinity());
     return s;
   }
 
   float visible_pdf(const Point3&, const Vector3& direction, const SurfacePoint& p) const override {
     if (!emission || !emission->knows_incident()) return warp::sphere_pdf;
     return emission->incident_pdf(inside(direction, p.time));
+  }
+
+  std::optional<Point2> visible_place(const Vector3& direction, float time) const override {
+    if (emission && emission->knows_incident()) return emission->incident_place(inside(direction, time));
+    // The inverse of warp::sphere.
+    return Point2{clamp((1 - direction.z) / 2, 0, one_minus_epsilon),
+                  std::min(positive_atan2(direction.y, direction.x) * (1 / (2 * pi)), one_minus_epsilon)};
   }
 
  private:
@@ -67,15 +74,18 @@ class Environment final : public InfiniteObject {
     return t.identity() ? direction : normalize(t.back(direction));
   }
 
-  void fill(const Point3& from, const Vector3& direction, float time, SurfacePoint& p) const {
+  /// Emissions that are for infinity alone do not look at uv, which takes two arcus tangents.
+  void fill(const Point3& from, const Vector3& direction, float time, SurfacePoint& p, bool with_uv) const {
     const Vector3 local = inside(direction, time);
     const float away = 2 * radius_ + distance(from, centre_);
     p.position = from + away * direction;
     p.error = 0;
     p.normal = Normal3(-direction);
     p.shading_normal = p.normal;
-    p.uv = {positive_atan2(local.x, -local.z) * (1 / (2 * pi)),
-            positive_atan2(std::sqrt(local.x * local.x + local.z * local.z), -local.y) * inverse_pi};
+    p.uv = {};
+    if (with_uv)
+      p.uv = {positive_atan2(local.x, -local.z) * (1 / (2 * pi)),
+              positive_atan2(std::sqrt(local.x * local.x + local.z * local.z), -local.y) * inverse_pi};
     p.dpdu = {};
     p.dpdv = {};
     p.object_position = Point3{local.x, local.y, local.z};

@@ -1,0 +1,94 @@
+// Environments are sampled where they are seen: the probabilities of tiles, their regions, a closed form indoors, the same bits
+// for any threads.
+
+#include "etendue/render/adaptive_lights.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/render_support.h"
+
+namespace etendue {
+namespace {
+
+TEST(EnvironmentGuide, SamplesHaveTheProbabilitiesOfTheirTiles) {
+  EnvironmentGuide guide;
+  guide.divide({}, 16, 4);
+  ASSERT_EQ(guide.regions(), 1u);
+  EnvironmentGuide::Squares squares{};
+  squares[5 * EnvironmentGuide::side + 3] = 4;
+  squares[5 * EnvironmentGuide::side + 4] = 1;
+  guide.learn(0, squares);
+  const auto ratio_at = [&](int column, int row) {
+    return guide.ratio(0, {(float(column) + 0.5f) / EnvironmentGuide::side, (float(row) + 0.5f) / EnvironmentGuide::side});
+  };
+  // The roots of the squares are as 2 to 1, in one row; in each dimension an entry has one part of 256, and its share of the
+  // other 240. A part of one dimension times one of the other is 1 / 256 of equal tiles.
+  EXPECT_NEAR(ratio_at(3, 5), 241 * 161 / 256.0, 1e-3);
+  EXPECT_NEAR(ratio_at(4, 5), 241 * 81 / 256.0, 1e-3);
+  EXPECT_NEAR(ratio_at(15, 15), 1 * 16 / 256.0, 1e-4);
+
+  // Midpoints of a fine grid of numbers: the mean of 1 / ratio over samples is the area of the unit square, and as many samples
+  // fall into a tile as its probability says.
+  constexpr int fine = 512;
+  double area = 0, bright = 0;
+  for (int i = 0; i < fine; ++i)
+    for (int j = 0; j < fine; ++j) {
+      const EnvironmentGuide::Guided s = guide.sample(0, {(float(i) + 0.5f) / fine, (float(j) + 0.5f) / fine});
+      ASSERT_FLOAT_EQ(s.ratio, guide.ratio(0, s.place));
+      area += 1 / double(s.ratio) / (fine * fine);
+      bright += s.place.y >= 5 / 16.0f && s.place.y < 6 / 16.0f && s.place.x >= 3 / 16.0f && s.place.x < 4 / 16.0f;
+    }
+  EXPECT_NEAR(area, 1, 0.01);
+  EXPECT_NEAR(bright / (fine * fine), double(ratio_at(3, 5)) / 256, 0.005);
+}
+
+TEST(EnvironmentGuide, RegionsDivideByPositionAndNormal) {
+  std::vector<EnvironmentGuide::Place> places;
+  for (int i = 0; i < 64; ++i)
+    places.push_back({{i % 2 ? 5.0f : -5.0f, float(i) / 100, 0}, i % 4 < 2 ? Normal3{0, 0, 1} : Normal3{0, 0, -1}});
+  EnvironmentGuide guide;
+  guide.divide(places, 16, 10);
+  ASSERT_EQ(guide.regions(), 4u);
+  for (size_t i = 4; i < places.size(); ++i)
+    EXPECT_EQ(guide.region(places[i].position, places[i].normal), guide.region(places[i % 4].position, places[i % 4].normal));
+  for (size_t i = 0; i < 4; ++i)
+    for (size_t k = 0; k < i; ++k)
+      EXPECT_NE(guide.region(places[i].position, places[i].normal), guide.region(places[k].position, places[k].normal));
+}
+
+/// A black room, a cylinder of radius 2, whose lid at the height 1 has a hole of radius 0.2 to a sky of radiance 1. The camera
+/// sees the middle of the floor, of reflectance 1/2.
+std::string room(const std::string& renderer) {
+  return test::job_text(renderer, "PerspectiveCamera { from: [0, 0, 0.5] m, to: [0, 0, 0] m, up: [0, 1, 0], fov: 2 deg }", 32,
+                        "Disc { radius: 2 m, shader: Lambertian { color: 0.5 } },"
+                        "Cylinder { radius: 2 m, height: 2 m, caps: false, shader: Lambertian { color: 0 } },"
+                        "Annulus { inner_radius: 0.2 m, radius: 2 m, shader: Lambertian { color: 0 }, "
+                        "transform: translate(0, 0, 1) },"
+                        "Environment { emission: EnvironmentEmission { radiance: 1 } }");
+}
+
+TEST(AdaptiveLights, LightThroughAHoleHasItsClosedFormAndLittleNoise) {
+  // The view factor of a disc of radius r at the height h: r^2 / (h^2 + r^2).
+  const double factor = 0.5 * 0.04 / 1.04;
+  // The mean Y of a flat spectrum of radiance 1 is 1 (the equal-energy white).
+  const test::Measured adaptive = test::measure(room("PathTracer { samples: 16 }")),
+                       plain = test::measure(room("SimplePathTracer { samples: 16 }"));
+  EXPECT_NEAR(adaptive.mean.y, factor, 5 * adaptive.error + 1e-3 * factor);
+  EXPECT_NEAR(plain.mean.y, factor, 5 * plain.error + 1e-3 * factor);
+  // Of the sphere of directions the hole is a hundredth: with all samples alike the variance is some hundred times the square
+  // of the mean, where they go to the hole's tiles it is a few times that.
+  EXPECT_LT(adaptive.error, 0.45 * plain.error);
+}
+
+TEST(AdaptiveLights, TheSameBitsForAnyThreads) {
+  const auto picture = [](int threads) {
+    const Ref<Job> job = load_job_text(room("PathTracer { samples: 2 }"), "test.etd");
+    return test::rendered(job, {.threads = threads})->picture();
+  };
+  EXPECT_EQ(picture(1).values, picture(3).values);
+}
+
+}  // namespace
+}  // namespace etendue
