@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <mutex>
@@ -100,8 +101,10 @@ std::shared_ptr<MaterialXDocument> parse_materialx(const std::string& text) {
   return made;
 }
 
-std::shared_ptr<const MaterialXDocument> read_materialx(const std::string& path,
+std::shared_ptr<const MaterialXDocument> read_materialx(const std::string& named,
                                                         const std::vector<std::string>& allowed_folders) {
+  std::error_code ignored;
+  const std::string path = std::filesystem::weakly_canonical(named, ignored).string();  // one document by whatever name
   static std::mutex guard;
   static auto* const known = new std::map<std::string, Read>;  // never destroyed: used until the program ends
   const std::lock_guard lock(guard);

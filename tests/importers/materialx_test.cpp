@@ -203,6 +203,25 @@ TEST_F(MaterialX, ColorsAreDecodedAndImagesStandUpright) {
   EXPECT_NEAR(albedo(encoded.of_ball("shader"))[1], 0.21404, 1e-3);
 }
 
+TEST_F(MaterialX, SeveralMaterialsAndLight) {
+  const std::string path = written(head +
+                                   "<surface_unlit name=\"U\" type=\"surfaceshader\"/>\n<standard_surface name=\"S\" "
+                                   "type=\"surfaceshader\"/>\n"
+                                   "<surfacematerial name=\"lamp\" type=\"material\"><input name=\"surfaceshader\" "
+                                   "type=\"surfaceshader\" nodename=\"U\"/></surfacematerial>\n"
+                                   "<surfacematerial name=\"plain\" type=\"material\"><input name=\"surfaceshader\" "
+                                   "type=\"surfaceshader\" nodename=\"S\"/></surfacematerial></materialx>\n");
+  const Read r = read(path);
+  ASSERT_EQ(r.error, "");
+  const auto& objects = ref_cast<Job>(r.job)->scene->objects;
+  const Ref<SceneObject> lamp = objects[objects.size() - 2], plain = objects.back();
+  EXPECT_TRUE(lamp->emission);
+  EXPECT_FALSE(plain->emission);
+  EXPECT_TRUE(lamp->shader->class_info().name.ends_with("Lamp")) << lamp->shader->class_info().name;
+  EXPECT_TRUE(plain->shader->class_info().name.ends_with("Plain"));
+  EXPECT_EQ(plain->shader->origin->name, "plain");
+}
+
 TEST_F(MaterialX, DisplacementIsAMap) {
   const std::string moved =
       head +
