@@ -460,6 +460,15 @@ ClosureUses uses_of(const Shader& shader) {
   return uses;
 }
 
+ClosureUses& ClosureUses::operator|=(const ClosureUses& b) {
+  lobes |= b.lobes;
+  scatters |= b.scatters;
+  emits |= b.emits;
+  layers |= b.layers;
+  interior |= b.interior;
+  return *this;
+}
+
 namespace {
 
 struct LightSum {

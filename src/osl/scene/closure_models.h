@@ -37,6 +37,7 @@ struct ClosureUses {
   bool scatters = false, emits = false;
   bool layers = false;    ///< layer() occurs: the scattering is not reciprocal
   bool interior = false;  ///< light may go through the surface into the body
+  ClosureUses& operator|=(const ClosureUses&);
 };
 /// Throws Error with the place of a closure that is not known here.
 ClosureUses uses_of(const Shader&);

@@ -27,7 +27,8 @@ struct OslClass {
   Role role = Role::surface;
   ClosureUses uses;
   std::vector<Parameter> parameters;
-  std::vector<std::string> outputs;  ///< of a map: the parameters that can be its value; of a displacement: "displacement"
+  /// Of a map: the parameters that can be its value, or others that can only be connected; of a displacement "displacement".
+  std::vector<std::string> outputs;
 };
 
 /// The classes of a compiled shader: one for each thing that it can be. Throws Error with the place.
@@ -40,8 +41,13 @@ Ref<Component> make_map(const ClassInfo&);
 
 /// The value of a parameter as it lies in memory, from that of its member.
 Constant constant_of(const Type&, const Member&, const etendue::Value&);
+Constant constant_number(const Type&, float);
+Constant constant_color(const Type&, const SpectralFunction&);
 
 /// Declares the classes of a file, or those that changed since the last call. Throws Error with the faults of its text.
 void declare_file(const std::string& file);
+/// The shader NAME.osl of a folder ("": the current one), else that of a class with this name. Throws Error at `at` if there is
+/// none, or with the faults of its text.
+std::shared_ptr<const Shader> declared_shader(const std::string& name, const std::string& folder, Location at);
 
 }  // namespace etendue::osl

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <mutex>
@@ -22,10 +23,11 @@ std::string content_of(const std::string& path) {
   return text.str();
 }
 
-/// What a file was when its classes were declared: the contents of all files that it is made of.
+/// What a file was when it was compiled: the contents of all files that it is made of.
 struct Declared {
   std::map<std::string, std::string> contents;
-  std::vector<std::string> classes;
+  std::shared_ptr<const Shader> shader;
+  bool has_classes = false;
   bool current() const {
     for (const auto& [path, content] : contents)
       if (content_of(path) != content) return false;
@@ -44,10 +46,15 @@ State& state() {
 
 }  // namespace
 
-void declare_file(const std::string& file) {
-  State& s = state();
-  const std::lock_guard lock(s.mutex);
-  if (const auto known = s.files.find(file); known != s.files.end() && known->second.current()) return;
+namespace {
+
+/// Compiles a file, unless it is what it was when it was compiled last. The state is locked.
+struct Read {
+  Declared& declared;
+  bool is_new;
+};
+Read read(State& s, const std::string& file) {
+  if (const auto known = s.files.find(file); known != s.files.end() && known->second.current()) return {known->second, false};
   const Compiled compiled = compile_file(file);
   if (compiled.failed()) {
     Location at;
@@ -62,19 +69,48 @@ void declare_file(const std::string& file) {
   for (const Diagnostic& d : compiled.diagnostics)
     if (d.warning) warn(d.text, d.place);
   Declared declared;
-  for (const std::string& path : compiled.files) {
-    note_input(path);
-    declared.contents[path] = content_of(path);
-  }
+  declared.shader = compiled.shader;
+  for (const std::string& path : compiled.files) declared.contents[path] = content_of(path);
   declared.contents.try_emplace(file, content_of(file));
-  for (std::unique_ptr<ClassInfo>& info : make_classes(compiled.shader, file)) {
+  return {s.files[file] = std::move(declared), true};
+}
+
+}  // namespace
+
+void declare_file(const std::string& file) {
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  Declared& declared = read(s, file).declared;
+  for (const auto& [path, content] : declared.contents) note_input(path);
+  if (declared.has_classes) return;
+  for (std::unique_ptr<ClassInfo>& info : make_classes(declared.shader, file)) {
     const ClassInfo* taken = Registry::instance().find(info->name);
     if (taken && taken->declared && taken->provider != file)
-      throw Error(fmt::format("{}: '{}' has a class of this name, too", info->name, taken->provider), compiled.shader->place);
-    declared.classes.push_back(info->name);
+      throw Error(fmt::format("{}: '{}' has a class of this name, too", info->name, taken->provider), declared.shader->place);
     Registry::instance().declare(std::move(info));
   }
-  s.files[file] = std::move(declared);
+  declared.has_classes = true;
+}
+
+std::shared_ptr<const Shader> declared_shader(const std::string& name, const std::string& folder, Location at) {
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  const std::string file = name.ends_with(".osl") ? name : name + ".osl",
+                    path = folder.empty() || file.starts_with('/') ? file : folder + "/" + file;
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) {
+    const Declared& declared = read(s, path).declared;
+    for (const auto& [input, content] : declared.contents) note_input(input);
+    return declared.shader;
+  }
+  std::vector<std::string> known;
+  for (const auto& [other, declared] : s.files) {
+    if (declared.has_classes && declared.shader->name == name) return declared.shader;
+    known.push_back(declared.shader->name);
+  }
+  throw Error(fmt::format("there is no shader '{}': neither the file '{}' nor a class of a plugin{}", name, path,
+                          suggestion(name, known)),
+              at);
 }
 
 namespace {

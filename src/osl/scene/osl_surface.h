@@ -1,0 +1,26 @@
+#pragma once
+// GroupSurface: a Shader of the description whose scattering is the closure Ci that a group of shaders makes.
+
+#include "etendue/shader.h"
+#include "group_run.h"
+
+namespace etendue::osl {
+
+class GroupSurface : public etendue::Shader, public RunsGroup {
+ public:
+  const Scatter* bind(const SurfacePoint&, const Wavelengths&, Arena&) const final;
+  Lobes possible_lobes() const final { return uses().lobes; }
+  Spectrum interior_index(const Wavelengths&) const final { return Spectrum(index_); }
+  bool transmits() const final { return uses().interior; }
+  /// A shader may depend on the direction of view, and layer() does.
+  bool reciprocal() const final { return !uses().layers && !network().depends_on_view(); }
+  float albedo_error() const final { return 0.3f; }
+
+ protected:
+  void build_surface(const Component& self, Network, const std::string& last);
+
+ private:
+  float index_ = 1;
+};
+
+}  // namespace etendue::osl
