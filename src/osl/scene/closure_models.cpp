@@ -8,6 +8,7 @@
 #include <array>
 #include <unordered_map>
 
+#include "closure_walk.h"
 #include "components/shaders/tangent_frame.h"
 #include "gathering.h"
 #include "lobes.h"
@@ -460,6 +461,15 @@ ClosureUses uses_of(const Shader& shader) {
   return uses;
 }
 
+bool calls(const Shader& shader, std::string_view signature) {
+  bool found = false;
+  const auto note = [&](const Expression& e) {
+    found |= e.kind == Expression::Kind::library && std::string_view(e.row->signature).starts_with(signature);
+  };
+  Visit<decltype(note)>(shader, note);
+  return found;
+}
+
 ClosureUses& ClosureUses::operator|=(const ClosureUses& b) {
   lobes |= b.lobes;
   scatters |= b.scatters;
@@ -469,48 +479,17 @@ ClosureUses& ClosureUses::operator|=(const ClosureUses& b) {
   return *this;
 }
 
-namespace {
-
-struct LightSum {
-  const RgbSpace& space;
-  const Wavelengths& wavelengths;
+Spectrum light_of(const ClosureNode* node, const RgbSpace& space, const Wavelengths& w) {
+  static const String *emission = intern_string("emission"), *background = intern_string("background"),
+                      *edf = intern_string("uniform_edf");
   Spectrum sum;
-
-  void add(const ClosureNode* node, Triple weight, const Spectrum& spectral) {
-    if (!node) return;
-    switch (node->kind) {
-      case ClosureNode::Kind::sum:
-        add(static_cast<const ClosureSum*>(node)->a, weight, spectral);
-        add(static_cast<const ClosureSum*>(node)->b, weight, spectral);
-        return;
-      case ClosureNode::Kind::product: {
-        const auto& p = *static_cast<const ClosureProduct*>(node);
-        add(p.closure, weight * p.weight, p.spectrum ? spectral * *p.spectrum : spectral);
-        return;
-      }
-      case ClosureNode::Kind::component: break;
-    }
-    const auto& c = *static_cast<const ClosureComponent*>(node);
-    static const String *emission = intern_string("emission"), *background = intern_string("background"),
-                        *edf = intern_string("uniform_edf"), *layers = intern_string("layer");
-    if (c.shape->name == layers) {
-      add(c.argument<const ClosureNode*>(0), weight, spectral);
-      add(c.argument<const ClosureNode*>(1), weight, spectral);
-      return;
-    }
+  each_component(node, [&](const ClosureComponent& c, Triple weight, const Spectrum& spectral) {
     if (c.shape->name == edf) weight = weight * c.argument<Triple>(0);
     if (c.shape->name != edf && c.shape->name != emission && c.shape->name != background) return;
     for (int i = 0; i < 3; ++i) weight[i] = weight[i] > 0 ? std::min(weight[i], 1e30f) : 0;
-    sum += spectral * rgb_spectrum(space, weight.x, weight.y, weight.z, ColorUse::radiance, wavelengths);
-  }
-};
-
-}  // namespace
-
-Spectrum light_of(const ClosureNode* node, const RgbSpace& space, const Wavelengths& w) {
-  LightSum light{space, w, {}};
-  light.add(node, Triple(1), Spectrum(1.0f));
-  return light.sum;
+    sum += spectral * rgb_spectrum(space, weight.x, weight.y, weight.z, ColorUse::radiance, w);
+  });
+  return sum;
 }
 
 float refracting_index(const ClosureNode* node) {

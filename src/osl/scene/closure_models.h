@@ -41,5 +41,7 @@ struct ClosureUses {
 };
 /// Throws Error with the place of a closure that is not known here.
 ClosureUses uses_of(const Shader&);
+/// Whether a shader calls functions of the library whose signatures begin so.
+bool calls(const Shader&, std::string_view signature);
 
 }  // namespace etendue::osl

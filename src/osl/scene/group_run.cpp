@@ -4,11 +4,13 @@
 
 namespace etendue::osl {
 
-void RunsGroup::build_group(const Component& self, Network network, const std::string& last, std::vector<std::string> outputs) {
+void RunsGroup::build_group(const Component& self, Network network, const std::string& last, std::vector<std::string> outputs,
+                            const std::string& besides) {
   name_ = self.class_info().name;
   network_ = std::move(network);
   GroupOptions options;
   options.outputs_only = !outputs.empty();
+  if (!besides.empty()) outputs.push_back(besides);
   options.outputs = outputs;
   try {
     group_ = network_.build(name_, last, options);

@@ -9,8 +9,10 @@ namespace etendue::osl {
 class RunsGroup {
  protected:
   /// Builds the group, which afterwards runs at points from all threads. `last`: the layer that gives the result. `outputs`:
-  /// what is read besides Ci; if there are any, nothing else is run. Throws Error; `self` is to blame where nothing else is.
-  void build_group(const Component& self, Network, const std::string& last, std::vector<std::string> outputs);
+  /// what is read; if there are any, nothing else is run. `besides`: an output that is read besides
+  /// Ci, instead. Throws Error; `self` is to blame where nothing else is.
+  void build_group(const Component& self, Network, const std::string& last, std::vector<std::string> outputs,
+                   const std::string& besides = {});
 
   /// A run of the group at a point, on this thread. Its closures are valid until the next run on the thread.
   class Run {

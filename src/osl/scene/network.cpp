@@ -70,6 +70,8 @@ std::string Network::free_name(const std::string& wanted) const {
 void Network::add_layer(LayerText layer, std::shared_ptr<const Shader> shader) {
   uses_ |= uses_of(*shader);
   depends_on_view_ |= shader->globals[size_t(Global::I)] != nullptr;
+  for (const Symbol* global : shader->globals) varies_ |= global && global->global != Global::Ci;
+  varies_ |= calls(*shader, "int getattribute(");
   shaders_[layer.name] = std::move(shader);
   description_.layers.push_back(std::move(layer));
 }

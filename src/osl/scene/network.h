@@ -39,6 +39,8 @@ class Network {
   const ClosureUses& uses() const { return uses_; }
   /// Whether a layer names the direction from which it is seen.
   bool depends_on_view() const { return depends_on_view_; }
+  /// Whether what the layers compute may be different at different points.
+  bool varies() const { return varies_; }
   const MapInputs& maps() const { return maps_; }
   /// The shader of a layer; null if there is no such layer.
   std::shared_ptr<const Shader> shader_of(const std::string& layer) const;
@@ -58,7 +60,7 @@ class Network {
   std::map<std::pair<const ObjectMap*, bool>, std::string> map_layers_;
   MapInputs maps_;
   ClosureUses uses_;
-  bool depends_on_view_ = false;
+  bool depends_on_view_ = false, varies_ = false;
 };
 
 }  // namespace etendue::osl

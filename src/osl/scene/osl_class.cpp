@@ -10,6 +10,7 @@
 
 #include "etendue/describe/color.h"
 #include "etendue/describe/description.h"
+#include "osl_volume.h"
 #include "parameter_values.h"
 
 namespace etendue::osl {
@@ -188,6 +189,19 @@ void add_output(ClassInfo& info, const OslClass& of) {
   info.members.push_back(m);
 }
 
+void add_bound(ClassInfo& info) {
+  Member m;
+  m.name = bound_name;
+  m.kind = Kind::number;
+  m.unit = "1/m";
+  m.text = bound_text;
+  m.range = Range{0, INFINITY, false};
+  keep_as_value(m);
+  m.default_value = etendue::Value(Number{});
+  m.owner = &info;
+  info.members.push_back(m);
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shader> shader, const std::string& file) {
@@ -204,8 +218,8 @@ std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shade
   // Outputs that are no value of a map can be connected in an OslGroup.
   if (outputs.empty()) outputs = others;
   if (shader->kind == Shader::Kind::displacement) outputs.insert(outputs.begin(), "displacement");
-  if (shader->kind == Shader::Kind::volume)
-    throw Error("volume shaders are not rendered yet: a map in a MapVolume may be the output of a shader", shader->place);
+  const bool volume = shader->kind == Shader::Kind::volume;
+  if (volume && uses.lobes) warn(shader->name + ": closures of surfaces have no effect in a volume shader", shader->place);
 
   struct Wanted {
     Role role;
@@ -216,8 +230,11 @@ std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shade
   // A closure that another layer makes may be anything.
   const bool has_result = result && result->written, passes_on = takes_closures && has_result;
   const bool black = shader->kind == Shader::Kind::surface && !(uses.emits && has_result) && outputs.empty();
-  if ((uses.scatters && has_result) || passes_on || black) wanted.push_back({Role::surface, "Shader", ""});
-  if ((uses.emits && has_result) || passes_on) wanted.push_back({Role::emission, "EmissionShader", "Emission"});
+  if (volume)
+    wanted.push_back({Role::volume, "VolumeShader", ""});
+  else if ((uses.scatters && has_result) || passes_on || black)
+    wanted.push_back({Role::surface, "Shader", ""});
+  if (!volume && ((uses.emits && has_result) || passes_on)) wanted.push_back({Role::emission, "EmissionShader", "Emission"});
   if (!outputs.empty()) wanted.push_back({Role::map, "ObjectMap", "Map"});
   if (wanted.empty())
     throw Error(
@@ -244,9 +261,13 @@ std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shade
                                      : fmt::format("The shader {} in the Open Shading Language.", shader->name);
     info->members = info->parent->members;
     info->absent = info->parent->absent;
+    if (w.role == Role::volume) add_bound(*info);
     add_members(*info, *of);
     if (w.role == Role::map) add_output(*info, *of);
-    info->make = w.role == Role::surface ? make_surface : w.role == Role::emission ? make_emission : make_map;
+    info->make = w.role == Role::surface    ? make_surface
+                 : w.role == Role::emission ? make_emission
+                 : w.role == Role::volume   ? make_volume
+                                            : make_map;
     info->declared = of;
     classes.push_back(std::move(info));
   }

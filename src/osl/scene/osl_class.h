@@ -14,7 +14,7 @@ namespace etendue::osl {
 
 /// What a class is made from, in ClassInfo::declared.
 struct OslClass {
-  enum class Role : unsigned char { surface, emission, map };
+  enum class Role : unsigned char { surface, emission, volume, map };
   /// A member of the class that is a parameter of the shader. Their names differ only where the description has the name for
   /// something else.
   struct Parameter {
@@ -37,6 +37,7 @@ std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shade
 /// Makes an object of a class. One function for each role, in the file of that role.
 Ref<Component> make_surface(const ClassInfo&);
 Ref<Component> make_emission(const ClassInfo&);
+Ref<Component> make_volume(const ClassInfo&);
 Ref<Component> make_map(const ClassInfo&);
 
 /// The value of a parameter as it lies in memory, from that of its member.

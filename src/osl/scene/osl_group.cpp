@@ -1,5 +1,5 @@
-// Networks of shaders in a description: OslGroup, OslGroupEmission and OslGroupMap, made of layers and connections, or of the
-// text in which other programs write them.
+// Networks of shaders in a description: OslGroup, OslGroupEmission, OslGroupVolume and OslGroupMap, made of layers and
+// connections, or of the text in which other programs write them.
 
 #include <fmt/format.h>
 
@@ -12,6 +12,7 @@
 #include "osl_map.h"
 #include "osl_part.h"
 #include "osl_surface.h"
+#include "osl_volume.h"
 
 namespace etendue::osl {
 
@@ -31,7 +32,7 @@ constexpr const char* text_text =
 constexpr const char* file_text = "instead: a file with this text; shaders are looked for in its folder first";
 constexpr const char* shaders_text = "the folder with the shaders that the text names";
 
-/// The members that the three classes have besides the last layer.
+/// The members that these classes have besides the last layer.
 struct GroupMembers {
   std::vector<Ref<ObjectMap>> layers;
   std::vector<std::string> connections;
@@ -129,6 +130,24 @@ class OslGroupEmission final : public GroupEmission, public GroupMembers {
   Ref<EmissionShader> emission;
 };
 
+class OslGroupVolume final : public GroupVolume, public GroupMembers {
+ public:
+  using Parent = VolumeShader;
+  static void describe(Description<OslGroupVolume>& d) {
+    d.summary("A participating medium that is a network of shaders in the Open Shading Language.")
+        .template member<&OslGroupVolume::volume>("volume", "", "the last layer, whose closures are the medium")
+        .template member<&OslGroupVolume::bound>(bound_name, "1/m", bound_text, at_least(0));
+    describe_group(d);
+  }
+  void prepare() override {
+    Network network;
+    const std::string last = gather(*this, network, "volume", volume.get());
+    build_volume(*this, std::move(network), last, bound);
+  }
+  Ref<VolumeShader> volume;
+  float bound = 0;
+};
+
 class OslGroupMap final : public GroupMap, public GroupMembers {
  public:
   using Parent = ObjectMap;
@@ -164,6 +183,7 @@ class OslGroupMap final : public GroupMap, public GroupMembers {
 
 const Register<OslGroup> registered_surface;
 const Register<OslGroupEmission> registered_emission;
+const Register<OslGroupVolume> registered_volume;
 const Register<OslGroupMap> registered_map;
 
 }  // namespace
