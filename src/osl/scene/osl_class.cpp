@@ -218,6 +218,9 @@ std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shade
   // Outputs that are no value of a map can be connected in an OslGroup.
   if (outputs.empty()) outputs = others;
   if (shader->kind == Shader::Kind::displacement) outputs.insert(outputs.begin(), "displacement");
+  if (calls(*shader, "int raytype("))
+    warn(shader->name + ": raytype() is 0 for all kinds: paths from lights and from the camera meet the same surface",
+         shader->place);
   const bool volume = shader->kind == Shader::Kind::volume;
   if (volume && uses.lobes) warn(shader->name + ": closures of surfaces have no effect in a volume shader", shader->place);
 

@@ -4,19 +4,50 @@
 
 namespace etendue::osl {
 
-// The index of the body is a property of the object, not of the point: that of the closure at the origin of surface
-// coordinates, seen along the normal.
-void GroupSurface::build_surface(const Component& self, Network network, const std::string& last) {
-  build_group(self, std::move(network), last, {});
-  index_ = 1;
-  if (!uses().interior) return;
+namespace {
+
+/// The origin of surface coordinates on a plane, seen along the normal.
+SurfacePoint flat_point() {
   SurfacePoint p;
   p.normal = p.shading_normal = Normal3{0, 0, 1};
   p.dpdu = {1, 0, 0};
   p.dpdv = {0, 1, 0};
   p.ray_direction = {0, 0, -1};
+  return p;
+}
+
+}  // namespace
+
+// The index of the body is a property of the object, not of the point: that of the closure at the origin of surface
+// coordinates, seen along the normal.
+void GroupSurface::build_surface(const Component& self, Network network, const std::string& last) {
+  build_group(self, std::move(network), last, {});
+  index_ = 1;
+  find_exits();
+  if (!transmits()) return;
   const Wavelengths w;
-  index_ = refracting_index(Run(*this, p, &w).Ci());
+  index_ = refracting_index(Run(*this, flat_point(), &w).Ci());
+}
+
+/// Light enters bodies of subsurface scattering and leaves them in a way of its own, which excludes refraction by the same
+/// shader. Materials that name both (a general one, with weights) have one of them in most scenes: what they have is looked for
+/// at points spread over the surface coordinates.
+void GroupSurface::find_exits() {
+  exits_ = uses().bodies;
+  if (!exits_ || !uses().interior) return;
+  constexpr int side = 8;
+  const Wavelengths w;
+  for (int i = 0; i < side * side && exits_; ++i) {
+    SurfacePoint p = flat_point();
+    p.uv = {(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side};
+    p.position = p.object_position = {p.uv.x, p.uv.y, 0};
+    exits_ = !lets_through(Run(*this, p, &w).Ci());
+  }
+}
+
+ClosurePlace GroupSurface::place_at(const Run& run, const SurfacePoint& p, const Wavelengths& w, Arena& arena) const {
+  const bool refracts = (uses().lobes & specular_transmission) != 0;
+  return {p, w, arena, space(), run.from_behind(), name(), refracts, exits_};
 }
 
 const Scatter* GroupSurface::bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const {
@@ -24,9 +55,13 @@ const Scatter* GroupSurface::bind(const SurfacePoint& p, const Wavelengths& w, A
   if (!run.Ci()) return nullptr;
   SurfacePoint with = p;
   with.dpdu = {run.globals().dPdu.value.x, run.globals().dPdu.value.y, run.globals().dPdu.value.z};
-  const bool refracts = (uses().lobes & specular_transmission) != 0;
-  const ClosurePlace place{with, w, arena, space(), run.from_behind(), name(), refracts};
-  return scatter_of(run.Ci(), place);
+  return scatter_of(run.Ci(), place_at(run, with, w, arena));
+}
+
+std::optional<SubsurfaceExit> GroupSurface::sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,
+                                                        NumberStream& random, Arena& arena) const {
+  const Run run(*this, p, &w);
+  return exit_of(run.Ci(), place_at(run, p, w, arena), scene, random);
 }
 
 namespace {
