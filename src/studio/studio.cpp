@@ -11,6 +11,13 @@
 
 namespace etendue::studio {
 
+namespace {
+
+/// How often the files of shaders are looked at.
+constexpr auto shaders_looked_at = std::chrono::milliseconds(250);
+
+}  // namespace
+
 Studio::Studio(StudioSettings settings)
     : settings_(std::move(settings)),
       document_(settings_.render, settings_.folders),
@@ -87,6 +94,18 @@ void Studio::request(const std::shared_ptr<Browser>& from, std::string text) {
   tasks_changed_.notify_one();
 }
 
+// A shader that was saved, by any editor, is compiled and rendered at once. Its faults are those of the line that names it.
+void Studio::follow_shaders() {
+  if (!document_.shaders_changed()) return;
+  const std::string text = document_.draft() ? document_.draft()->text : document_.text();
+  try {
+    tell_edit(document_.apply(text, {}), nullptr);
+  } catch (...) {
+    document_.set_draft(text, thrown_errors());
+    tell_document();
+  }
+}
+
 void Studio::answer() {
   pthread_setname_np(pthread_self(), "answerer");
   std::unique_lock lock(tasks_guard_);
@@ -106,8 +125,13 @@ void Studio::answer() {
         lock.lock();
         continue;
       }
-    } else {
+    } else if (!document_.has_shaders()) {
       tasks_changed_.wait(lock, ready);
+    } else if (!tasks_changed_.wait_for(lock, shaders_looked_at, ready)) {
+      lock.unlock();
+      follow_shaders();
+      lock.lock();
+      continue;
     }
     if (ending_) return;
     const Task task = std::move(tasks_.front());

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "render/current_step.h"
+
 namespace etendue::osl {
 
 void RunsGroup::build_group(const Component& self, Network network, const std::string& last, std::vector<std::string> outputs,
@@ -32,7 +34,8 @@ RunsGroup::Run::Run(const RunsGroup& part, const SurfacePoint& p, const Waveleng
   thread_local PointMemory memory;
   memory.reset();
   RenderServices services(p, w, memory, part.name_, part.network_.maps());
-  execution_.run(globals_, services);
+  // What a run that was given up leaves is of no use, and its item is dropped.
+  if (!execution_.run(globals_, services, abort_of_current_step())) globals_.Ci = nullptr;
 }
 
 }  // namespace etendue::osl

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "files/input_files.h"
+#include "osl/language/advice.h"
 #include "osl/language/compile.h"
 #include "osl_class.h"
 
@@ -56,6 +57,7 @@ struct Read {
 Read read(State& s, const std::string& file) {
   if (const auto known = s.files.find(file); known != s.files.end() && known->second.current()) return {known->second, false};
   const Compiled compiled = compile_file(file);
+  for (const std::string& path : compiled.files) note_input(path);
   if (compiled.failed()) {
     Location at;
     std::vector<Diagnostic> errors;
@@ -68,6 +70,7 @@ Read read(State& s, const std::string& file) {
   }
   for (const Diagnostic& d : compiled.diagnostics)
     if (d.warning) warn(d.text, d.place);
+  for (const Diagnostic& d : advice(*compiled.shader)) warn(d.text, d.place);
   Declared declared;
   declared.shader = compiled.shader;
   for (const std::string& path : compiled.files) declared.contents[path] = content_of(path);
