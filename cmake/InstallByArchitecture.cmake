@@ -29,7 +29,7 @@ else()
 endif()
 
 install_part(TARGETS etendue_assimp etendue_draco RUNTIME DESTINATION libexec/etendue)
-install_part(PROGRAMS ${usd_sources} DESTINATION libexec/etendue)
+install_part(PROGRAMS ${python_readers} DESTINATION libexec/etendue)
 install_part(FILES ${CMAKE_BINARY_DIR}/studio/index.html DESTINATION share/etendue/studio OPTIONAL)
 install_part(FILES packaging/architectures.txt DESTINATION share/etendue)
 install_part(DIRECTORY include/etendue DESTINATION include)

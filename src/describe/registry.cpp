@@ -3,6 +3,8 @@
 #include <cxxabi.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -332,8 +334,9 @@ void Registry::load_plugin(const std::string& path) {
   }
   const std::string file = find_plugin(path);
   note_input(file);
-  // A shader's file may have changed since: its reader compares.
-  const bool shading = file.ends_with(".osl");
+  // A shader's file, or a document of such, may have changed since: its reader compares.
+  static constexpr std::array endings = {".osl", ".mtlx", ".usd", ".usda", ".usdc", ".usdz"};
+  const bool shading = std::ranges::any_of(endings, [&](const char* ending) { return file.ends_with(ending); });
   {
     const std::lock_guard lock(state_->mutex);
     if (state_->plugins.contains(file) && !shading) return;

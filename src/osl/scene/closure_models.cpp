@@ -110,7 +110,7 @@ class Visit {
   const F& f_;
 };
 
-bool is_body(const ClosureModel& m) { return (m.lobes & specular_transmission) != 0 && (m.lobes & diffuse_reflection) != 0; }
+bool is_body(const ClosureModel& m) { return std::string_view(m.name).starts_with("subsurface"); }
 /// Whether light that the closure transmits goes on inside the object: a body of subsurface scattering has exits of its own,
 /// and light that passed a fibre is outside again.
 bool enters(const ClosureModel& m) { return !is_body(m) && std::string_view(m.name) != "chiang_hair_bsdf"; }

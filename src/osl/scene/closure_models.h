@@ -28,6 +28,8 @@ const Scatter* scatter_of(const ClosureNode*, const ClosurePlace&);
 
 /// Where light leaves that entered by the subsurface closures of a point.
 std::optional<SubsurfaceExit> exit_of(const ClosureNode*, const ClosurePlace&, const Scene&, NumberStream&);
+/// Whether the closure has a component of subsurface scattering.
+bool has_body(const ClosureNode*);
 /// Whether the closure has a component that lets light through the surface, other than those of subsurface scattering and hair.
 bool lets_through(const ClosureNode*);
 

@@ -32,6 +32,8 @@ bool is_body(const ClosureComponent& c, Body& body) {
   return true;
 }
 
+bool deep(const Body& b) { return b.radius.x > 0 || b.radius.y > 0 || b.radius.z > 0; }
+
 /// Light that enters a body without a boundary of its own: all of it goes straight on, by specular transmission, and leaves by
 /// Shader::sample_exit. The albedo is what leaves again.
 class EntryModel final : public ScatterModel<EntryModel> {
@@ -56,12 +58,15 @@ class EntryModel final : public ScatterModel<EntryModel> {
 void subsurface(Gathering& g, const ClosureComponent& c) {
   Body body;
   if (!is_body(c, body)) return;
-  const bool thin = !(body.radius.x > 0 || body.radius.y > 0 || body.radius.z > 0);
-  if (g.exits() && !thin) {
+  if (g.exits() && deep(body)) {
     const Spectrum returned = clamp(g.color(body.albedo, ColorUse::reflectance), 0, 1);
     return g.add_entry(g.arena().make<EntryModel>(g.at(body.normal), returned), g.reflectance(Triple(1)));
   }
-  if (!thin) g.warn("subsurface scattering beside refraction is rendered as diffuse reflection of the same albedo");
+  if (deep(body))
+    g.warn(
+        "subsurface scattering is rendered as diffuse reflection of the same albedo, as the surface lets light through, too, "
+        "or "
+        "had none where it was looked for when it was prepared");
   rough_diffuse(g, body.normal, body.albedo, 0);
 }
 
@@ -126,14 +131,23 @@ void hair(Gathering& g, const ClosureComponent& c) {
 }
 
 constexpr ClosureModel rows[] = {
-    {"subsurface", subsurface, diffuse_reflection | specular_transmission, false},
-    {"subsurface_bssrdf", subsurface, diffuse_reflection | specular_transmission, false},
+    {"subsurface", subsurface, diffuse_reflection, false},
+    {"subsurface_bssrdf", subsurface, diffuse_reflection, false},
     {"chiang_hair_bsdf", hair, glossy_reflection | glossy_transmission | null_scattering, false},
 };
 
 }  // namespace
 
 std::span<const ClosureModel> body_closures() { return rows; }
+
+bool has_body(const ClosureNode* node) {
+  bool found = false;
+  each_component(node, [&](const ClosureComponent& c, const Triple&, const Spectrum&) {
+    Body body;
+    found |= is_body(c, body) && deep(body);
+  });
+  return found;
+}
 
 // The entry had the weight W = sum of w_k over the bodies k at the point. One of them is chosen with the probability q_k in
 // proportion to the mean of w_k, and the weight is w_k / (W q_k). What layers above the bodies let through is that of the

@@ -146,6 +146,7 @@ std::string Network::add(const OslPart& part) {
   }
   const std::string name = layer.name;
   add_layer(std::move(layer), of.shader);
+  lets_in_ |= part.lets_in();
   for (ConnectionText& c : connections) description_.connections.push_back(std::move(c));
   return name;
 }
@@ -157,6 +158,7 @@ void Network::add_text(std::string_view text, const std::string& file, const std
     std::shared_ptr<const Shader> shader = declared_shader(layer.shader, folder, layer.at);
     layer.shader = layer.name;
     add_layer(std::move(layer), std::move(shader));
+    lets_in_ = uses_.interior;
   }
   for (ConnectionText& c : added.connections) description_.connections.push_back(std::move(c));
 }
@@ -175,6 +177,7 @@ void Network::connect(const std::string& text, Location at) {
     throw Error(fmt::format("the connection '{}' names no layer '{}'; there are {}", text, layer, known), at);
   }
   description_.connections.push_back(std::move(c));
+  lets_in_ = uses_.interior;  // the connection may replace what excluded it
 }
 
 /// Brings the layers into an order in which each stands behind those that it is connected to, `last` being the last one; of

@@ -37,6 +37,8 @@ class Network {
 
   /// What all layers together may do.
   const ClosureUses& uses() const { return uses_; }
+  /// Whether light may go through the surface into the body.
+  bool lets_in() const { return lets_in_; }
   /// Whether a layer names the direction from which it is seen.
   bool depends_on_view() const { return depends_on_view_; }
   /// Whether what the layers compute may be different at different points.
@@ -60,7 +62,7 @@ class Network {
   std::map<std::pair<const ObjectMap*, bool>, std::string> map_layers_;
   MapInputs maps_;
   ClosureUses uses_;
-  bool depends_on_view_ = false, varies_ = false;
+  bool depends_on_view_ = false, varies_ = false, lets_in_ = false;
 };
 
 }  // namespace etendue::osl

@@ -202,6 +202,20 @@ void add_bound(ClassInfo& info) {
   info.members.push_back(m);
 }
 
+/// The settings of the metadatum etendue_opaque by which a surface lets no light through, by members' names.
+std::vector<std::pair<std::string, float>> opaque_settings(const OslClass& of) {
+  std::vector<std::pair<std::string, float>> settings;
+  const std::string text = text_of(of.shader->metadata, "etendue_opaque");
+  for (const std::string& word : text.empty() ? std::vector<std::string>() : split(text, ' ')) {
+    const size_t equals = word.find('=');
+    const auto named = [&](const OslClass::Parameter& p) { return p.symbol->name == word.substr(0, equals); };
+    const auto found = std::ranges::find_if(of.parameters, named);
+    if (equals == word.npos || found == of.parameters.end()) return {};
+    settings.emplace_back(found->member, std::strtof(word.c_str() + equals + 1, nullptr));
+  }
+  return settings;
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shader> shader, const std::string& file) {
@@ -266,6 +280,7 @@ std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shade
     info->absent = info->parent->absent;
     if (w.role == Role::volume) add_bound(*info);
     add_members(*info, *of);
+    of->opaque = opaque_settings(*of);
     if (w.role == Role::map) add_output(*info, *of);
     info->make = w.role == Role::surface    ? make_surface
                  : w.role == Role::emission ? make_emission

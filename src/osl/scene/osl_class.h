@@ -29,6 +29,9 @@ struct OslClass {
   std::vector<Parameter> parameters;
   /// Of a map: the parameters that can be its value, or others that can only be connected; of a displacement "displacement".
   std::vector<std::string> outputs;
+  /// A surface that lets no light through if all these members have these values in all their components, whatever closures
+  /// its text names; none: the text alone says it. From the shader's metadatum etendue_opaque, "transmission=0 opacity=1".
+  std::vector<std::pair<std::string, float>> opaque;
 };
 
 /// The classes of a compiled shader: one for each thing that it can be. Throws Error with the place.

@@ -16,6 +16,9 @@ class OslPart : public DeclaredMembers {
   virtual const Component& component() const = 0;
   /// The output that the object is as a map; "": it is none, or a displacement.
   virtual std::string map_output() const { return {}; }
+  /// Whether light may go through the surface into the body, as the text says it and the members do not exclude it
+  /// (OslClass::opaque).
+  bool lets_in() const;
 
  private:
   const ClassInfo& info_;

@@ -29,24 +29,36 @@ void GroupSurface::build_surface(const Component& self, Network network, const s
   index_ = refracting_index(Run(*this, flat_point(), &w).Ci());
 }
 
+Lobes GroupSurface::possible_lobes() const {
+  constexpr Lobes into_the_body = specular_transmission | glossy_transmission | null_scattering;
+  Lobes lobes = uses().lobes;
+  if (uses().interior && !network().lets_in()) lobes &= Lobes(~into_the_body);
+  return exits_ ? Lobes(lobes | specular_transmission) : lobes;
+}
+
 /// Light enters bodies of subsurface scattering and leaves them in a way of its own, which excludes refraction by the same
-/// shader. Materials that name both (a general one, with weights) have one of them in most scenes: what they have is looked for
-/// at points spread over the surface coordinates.
+/// shader. Materials that name both (a general one, with weights) have one of them or none in most scenes: what they have is
+/// looked for at points spread over the surface coordinates.
 void GroupSurface::find_exits() {
-  exits_ = uses().bodies;
-  if (!exits_ || !uses().interior) return;
+  exits_ = false;
+  if (!uses().bodies) return;
   constexpr int side = 8;
   const Wavelengths w;
-  for (int i = 0; i < side * side && exits_; ++i) {
+  for (int i = 0; i < side * side; ++i) {
     SurfacePoint p = flat_point();
     p.uv = {(float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side};
     p.position = p.object_position = {p.uv.x, p.uv.y, 0};
-    exits_ = !lets_through(Run(*this, p, &w).Ci());
+    const Run run(*this, p, &w);
+    exits_ |= has_body(run.Ci());
+    if (lets_through(run.Ci())) {
+      exits_ = false;
+      return;
+    }
   }
 }
 
 ClosurePlace GroupSurface::place_at(const Run& run, const SurfacePoint& p, const Wavelengths& w, Arena& arena) const {
-  const bool refracts = (uses().lobes & specular_transmission) != 0;
+  const bool refracts = (possible_lobes() & specular_transmission) != 0;
   return {p, w, arena, space(), run.from_behind(), name(), refracts, exits_};
 }
 

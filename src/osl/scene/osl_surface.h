@@ -9,9 +9,9 @@ namespace etendue::osl {
 class GroupSurface : public etendue::Shader, public RunsGroup {
  public:
   const Scatter* bind(const SurfacePoint&, const Wavelengths&, Arena&) const final;
-  Lobes possible_lobes() const final { return uses().lobes; }
+  Lobes possible_lobes() const final;
   Spectrum interior_index(const Wavelengths&) const final { return Spectrum(index_); }
-  bool transmits() const final { return uses().interior && !exits_; }
+  bool transmits() const final { return network().lets_in() && !exits_; }
   /// A shader may depend on the direction of view, and layer() does.
   bool reciprocal() const final { return uses().reciprocal && !network().depends_on_view(); }
   float albedo_error() const final { return 0.3f; }

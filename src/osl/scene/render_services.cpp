@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstring>
 #include <mutex>
@@ -158,18 +160,35 @@ bool RenderServices::attribute(const String* object, const String* name, int ind
     if (name->view() != "object:name" && name->view() != "geom:name") return false;
     return give(intern_string(point_.object && point_.object->origin ? point_.object->origin->name : std::string()));
   }
+  const int wanted = type.is_array() ? type.array : type.is_triple() ? 3 : 1;
+  const bool numbers_of_mesh =
+      type.is_float() || type.is_triple() || (type.base == Base::float_ && (wanted == 2 || wanted == 4));
+  if (index >= 0 || !numbers_of_mesh || type.closure) return false;
   const MeshFacts* facts = point_.object ? point_.object->mesh_facts() : nullptr;
-  if (!facts || index >= 0 || !(type.is_float() || type.is_triple())) return false;
-  static auto* numbers = new Cache<int>;
-  const int number = numbers->get(name, [&] {
-    const std::string_view text = name->view();
-    return attribute_number(std::string(text.starts_with("geom:") ? text.substr(5) : text));
-  });
-  float values[4] = {};
-  const int count = facts->attribute(number, point_, values);
-  if (count == 0) return false;
-  if (type.is_float()) return count == 1 && give(values[0]);
-  return count >= 3 && give(Triple(values[0], values[1], values[2]));
+  if (facts) {
+    static auto* numbers = new Cache<int>;
+    const int number = numbers->get(name, [&] {
+      const std::string_view text = name->view();
+      if (text == "displayColor") return attribute_number("color");  // as USD calls it
+      return attribute_number(std::string(text.starts_with("geom:") ? text.substr(5) : text));
+    });
+    float values[4] = {};
+    const int count = facts->attribute(number, point_, values);
+    if (count == 1 && wanted == 1) return give(values[0]);
+    if (count >= 3 && wanted == 3) return give(Triple(values[0], values[1], values[2]));
+    if (count >= wanted && wanted == 2) return give(std::array{values[0], values[1]});
+    if (count >= wanted && wanted == 4) return give(std::array{values[0], values[1], values[2], values[3]});
+  }
+  // The names that other programs give to the first surface coordinates.
+  static constexpr std::array<std::string_view, 6> first = {"st", "uv", "UV0", "UVMap", "map1", "texcoord"};
+  if (wanted != 2 || std::ranges::find(first, name->view()) == first.end()) return false;
+  give(std::array{point_.uv.x, point_.uv.y});
+  if (derivatives && point_.footprint > 0) {
+    const UvFootprint f = uv_footprint(point_);
+    const std::array by{f.longer.x, f.longer.y, f.shorter.x, f.shorter.y};
+    std::memcpy(static_cast<std::byte*>(out) + type.size(), by.data(), sizeof by);
+  }
+  return true;
 }
 
 std::string_view RenderServices::texture(const String* file, const Dual<float>& s, const Dual<float>& t,

@@ -7,6 +7,9 @@
 // ETENDUE_surface on a material: {"base_color": {…}, "metalness": {…}, …}, the members of Surface, with textures of any
 // channel.
 //
+// ETENDUE_materialx {"file": …, "name": …, "uv_set": …} on a material: it is the material of that name of a MaterialX document, or
+// of the networks of a USD scene.
+//
 // A value is a number, a text, true or false, a list of numbers, or an object with one of
 //   "class", "members"  a part              "accessor"  a list of numbers in the file's buffer
 //   "angle"             [rad]               "image"     the file of an image

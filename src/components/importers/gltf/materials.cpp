@@ -44,6 +44,10 @@ const Material& Materials::get(std::optional<size_t> material, bool colored, boo
   const Key key{material, colored, faded};
   if (const auto known = made_.find(key); known != made_.end()) return known->second;
   uv_set_.reset();
+  if (material && document_.converted()) {
+    const Json& source = extension(document_.element("materials", *material), "ETENDUE_materialx");
+    if (auto made = source.empty() ? std::nullopt : materialx(source)) return made_[key] = std::move(*made);
+  }
   Surface surface;
   if (material)
     surface = within(fmt::format("materials[{}]", *material), [&] { return read(document_.element("materials", *material)); });

@@ -60,6 +60,7 @@ class Materials {
   std::optional<SurfaceTexture> described_texture(const Json&, bool* has_alpha);
   SurfaceNumber described_number(const Json&);
   void read_described(const Json&, Surface&);
+  std::optional<Material> materialx(const Json& source);
   Location at() const { return importing_.at(); }
 
   Importing& importing_;

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""etendue_usd.py FILE [SECONDS [FOLDER ...]]: a USD stage as .glb on standard output; what is wrong goes to standard error.
+"""etendue_usd.py [--materialx] FILE [SECONDS [FOLDER ...]]: a USD stage as .glb on standard output, or its materials that are
+MaterialX as one such document; what is wrong goes to standard error.
 
 It is started by UsdImporter, in a process of its own. Meshes, shapes, curves, subdivision surfaces, instances, UsdPreviewSurface
 materials, lights and cameras are converted (docs/materials-of-models.md); what is not is told in asset.extras.notes, which the
@@ -28,6 +29,7 @@ from etendue_usd_files import Files, words_of
 from etendue_usd_glb import Glb
 from etendue_usd_instances import WITHOUT, lists_of_instances, places_of_instances
 from etendue_usd_lights import Lights
+from etendue_usd_materialx import document_of
 from etendue_usd_materials import Materials
 from etendue_usd_meshes import Meshes
 from etendue_usd_shapes import Shapes, camera_of
@@ -219,6 +221,9 @@ def limit(what, wanted):
 
 
 def main():
+    only_materials = sys.argv[1] == "--materialx"
+    if only_materials:
+        del sys.argv[1]
     path = os.path.abspath(sys.argv[1])
     size = os.path.getsize(path)
     limit(resource.RLIMIT_CORE, 0)
@@ -228,6 +233,9 @@ def main():
     files = Files(path, sys.argv[3:], glb.note)
     files.check_layers()
     stage = Usd.Stage.Open(path)
+    if only_materials:
+        sys.stdout.write(document_of(stage, Usd.TimeCode.Default()))
+        return
     if hasattr(stage, "GetCompositionErrors"):
         for error in stage.GetCompositionErrors()[:20]:
             glb.note("a part cannot be put together: " + " ".join(str(error).split())[:200])

@@ -4,6 +4,8 @@ import re
 
 from pxr import Ar, Sdf, Tf, UsdUtils
 
+from etendue_usd_materialx import layer_of
+
 LAYERS = (".usd", ".usda", ".usdc", ".usdz")
 
 
@@ -11,6 +13,7 @@ class Files:
     def __init__(self, path, allowed, note):
         self.path, self.note = path, note
         self.folders = [os.path.realpath(folder) for folder in [os.path.dirname(path) or ".", *allowed]]
+        self.documents = {}  # of MaterialX, by path: the layers that stand for them
         self.layers = {}  # by path; kept, so that the stage finds them opened and as they were made here. None: not read
 
     def refused(self, path):
@@ -30,16 +33,29 @@ class Files:
         waiting, seen = [self.path], {self.path}
         while waiting:
             path = waiting.pop()
-            layer, unread = self.opened(path), set()
+            layer, unread, instead = self.opened(path), set(), {}
             for named in self.named_layers(layer):
                 found = self.found(layer, named)
+                if found is not None and found.lower().endswith(".mtlx"):
+                    instead[named] = self.materialx(found, named)
+                    continue
                 if found is None or (found not in seen and self.opened(found) is None):
                     unread.add(named)
                 elif found not in seen:
                     seen.add(found)
                     waiting.append(found)
-            if unread:
-                take_out(layer, unread)
+            if unread or instead:
+                take_out(layer, unread, instead)
+
+    def materialx(self, path, named):
+        """The name of a layer that stands for a MaterialX document; of one that cannot be read, without materials."""
+        if path not in self.documents:
+            try:
+                self.documents[path] = layer_of(path)
+            except (OSError, SyntaxError, ValueError) as error:
+                self.note(f"the MaterialX document '{named}' cannot be read: {words_of(error)[:200]}: its materials are grey")
+                self.documents[path] = Sdf.Layer.CreateAnonymous()
+        return self.documents[path].identifier
 
     def opened(self, path):
         """A layer, or None, which is told; an error where it is the scene itself."""
@@ -62,7 +78,8 @@ class Files:
     def named_layers(layer):
         sublayers, references, payloads = UsdUtils.ExtractExternalReferences(layer.identifier)
         layered = [*sublayers, *payloads, *layer.GetCompositionAssetDependencies()]
-        layered += [r for r in references if Ar.SplitPackageRelativePathInner(r)[1].lower().endswith(LAYERS) or r.lower().endswith(LAYERS)]
+        read = (*LAYERS, ".mtlx")
+        layered += [r for r in references if Ar.SplitPackageRelativePathInner(r)[1].lower().endswith(read) or r.lower().endswith(read)]
         return [named for named in dict.fromkeys(layered) if named]
 
     def found(self, layer, named):
@@ -75,18 +92,23 @@ class Files:
             self.note(f"there is no file '{named}': it is left out")
             return None
         inner = Ar.SplitPackageRelativePathInner(found)[1] or found
-        if not inner.lower().endswith(LAYERS):
-            what = "a MaterialX file, which is not read: its materials are grey" if inner.lower().endswith(".mtlx") else (
-                "no USD file; other formats are not read within a scene: it is left out")
-            self.note(f"'{named}' is {what}")
+        packed = Ar.IsPackageRelativePath(found)
+        if inner.lower().endswith(".mtlx") and packed:
+            self.note(f"'{named}' is a MaterialX document within a package, which is not read: its materials are grey")
+            return None
+        if not inner.lower().endswith((*LAYERS, ".mtlx")):
+            self.note(f"'{named}' is no USD file; other formats are not read within a scene: it is left out")
             return None
         self.require(found, named)
         return found
 
 
-def take_out(layer, unread):
-    """Sublayers, references and payloads of these names."""
+def take_out(layer, unread, instead):
+    """Sublayers, references and payloads of these names; those of `instead` are replaced."""
     layer.SetPermissionToEdit(True)
+    for i, path in enumerate(layer.subLayerPaths):
+        if path in instead:
+            layer.subLayerPaths[i] = instead[path]
     for i in reversed(range(len(layer.subLayerPaths))):
         if layer.subLayerPaths[i] in unread:
             del layer.subLayerPaths[i]
@@ -99,12 +121,19 @@ def take_out(layer, unread):
             items = prim.GetInfo(key)
             for kind in ("explicitItems", "addedItems", "prependedItems", "appendedItems"):
                 given = getattr(items, kind)
-                left = [item for item in given if item.assetPath not in unread]
-                if len(left) < len(given):
+                left = [other(item, instead) for item in given if item.assetPath not in unread]
+                if left != list(given):
                     setattr(items, kind, left)
             prim.SetInfo(key, items)
 
     layer.Traverse(Sdf.Path.absoluteRootPath, visit)
+
+
+def other(item, instead):
+    """A reference or payload to what stands for its file."""
+    if item.assetPath not in instead:
+        return item
+    return type(item)(instead[item.assetPath], item.primPath, item.layerOffset)
 
 
 def words_of(error):

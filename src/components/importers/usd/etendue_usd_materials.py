@@ -4,6 +4,7 @@ import urllib.parse
 
 from pxr import Ar, Usd, UsdShade
 
+import etendue_usd_materialx as materialx
 import etendue_usd_values as values
 
 WRAPS = {"repeat": "repeat", "mirror": "mirror", "clamp": "clamp", "black": "black", "useMetadata": "repeat"}
@@ -42,6 +43,17 @@ class Materials:
     def make(self, material):
         surface = material.ComputeSurfaceSource()[0]
         name = material.GetPrim().GetName()
+        source = materialx.source_of(material, self.files.path, self.glb.note)
+        if source and materialx.installed():
+            names = materialx.coordinates_of(material)
+            self.reading.update(names)
+            source["uv_set"] = self.uv_sets.setdefault(names[0], len(self.uv_sets))
+            if len(names) > 1:
+                self.glb.note("a material of MaterialX that reads several surface coordinates has those that its mesh keeps by their names, or the first")
+            return self.glb.add("materials", {"name": name, "extensions": {"ETENDUE_materialx": source}})
+        if source:
+            self.glb.note("materials of MaterialX are read by the Python package materialx, which is not installed (pip install materialx): they are "
+                          "their UsdPreviewSurface, or grey")
         for other in ("displacement", "volume"):
             if getattr(material, f"Compute{other.capitalize()}Source")()[0]:
                 self.glb.note(f"the {other} of materials is left out")
