@@ -100,6 +100,7 @@ void Studio::follow_shaders() {
   const std::string text = document_.draft() ? document_.draft()->text : document_.text();
   try {
     tell_edit(document_.apply(text, {}), nullptr);
+    for (const auto& side : sides_.all()) side->reload();
   } catch (...) {
     document_.set_draft(text, thrown_errors());
     tell_document();
