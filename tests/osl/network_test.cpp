@@ -143,7 +143,7 @@ TEST_F(OslNetworks, Faults) {
   EXPECT_NE(with_text("shader nowhere a ;").find("no shader 'nowhere'"), std::string::npos);
   EXPECT_NE(with_text("param float wrong 2 ; shader net_mix a ;").find("nonexistent parameter: wrong"), std::string::npos);
   EXPECT_NE(with_text("layer net_mix a ;").find("line 1, column 1"), std::string::npos);
-  EXPECT_NE(fault_of(made("OslGroup")).find("is needed"), std::string::npos);
+  EXPECT_NE(fault_of(made("OslGroup", {{"layers", list({part(made("NetRed"))})}})).find("is needed"), std::string::npos);
 }
 
 }  // namespace

@@ -151,6 +151,15 @@ std::string Network::add(const OslPart& part) {
   return name;
 }
 
+std::string Network::add(std::shared_ptr<const Shader> shader) {
+  LayerText layer;
+  layer.shader = layer.name = free_name(shader->name);
+  const std::string name = layer.name;
+  add_layer(std::move(layer), std::move(shader));
+  lets_in_ = uses_.interior;
+  return name;
+}
+
 void Network::add_text(std::string_view text, const std::string& file, const std::string& folder) {
   GroupDescription added = parse_group(text, file);
   for (LayerText& layer : added.layers) {

@@ -25,6 +25,8 @@ class Network {
   /// Adds the layer of an object after those that it needs, once. Returns the layer's name. Throws Error at the member that is
   /// to blame.
   std::string add(const OslPart&);
+  /// Adds a layer of a shader with its defaults. Returns its name.
+  std::string add(std::shared_ptr<const Shader>);
   /// Adds layers and connections in the text form (group_description.h). A shader is a class of a plugin, or a file
   /// NAME.osl in `folder`. Throws Error with the place.
   void add_text(std::string_view text, const std::string& file, const std::string& folder);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "etendue/describe/description.h"
+#include "osl/language/compile.h"
 #include "osl_emission.h"
 #include "osl_map.h"
 #include "osl_part.h"
@@ -40,7 +41,14 @@ struct GroupMembers {
   FilePath file, shaders;
 
   /// Gathers the network; returns the last layer.
-  std::string gather(const Component& self, Network& network, const char* member, const Component* last) const {
+  /// `otherwise`: the shader of a group without layers.
+  std::string gather(const Component& self, Network& network, const char* member, const Component* last,
+                     const char* otherwise) const {
+    if (text.empty() && file.empty() && !last && layers.empty() && connections.empty()) {
+      const Compiled c = compile_text(otherwise, "default");
+      if (c.failed()) throw Error(to_text(c.diagnostics));
+      return network.add(c.shader);
+    }
     if (!text.empty() || !file.empty()) return gather_text(self, network, member, last);
     for (const Ref<ObjectMap>& layer : layers) {
       const auto* part = dynamic_cast<const OslPart*>(layer.get());
@@ -103,12 +111,14 @@ class OslGroup final : public GroupSurface, public GroupMembers {
   using Parent = etendue::Shader;
   static void describe(Description<OslGroup>& d) {
     d.summary("A surface that is a network of shaders in the Open Shading Language.")
-        .template member<&OslGroup::surface>("surface", "", "the last layer, whose closures are the surface");
+        .template member<&OslGroup::surface>(
+            "surface", "",
+            "the last layer, whose closures are the surface; of a group without any layer it is a grey diffuse one");
     describe_group(d);
   }
   void prepare() override {
     Network network;
-    const std::string last = gather(*this, network, "surface", surface.get());
+    const std::string last = gather(*this, network, "surface", surface.get(), "surface grey() { Ci = 0.5 * diffuse(N); }");
     build_surface(*this, std::move(network), last);
   }
   Ref<etendue::Shader> surface;
@@ -119,12 +129,14 @@ class OslGroupEmission final : public GroupEmission, public GroupMembers {
   using Parent = EmissionShader;
   static void describe(Description<OslGroupEmission>& d) {
     d.summary("Light that is a network of shaders in the Open Shading Language.")
-        .template member<&OslGroupEmission::emission>("emission", "", "the last layer, whose closures are the light");
+        .template member<&OslGroupEmission::emission>(
+            "emission", "",
+            "the last layer, whose closures are the light; of a group without any layer it is white, of radiance 1");
     describe_group(d);
   }
   void prepare() override {
     Network network;
-    const std::string last = gather(*this, network, "emission", emission.get());
+    const std::string last = gather(*this, network, "emission", emission.get(), "surface white() { Ci = emission(); }");
     build_group(*this, std::move(network), last, {});
   }
   Ref<EmissionShader> emission;
@@ -135,13 +147,15 @@ class OslGroupVolume final : public GroupVolume, public GroupMembers {
   using Parent = VolumeShader;
   static void describe(Description<OslGroupVolume>& d) {
     d.summary("A participating medium that is a network of shaders in the Open Shading Language.")
-        .template member<&OslGroupVolume::volume>("volume", "", "the last layer, whose closures are the medium")
+        .template member<&OslGroupVolume::volume>(
+            "volume", "", "the last layer, whose closures are the medium; of a group without any layer it is a grey mist")
         .template member<&OslGroupVolume::bound>(bound_name, "1/m", bound_text, at_least(0));
     describe_group(d);
   }
   void prepare() override {
     Network network;
-    const std::string last = gather(*this, network, "volume", volume.get());
+    const std::string last =
+        gather(*this, network, "volume", volume.get(), "volume mist() { Ci = anisotropic_vdf(color(0.75), color(1), 0); }");
     build_volume(*this, std::move(network), last, bound);
   }
   Ref<VolumeShader> volume;
@@ -153,14 +167,14 @@ class OslGroupMap final : public GroupMap, public GroupMembers {
   using Parent = ObjectMap;
   static void describe(Description<OslGroupMap>& d) {
     d.summary("A map that is an output of a network of shaders in the Open Shading Language, or its displacement.")
-        .template member<&OslGroupMap::map>("map", "", "the last layer")
+        .template member<&OslGroupMap::map>("map", "", "the last layer; a group without any layer is 0.5")
         .template member<&OslGroupMap::output>(
             "output", "", "the output that is the map's value; empty: that which the last layer chooses, or its first one");
     describe_group(d);
   }
   void prepare() override {
     Network network;
-    const std::string last = gather(*this, network, "map", map.get());
+    const std::string last = gather(*this, network, "map", map.get(), "shader grey(output color value = 0.5) { }");
     const std::shared_ptr<const Shader> shader = network.shader_of(last);
     std::string wanted = output;
     if (wanted.empty()) {
