@@ -179,7 +179,6 @@ class Studio {
   void note_shape(const Shown&, const Image& picture);
   void answer();
   void answer(const Task&);
-  void follow_shaders();
   void look();
   void look_once();
   using Frames = std::map<Watch, std::shared_ptr<const Frame>>;

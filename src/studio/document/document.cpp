@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "etendue/language/language.h"
-#include "files/input_files.h"
 
 namespace etendue::studio {
 
@@ -15,9 +14,6 @@ namespace {
 
 /// The message of Render::edit for a cyclic component graph, which may arise between several edits applied one by one.
 constexpr std::string_view cannot_contain_itself = "a component cannot contain itself";
-
-/// Whether a file is a shader in the Open Shading Language, a header of one or a network of them.
-bool is_shader(std::string_view path) { return path.ends_with(".osl") || path.ends_with(".h") || path.ends_with(".oslgroup"); }
 
 }  // namespace
 
@@ -36,33 +32,11 @@ Ref<Job> Document::load(const Outline& outline, const std::map<std::string, std:
   if (!trusts_all_) require_allowed(files_loaded_by(outline, folder_));
   for (const auto& [path, expression] : overrides)
     require_allowed(files_loaded_by(Outline("x = " + expression, intern("--set")), folder_));
-  Ref<Job> job = load_text(outline.text());
+  Ref<Job> job = load_job_text(outline.text(), name_, folder_);
   if (!trusts_all_) require_allowed(files_named_by(*job));
   for (const auto& [path, expression] : overrides) set_path(*job, path, expression);
   job->metadata["file"] = file_;
   return job;
-}
-
-/// Loads the text, and notes which files of shaders it is made of, also where it has errors.
-Ref<Job> Document::load_text(const std::string& text) const {
-  const InputsRead read;
-  const auto note = [&] {
-    shader_files_.clear();
-    for (const std::string& path : read.paths())
-      if (is_shader(path)) shader_files_[path] = state_of(path);
-  };
-  try {
-    Ref<Job> job = load_job_text(text, name_, folder_);
-    note();
-    return job;
-  } catch (...) {
-    note();
-    throw;
-  }
-}
-
-bool Document::shaders_changed() const {
-  return std::ranges::any_of(shader_files_, [](const auto& file) { return state_of(file.first) != file.second; });
 }
 
 void Document::require_allowed(const std::vector<NamedFile>& files) const {

@@ -21,11 +21,6 @@
 
 namespace etendue::studio {
 
-/// The values by which a change of a file is detected.
-using FileState = std::array<std::int64_t, 4>;
-/// Nothing if the file does not exist.
-std::optional<FileState> state_of(const std::string& path);
-
 /// How an edit is stored in the undo list.
 struct EditNote {
   std::string label;  ///< "edit radius"
@@ -65,10 +60,6 @@ class Document {
   std::string save_aside() const;
   /// Loads all files that the description names again.
   void reload();
-  /// Whether files of shaders (.osl, and what they include) have changed since they were read. `apply` with the same text
-  /// then reads them again.
-  bool shaders_changed() const;
-  bool has_shaders() const { return !shader_files_.empty(); }
 
   /// Whether it has a document: false before `open` or `create`.
   bool begun() const { return bool(outline_); }
@@ -139,7 +130,6 @@ class Document {
   static TextChange backward(const Step&);
   void require_allowed(const std::vector<NamedFile>&) const;
   Ref<Job> load(const Outline&, const std::map<std::string, std::string>& overrides) const;
-  Ref<Job> load_text(const std::string& text) const;
   Applied follow(const std::string& text, const std::map<std::string, std::string>& overrides);
   void replace_render(Ref<Job>);
   void edit_render(Merge&);
@@ -154,8 +144,6 @@ class Document {
   std::set<std::string> trusted_;  ///< files named in the text when it was opened
   bool trusts_all_ = false;        ///< true while a file is being opened
   std::string file_, folder_, saved_text_, disk_text_;
-  /// The files of shaders that were read last, and what they were.
-  mutable std::map<std::string, std::optional<FileState>> shader_files_;
   mutable std::array<std::int64_t, 4> disk_state_{};  ///< device, inode, size, time of the file with `disk_text_`
   const char* name_ = "";
   int revision_ = 0, saved_revision_ = 0, next_id_ = 1;

@@ -22,6 +22,14 @@ namespace {
 
 constexpr std::uint64_t largest_text = std::uint64_t(256) << 20;
 
+/// The values by which a change of a file is detected; nothing if the file does not exist.
+std::optional<std::array<std::int64_t, 4>> state_of(const std::string& path) {
+  struct stat s{};
+  if (::stat(path.c_str(), &s) != 0) return {};
+  return std::array{std::int64_t(s.st_dev), std::int64_t(s.st_ino), std::int64_t(s.st_size),
+                    std::int64_t(s.st_mtim.tv_sec) * 1'000'000'000 + s.st_mtim.tv_nsec};
+}
+
 /// The smallest description that can be rendered, in the usual style.
 constexpr const char* beginning = R"(# A new scene. Lengths are in metres unless a unit says otherwise.
 
@@ -35,13 +43,6 @@ Job {
 )";
 
 }  // namespace
-
-std::optional<FileState> state_of(const std::string& path) {
-  struct stat s{};
-  if (::stat(path.c_str(), &s) != 0) return {};
-  return FileState{std::int64_t(s.st_dev), std::int64_t(s.st_ino), std::int64_t(s.st_size),
-                   std::int64_t(s.st_mtim.tv_sec) * 1'000'000'000 + s.st_mtim.tv_nsec};
-}
 
 Document::Source Document::read(const std::string& file) {
   std::string text;
@@ -98,7 +99,6 @@ void Document::take(Document&& next) {
   file_ = std::move(next.file_);
   folder_ = std::move(next.folder_);
   saved_text_ = std::move(next.saved_text_);
-  shader_files_ = std::move(next.shader_files_);
   disk_text_ = std::move(next.disk_text_);
   disk_state_ = next.disk_state_;
   name_ = next.name_;
