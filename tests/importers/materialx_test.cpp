@@ -13,6 +13,7 @@
 #include "etendue/scene.h"
 #include "etendue/shader.h"
 #include "support/process.h"
+#include "usd_support.h"
 
 namespace etendue {
 namespace {
@@ -276,6 +277,43 @@ TEST_F(MaterialX, DamagedDocumentsAreErrors) {
   std::string deep = head;
   for (int i = 0; i < 20000; ++i) deep += "<nodegraph name=\"g" + std::to_string(i) + "\">";
   EXPECT_NE(error_of(deep), "");
+}
+
+// A network of MaterialX in a USD scene, and a reference to a document.
+class MaterialXInUsd : public test::UsdTest {
+ protected:
+  void SetUp() override {
+    test::UsdTest::SetUp();
+    const char* python = std::getenv("ETENDUE_PYTHON");
+    has_reader_ =
+        std::system((std::string(python && *python ? python : "python3") + " -c 'import MaterialX' 2>/dev/null").c_str()) == 0;
+  }
+  bool has_reader_ = false;
+};
+
+TEST_F(MaterialXInUsd, NetworksAndDocumentsAreRead) {
+  folder_.write("mtlx_test_of_usd.mtlx", standard_surface(input("base", "float", "1") + input("specular", "float", "0") +
+                                                          input("base_color", "color3", "0.25, 0.25, 0.25")));
+  const Ref<Scene> s = scene(
+      test::y_up +
+      "def Material \"own\" {\ntoken outputs:mtlx:surface.connect = </own/s.outputs:out>\ndef Shader \"s\" {\nuniform token "
+      "info:id = \"ND_standard_surface_surfaceshader\"\nfloat inputs:base = 1\nfloat inputs:specular = 0\ncolor3f "
+      "inputs:base_color.connect = </own/m.outputs:out>\ntoken outputs:out\n}\ndef Shader \"m\" {\nuniform token info:id = "
+      "\"ND_multiply_color3\"\ncolor3f inputs:in1 = (0.5, 0.5, 0.5)\ncolor3f inputs:in2 = (0.75, 0.75, 0.75)\ncolor3f "
+      "outputs:out\n}\n}\n"
+      "def Material \"other\" ( references = @mtlx_test_of_usd.mtlx@</MaterialX/Materials/M> ) {\n}\n"
+      "def Sphere \"a\" ( prepend apiSchemas = [\"MaterialBindingAPI\"] ) {\nrel material:binding = </own>\n}\n"
+      "def Sphere \"b\" ( prepend apiSchemas = [\"MaterialBindingAPI\"] ) {\nrel material:binding = </other>\n}\n");
+  ASSERT_TRUE(s) << error_;
+  ASSERT_EQ(s->objects.size(), 2u);
+  if (!has_reader_) {
+    EXPECT_TRUE(told("pip install materialx"));
+    GTEST_SKIP() << "the Python package materialx is not installed";
+  }
+  EXPECT_TRUE(notes_.empty()) << notes_.front();
+  const auto own = albedo(s->objects[0]->shader), other = albedo(s->objects[1]->shader);
+  EXPECT_NEAR(own[1], 0.375, 1e-3);
+  EXPECT_NEAR(other[1], 0.25, 1e-3);
 }
 
 }  // namespace

@@ -32,9 +32,10 @@ TEST_F(UsdUnusual, LayersThatCannotBeReadAreLeftOut) {
   const Ref<Scene> s = scene("#usda 1.0\n( upAxis = \"Y\"\nsubLayers = [" + sublayers + "] )\ndef Sphere \"s\" {\n}\n" + rest);
   ASSERT_TRUE(s) << error_;
   EXPECT_EQ(s->objects.size(), 1u);
-  for (const char* words : {"'m.mtlx' is a MaterialX file", "'x.abc' is no USD file", "'broken.usda' cannot be read"})
+  for (const char* words : {"'m.mtlx' has no material </M>", "'m.mtlx' has no material </N>", "'x.abc' is no USD file",
+                            "'broken.usda' cannot be read"})
     EXPECT_TRUE(told(words)) << words;
-  EXPECT_EQ(notes_.size(), 3u) << notes_.back();
+  EXPECT_EQ(notes_.size(), 4u) << notes_.back();
 }
 
 TEST_F(UsdUnusual, ValuesOfOtherTypesAreReadAsWhatTheyStandFor) {

@@ -60,7 +60,7 @@ def test_all_that_is_needed_is_in_it(wheel):
         r"etendue/_prefix/native/_core\.[^/]*\.so",
         r"etendue/_prefix/native/(etendue|libetendue_app\.so|libetendue_formats\.so|libetendue_openimageio\.so|libetendue_osl\.so)",
         r"etendue/_prefix/native/libetendue\.so\.[0-9.]+",
-        r"etendue/_prefix/libexec/etendue/(etendue_assimp|etendue_draco|etendue_usd\.py)",
+        r"etendue/_prefix/libexec/etendue/(etendue_assimp|etendue_draco|etendue_usd\.py|etendue_materialx\.py)",
         r"etendue/_prefix/share/etendue/studio/index\.html",
         r"etendue/_prefix/include/etendue/core/spectrum\.h",
         r"etendue/_prefix/lib/cmake/etendue/etendueConfig\.cmake",

@@ -45,17 +45,17 @@ class Files:
                     seen.add(found)
                     waiting.append(found)
             if unread or instead:
-                take_out(layer, unread, instead)
+                take_out(layer, unread, instead, self.note)
 
     def materialx(self, path, named):
-        """The name of a layer that stands for a MaterialX document; of one that cannot be read, without materials."""
+        """The layer that stands for a MaterialX document; of one that cannot be read, without materials."""
         if path not in self.documents:
             try:
                 self.documents[path] = layer_of(path)
             except (OSError, SyntaxError, ValueError) as error:
                 self.note(f"the MaterialX document '{named}' cannot be read: {words_of(error)[:200]}: its materials are grey")
                 self.documents[path] = Sdf.Layer.CreateAnonymous()
-        return self.documents[path].identifier
+        return self.documents[path]
 
     def opened(self, path):
         """A layer, or None, which is told; an error where it is the scene itself."""
@@ -103,12 +103,12 @@ class Files:
         return found
 
 
-def take_out(layer, unread, instead):
-    """Sublayers, references and payloads of these names; those of `instead` are replaced."""
+def take_out(layer, unread, instead, note):
+    """Sublayers, references and payloads of these names; those of `instead` are replaced by the layers there."""
     layer.SetPermissionToEdit(True)
     for i, path in enumerate(layer.subLayerPaths):
         if path in instead:
-            layer.subLayerPaths[i] = instead[path]
+            layer.subLayerPaths[i] = instead[path].identifier
     for i in reversed(range(len(layer.subLayerPaths))):
         if layer.subLayerPaths[i] in unread:
             del layer.subLayerPaths[i]
@@ -121,7 +121,7 @@ def take_out(layer, unread, instead):
             items = prim.GetInfo(key)
             for kind in ("explicitItems", "addedItems", "prependedItems", "appendedItems"):
                 given = getattr(items, kind)
-                left = [other(item, instead) for item in given if item.assetPath not in unread]
+                left = [other(item, instead) for item in given if item.assetPath not in unread and is_there(item, instead, note)]
                 if left != list(given):
                     setattr(items, kind, left)
             prim.SetInfo(key, items)
@@ -133,7 +133,15 @@ def other(item, instead):
     """A reference or payload to what stands for its file."""
     if item.assetPath not in instead:
         return item
-    return type(item)(instead[item.assetPath], item.primPath, item.layerOffset)
+    return type(item)(instead[item.assetPath].identifier, item.primPath, item.layerOffset)
+
+
+def is_there(item, instead, note):
+    """Whether what stands for a file has the prim that is referred to; what it has not is told."""
+    if item.assetPath not in instead or item.primPath.isEmpty or instead[item.assetPath].GetPrimAtPath(item.primPath):
+        return True
+    note(f"'{item.assetPath}' has no material <{item.primPath}>: objects that are bound to it are grey")
+    return False
 
 
 def words_of(error):
