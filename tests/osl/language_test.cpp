@@ -380,7 +380,7 @@ TEST(OslAdvice, OnWhatNothingReads) {
 TEST(OslAdvice, OnWhatHasNoValueYet) {
   EXPECT_EQ(advice_on("surface s() {\n float x;\n Ci = x * diffuse(N); }"), "test.osl:3:7: warning: 'x' has no value yet\n");
   EXPECT_EQ(advice_on("surface s() {\n float x;\n for (int i = 0; i < 3; ++i) { x += i; }\n Ci = x * diffuse(N); }"),
-            "test.osl:3:33: warning: 'x' has no value yet\n");
+            "test.osl:3:32: warning: 'x' has no value yet\n");
 }
 
 TEST(OslAdvice, IsSilentOnWhatIsRight) {
