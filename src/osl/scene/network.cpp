@@ -160,11 +160,11 @@ std::string Network::add(std::shared_ptr<const Shader> shader) {
   return name;
 }
 
-void Network::add_text(std::string_view text, const std::string& file, const std::string& folder) {
+void Network::add_text(std::string_view text, const std::string& file, const std::vector<std::string>& folders) {
   GroupDescription added = parse_group(text, file);
   for (LayerText& layer : added.layers) {
     if (shaders_.contains(layer.name)) throw Error(fmt::format("there are two layers named '{}'", layer.name), layer.at);
-    std::shared_ptr<const Shader> shader = declared_shader(layer.shader, folder, layer.at);
+    std::shared_ptr<const Shader> shader = declared_shader(layer.shader, folders, layer.at);
     layer.shader = layer.name;
     add_layer(std::move(layer), std::move(shader));
     lets_in_ = uses_.interior;

@@ -28,8 +28,8 @@ class Network {
   /// Adds a layer of a shader with its defaults. Returns its name.
   std::string add(std::shared_ptr<const Shader>);
   /// Adds layers and connections in the text form (group_description.h). A shader is a class of a plugin, or a file
-  /// NAME.osl in `folder`. Throws Error with the place.
-  void add_text(std::string_view text, const std::string& file, const std::string& folder);
+  /// NAME.osl in the folders. Throws Error with the place.
+  void add_text(std::string_view text, const std::string& file, const std::vector<std::string>& folders);
   /// Adds "layer.output -> layer.parameter". Throws Error at `at`.
   void connect(const std::string& text, Location at);
 

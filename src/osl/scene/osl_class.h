@@ -50,8 +50,8 @@ Constant constant_color(const Type&, const SpectralFunction&);
 
 /// Declares the classes of a file, or those that changed since the last call. Throws Error with the faults of its text.
 void declare_file(const std::string& file);
-/// The shader NAME.osl of a folder ("": the current one), else that of a class with this name. Throws Error at `at` if there is
-/// none, or with the faults of its text.
-std::shared_ptr<const Shader> declared_shader(const std::string& name, const std::string& folder, Location at);
+/// The shader NAME.osl of the first of the folders that has it, else that of a class with this name. Throws Error at `at` if
+/// there is none, or with the faults of its text.
+std::shared_ptr<const Shader> declared_shader(const std::string& name, const std::vector<std::string>& folders, Location at);
 
 }  // namespace etendue::osl

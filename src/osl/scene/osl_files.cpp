@@ -95,25 +95,28 @@ void declare_file(const std::string& file) {
   declared.has_classes = true;
 }
 
-std::shared_ptr<const Shader> declared_shader(const std::string& name, const std::string& folder, Location at) {
+std::shared_ptr<const Shader> declared_shader(const std::string& name, const std::vector<std::string>& folders, Location at) {
   State& s = state();
   const std::lock_guard lock(s.mutex);
-  const std::string file = name.ends_with(".osl") ? name : name + ".osl",
-                    path = folder.empty() || file.starts_with('/') ? file : folder + "/" + file;
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(path, ignored)) {
+  const std::string file = name.ends_with(".osl") ? name : name + ".osl";
+  for (const std::string& folder : folders) {
+    const std::string path = (std::filesystem::path(folder) / file).string();
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) continue;
     const Declared& declared = read(s, path).declared;
     for (const auto& [input, content] : declared.contents) note_input(input);
     return declared.shader;
   }
   std::vector<std::string> known;
   for (const auto& [other, declared] : s.files) {
-    if (declared.has_classes && declared.shader->name == name) return declared.shader;
+    if (!declared.has_classes) continue;
+    if (declared.shader->name == name) return declared.shader;
     known.push_back(declared.shader->name);
   }
-  throw Error(fmt::format("there is no shader '{}': neither the file '{}' nor a class of a plugin{}", name, path,
-                          suggestion(name, known)),
-              at);
+  throw Error(
+      fmt::format("there is no shader '{}': neither a class of a plugin{} nor a file '{}'{}", name, suggestion(name, known),
+                  file, folders.empty() ? "" : fmt::format(" in '{}'", fmt::join(folders, "' or '"))),
+      at);
 }
 
 namespace {

@@ -44,6 +44,9 @@ struct GroupMembers {
   /// `otherwise`: the shader of a group without layers.
   std::string gather(const Component& self, Network& network, const char* member, const Component* last,
                      const char* otherwise) const {
+    std::error_code ignored;
+    if (!shaders.empty() && !std::filesystem::is_directory(shaders.resolved(), ignored))
+      self.fail("shaders", fmt::format("there is no folder '{}'", shaders.resolved()));
     if (text.empty() && file.empty() && !last && layers.empty() && connections.empty()) {
       const Compiled c = compile_text(otherwise, "default");
       if (c.failed()) throw Error(to_text(c.diagnostics));
@@ -72,7 +75,8 @@ struct GroupMembers {
     if (!text.empty() && !file.empty()) self.fail("file", "is given besides `text`; only one way of saying it can count");
     if (!layers.empty() || !connections.empty() || last)
       self.fail(own, fmt::format("is given besides layers, connections or {}; only one way of saying it can count", member));
-    std::string folder = shaders.empty() ? std::string() : shaders.resolved(), content = text, name;
+    std::string content = text, name;
+    std::vector<std::string> folders;
     try {
       if (!file.empty()) {
         name = file.resolved();
@@ -81,9 +85,10 @@ struct GroupMembers {
         std::ostringstream all;
         all << in.rdbuf();
         content = all.str();
-        if (folder.empty()) folder = std::filesystem::path(name).parent_path().string();
+        folders.push_back(std::filesystem::path(name).parent_path().string());
       }
-      network.add_text(content, name, folder);
+      if (!shaders.empty()) folders.push_back(shaders.resolved());
+      network.add_text(content, name, folders);
     } catch (const Error& e) {
       // Places in a text within the description are those of the text, which begins where the member does.
       if (!file.empty() && e.location.known()) throw;
