@@ -86,7 +86,7 @@ def main():
     path = os.path.abspath(sys.argv[1])
     limit(resource.RLIMIT_CORE, 0)
     limit(resource.RLIMIT_AS, 4 << 30)
-    limit(resource.RLIMIT_CPU, 120)
+    limit(resource.RLIMIT_CPU, 60)
     files = Files(path, sys.argv[2:])
     document = mx.createDocument()
     if given:

@@ -20,7 +20,7 @@ PROSE = {"doc", "uiname", "uifolder", "uiadvanced", "enum", "enumvalues", "xpos"
 LIGHT_THROUGH = {"standard_surface": {"transmission": 0, "opacity": 1}, "open_pbr_surface": {"transmission_weight": 0, "geometry_opacity": 1},
                  "gltf_pbr": {"transmission": 0, "alpha": 1}, "UsdPreviewSurface": {"opacity": 1}}
 LIGHT_FROM = {"standard_surface": ("emission", "emission_color"), "open_pbr_surface": ("emission_luminance", "emission_color"),
-              "gltf_pbr": ("emissive", "emissive_strength"), "UsdPreviewSurface": ("emissiveColor",)}
+              "gltf_pbr": ("emissive", "emissive_strength"), "UsdPreviewSurface": ("emissiveColor",), "surface_unlit": ("emission", "emission_color")}
 # Words of the language, of descriptions and of the frame: no parameter is named so.
 TAKEN = {"Ci", "N", "P", "I", "Ng", "u", "v", "dPdu", "dPdv", "time", "Ps", "normal", "vector", "color", "point", "matrix", "float", "int", "string",
          "out", "output", "if", "else", "for", "while", "do", "return", "break", "continue", "struct", "closure", "void", "shader", "surface",
@@ -203,9 +203,9 @@ class Generator:
         if opaque:
             frame.metadata["etendue_opaque"] = opaque
         dark = [frame.inner_name(key) for key in LIGHT_FROM.get(kind, ())]
-        emits = frame.result not in ("BSDF",) and "_edf" in frame.text and not any(frame.is_zero(key) for key in dark if key)
-        emits = emits or "emission()" in frame.end
-        return frame.written(name), emits
+        shines = re.search(r"_edf\b|\bemission\(", frame.text + frame.body) is not None
+        emits = shines and frame.result != "BSDF" and not any(frame.is_zero(key) for key in dark if key)
+        return frame.written(name), emits or "emission()" in frame.end
 
     def displacement(self, node, name):
         """A map: how far P moves along the normal, or with three outputs along the tangents and the normal."""
@@ -299,6 +299,8 @@ def camel(text):
     return "".join(word[:1].upper() + word[1:] for word in re.split("[^A-Za-z0-9]+", text))
 
 
+RANGES = ("min", "max", "slidermin", "slidermax")
+
 # "    string file = "a.png"" of the shader's list of parameters; metadata follow.
 PARAMETER = re.compile(r"^    (output )?(\w+) (\w+) = (.*?)(,?)$")
 
@@ -387,8 +389,7 @@ class Frame:
         lines += ["]]", "("]
         signature = []
         for kind, parameter, value, metadata in self.parameters:
-            meta = [f"{'float' if key in ('min', 'max', 'slidermin', 'slidermax') and kind == 'float' else 'int' if key in ('min', 'max', 'slidermin', 'slidermax') else 'string'} {key} = {given}"
-                    for key, given in metadata.items()]
+            meta = [f"{kind if key in RANGES else 'string'} {key} = {given}" for key, given in metadata.items()]
             signature.append(f"    {kind} {parameter} = {value}" + (f" [[ {', '.join(meta)} ]]" if meta else ""))
         signature += [f"    output float {output} = 0" for output in self.outputs]
         lines += [",\n".join(signature), ")", "{"]

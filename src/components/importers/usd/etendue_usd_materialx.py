@@ -107,8 +107,7 @@ class Network:
                 made = node.addInput(given.GetBaseName(), known.getType())
                 made.setNodeName(other.getName())
                 output = UsdShade.Output(attribute).GetBaseName()
-                outputs = other.getNodeDef().getActiveOutputs() if other.getNodeDef() else self.library.getNodeDef(other.getNodeDefString()).getActiveOutputs()
-                if len(outputs) > 1:
+                if len(self.library.getNodeDef(other.getNodeDefString()).getActiveOutputs()) > 1:
                     made.setOutputString(output)
                 return
             value = attribute.Get(self.time)
