@@ -229,6 +229,11 @@ const ClassInfo* Registry::find(std::string_view name) const {
     // The library is missing. Where the name resembles a known class the caller suggests that one; otherwise the Error goes on.
     (void)meant_class(std::string(name));
   }
+  // Networks of shaders are written without a plugin.
+  if (found == state_->by_name.end() && name.starts_with("OslGroup")) {
+    load_shading_library();
+    more = true;
+  }
   if (more) {
     const_cast<Registry*>(this)->adopt();
     found = state_->by_name.find(name);
@@ -246,6 +251,11 @@ const ClassInfo* Registry::find(std::type_index type) const {
 std::vector<const ClassInfo*> Registry::all() const {
   const std::lock_guard lock(state_->mutex);
   load_format_library();
+  try {
+    load_shading_library();
+  } catch (const Error&) {
+    // An installation without the library has no such classes; whoever names one hears the reason.
+  }
   const_cast<Registry*>(this)->adopt();
   return state_->creatable();
 }
@@ -335,6 +345,7 @@ void Registry::load_plugin(const std::string& path) {
   const auto named = [&] { return Error("plugin '" + file + "': " + thrown_text()); };
   if (shading) {
     try {
+      const std::lock_guard lock(state_->mutex);  // before the library's own, as elsewhere
       load_shading_library();
     } catch (const Error& e) {
       throw Error("plugin '" + file + "': " + e.what());

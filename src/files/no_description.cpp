@@ -29,7 +29,7 @@ bool begins_as_description(std::string_view text, bool main) {
   text.remove_prefix(end);
   skip_blanks(text);
   if (word.empty() || text.empty()) return false;
-  if (word == "include" || word == "plugin") return text[0] == '"';
+  if (word == "include" || word == "plugin" || word == "class") return text[0] == '"';
   if (word == "param") return std::isalpha(static_cast<unsigned char>(text[0])) || text[0] == '_';
   return (text[0] == '{' || text[0] == '(' || text[0] == '=') && (has_job || !main);
 }

@@ -112,7 +112,7 @@ Document Parser::document() {
 }
 
 void Parser::statement(Document& document) {
-  static constexpr const char* known = "a statement (name = value, param, include, plugin or a component)";
+  static constexpr const char* known = "a statement (name = value, param, include, plugin, class or a component)";
   if (token_.is('}')) fail("this '}' closes nothing: there is one too many, or a '{' is missing", token_.at);
   if (token_.type != TokenType::name) unexpected(known);
   if (lexer_.followed_by(":")) return go_on_with_last(document);
@@ -140,7 +140,7 @@ void Parser::statement(Document& document) {
   }
   if (name.text == "include") {
     inclusion(document);
-  } else if (name.text == "plugin") {
+  } else if (name.text == "plugin" || (name.text == "class" && token_.type == TokenType::string)) {
     document.plugins.push_back(path_statement("the plugin's file, in quotes"));
   } else {
     // Probably a definition without its '=': the name is defined, so that its uses are not reported as well.
@@ -148,7 +148,7 @@ void Parser::statement(Document& document) {
     wrong.value.type = NodeType::bad;
     document.definitions.push_back(std::move(wrong));
     if ((token_.type == TokenType::string || token_.type == TokenType::name) && !token_.first_in_line) {
-      std::string near = suggestion(name.text, {"param", "include", "plugin"});
+      std::string near = suggestion(name.text, {"param", "include", "plugin", "class"});
       for (const char* word : {"import", "use", "using", "require", "load", "source"})
         if (name.text == word && token_.type == TokenType::string) near = " (here it is include \"file\")";
       if (!near.empty()) fail(fmt::format("unknown statement '{}'{}", name.text, near), name.at);

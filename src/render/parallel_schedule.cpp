@@ -10,6 +10,9 @@
 #include <bit>
 #include <map>
 #include <mutex>
+#include <utility>
+
+#include "current_step.h"
 
 namespace etendue {
 
@@ -134,6 +137,26 @@ void in_order(tbb::task_arena& tasks, int threads, std::uint64_t count, const st
 
 }  // namespace
 
+namespace {
+
+thread_local const std::atomic<bool>* abort_of_thread = nullptr;
+
+/// Makes a request to give up that of the thread as long as it lives.
+class CurrentStep {
+ public:
+  explicit CurrentStep(const std::atomic<bool>* abort) : before_(std::exchange(abort_of_thread, abort)) {}
+  ~CurrentStep() { abort_of_thread = before_; }
+  CurrentStep(const CurrentStep&) = delete;
+  CurrentStep& operator=(const CurrentStep&) = delete;
+
+ private:
+  const std::atomic<bool>* before_;
+};
+
+}  // namespace
+
+const std::atomic<bool>* abort_of_current_step() { return abort_of_thread; }
+
 void ParallelSchedule::run(const Items& items, Work& work) {
   State& s = *state_;
   std::uint64_t done = 0;
@@ -145,6 +168,7 @@ void ParallelSchedule::run(const Items& items, Work& work) {
   in_order<Made>(
       *s.tasks, s.threads, items.count, [&] { return aborted(); },
       [&](std::uint64_t item) {
+        const CurrentStep step(abort);
         auto made = std::make_unique<Made>();
         std::unique_ptr<ImageTile> tile(items.film ? s.take() : nullptr);
         if (tile) tile->keep_largest(largest);

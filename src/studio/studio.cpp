@@ -7,9 +7,40 @@
 #include <filesystem>
 
 #include "describe/guard.h"
+#include "files/input_files.h"
 #include "request.h"
 
 namespace etendue::studio {
+
+namespace {
+
+/// The files of shaders that were read since this was made: texts in the Open Shading Language, what they include, and
+/// networks.
+class ShaderFiles {
+ public:
+  static constexpr auto pause = std::chrono::milliseconds(250);  ///< between two looks at them
+
+  /// Whether any of them has another content than at the last call, as far as its size and time tell.
+  bool changed() {
+    bool any = false;
+    for (const std::string& path : read_.paths()) {
+      if (!path.ends_with(".osl") && !path.ends_with(".oslgroup") && !path.ends_with(".h")) continue;
+      std::error_code ignored;
+      const State now{std::filesystem::last_write_time(path, ignored), std::filesystem::file_size(path, ignored)};
+      const auto [known, is_new] = states_.try_emplace(path, now);
+      any |= !is_new && known->second != now;
+      known->second = now;
+    }
+    return any;
+  }
+
+ private:
+  using State = std::pair<std::filesystem::file_time_type, std::uintmax_t>;
+  const InputsRead read_;
+  std::map<std::string, State> states_;
+};
+
+}  // namespace
 
 Studio::Studio(StudioSettings settings)
     : settings_(std::move(settings)),
@@ -89,6 +120,19 @@ void Studio::request(const std::shared_ptr<Browser>& from, std::string text) {
 
 void Studio::answer() {
   pthread_setname_np(pthread_self(), "answerer");
+  ShaderFiles shaders;
+  // A shader that was saved, by any editor, is compiled and rendered at once. Its faults are those of the line that names it.
+  const auto follow_shaders = [&] {
+    if (!shaders.changed() || !document_.begun()) return;
+    const std::string text = document_.draft() ? document_.draft()->text : document_.text();
+    try {
+      tell_edit(document_.apply(text, {}), nullptr);
+      for (const auto& side : sides_.all()) side->reload();
+    } catch (...) {
+      document_.set_draft(text, thrown_errors());
+      tell_document();
+    }
+  };
   std::unique_lock lock(tasks_guard_);
   while (!ending_) {
     const auto ready = [&] { return ending_ || !tasks_.empty(); };
@@ -106,8 +150,11 @@ void Studio::answer() {
         lock.lock();
         continue;
       }
-    } else {
-      tasks_changed_.wait(lock, ready);
+    } else if (!tasks_changed_.wait_for(lock, ShaderFiles::pause, ready)) {
+      lock.unlock();
+      follow_shaders();
+      lock.lock();
+      continue;
     }
     if (ending_) return;
     const Task task = std::move(tasks_.front());

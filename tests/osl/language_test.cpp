@@ -1,5 +1,6 @@
 // Texts in the Open Shading Language to typed trees: what is accepted, what is refused and where, and the bounds of both.
 
+#include "osl/language/advice.h"
 #include "osl/language/compile.h"
 
 #include <gtest/gtest.h>
@@ -360,6 +361,37 @@ TEST(OslHostile, MutantsAreCompiledOrRefused) {
     const Compiled c = compiled(all);
     ASSERT_TRUE(c.shader || !c.diagnostics.empty()) << all;
   }
+}
+
+/// The advice on a shader's text, a line each.
+std::string advice_on(const std::string& text) {
+  const Compiled c = compile_text(text, "test.osl");
+  EXPECT_FALSE(c.failed()) << to_text(c.diagnostics);
+  return c.failed() ? "" : to_text(advice(*c.shader));
+}
+
+TEST(OslAdvice, OnWhatNothingReads) {
+  EXPECT_EQ(advice_on("surface s(float a = 1, float b = 2, float c = 3) {\n float x = a;\n float y;\n Ci = diffuse(N); }"),
+            "test.osl:1:30: warning: nothing reads the parameters 'b', 'c'\n"
+            "test.osl:2:8: warning: 'x' is given a value, but nothing reads it\n"
+            "test.osl:3:8: warning: 'y' is never used\n");
+}
+
+TEST(OslAdvice, OnWhatHasNoValueYet) {
+  EXPECT_EQ(advice_on("surface s() {\n float x;\n Ci = x * diffuse(N); }"), "test.osl:3:7: warning: 'x' has no value yet\n");
+  EXPECT_EQ(advice_on("surface s() {\n float x;\n for (int i = 0; i < 3; ++i) { x += i; }\n Ci = x * diffuse(N); }"),
+            "test.osl:3:32: warning: 'x' has no value yet\n");
+}
+
+TEST(OslAdvice, IsSilentOnWhatIsRight) {
+  EXPECT_EQ(advice_on("void both(float k, output float a, output float b) { a = k; b = k + a; }\n"
+                      "surface s(float k = 1, output color c = 0) { float x, y, list[2]; both(k, x, y);\n"
+                      "  for (int i = 0; i < 2; ++i) list[i] = x + y;\n"
+                      "  float z; if (x > 1) z = 1; else z = 2;\n"
+                      "  float s1, c1; sincos(z, s1, c1); int found; float r; found = getattribute(\"a\", r);\n"
+                      "  do { z += 1; } while (z < 3);\n"
+                      "  c = color(list[0], s1 + c1, found ? r : z); Ci = c * diffuse(N); }"),
+            "");
 }
 
 }  // namespace

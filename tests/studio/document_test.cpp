@@ -351,5 +351,34 @@ TEST_F(StudioDocument, EveryMemberOfEveryClassIsEditedSavedAndReloadedEqual) {
   EXPECT_TRUE(homeless.empty());
 }
 
+// A shader that is saved is compiled again, and its faults are those of the line that names it.
+TEST_F(StudioDocument, FollowsTheFilesOfShaders) {
+  write("followed.osl", "surface followed(float k = 0.25) { Ci = k * diffuse(N); }");
+  const std::string text = "plugin \"followed.osl\"\n" +
+                           std::string(scene).replace(std::string(scene).find("shader: white }"), 15, "shader: Followed {} }");
+  Document d = document();
+  d.open(write("followed.etd", text));
+  ASSERT_TRUE(d.valid());
+  write("followed.osl", "surface followed(float k = 0.25, float added = 1) { Ci = k * added * diffuse(N); }");
+  EXPECT_TRUE(d.apply(d.text(), {}).structure);
+  const auto is_it = [](const Ref<Component>& part) { return part->class_info().name == "Followed"; };
+  const auto found = std::ranges::find_if(d.components(), is_it);
+  ASSERT_NE(found, d.components().end());
+  EXPECT_TRUE((*found)->class_info().find("added"));
+  EXPECT_EQ(d.undo_count(), 0u);
+  write("followed.osl", "surface followed() { Ci = nothing(N); }");
+  try {
+    d.apply(d.text(), {});
+    FAIL();
+  } catch (const Errors& e) {
+    ASSERT_FALSE(e.errors.empty());
+    EXPECT_EQ(e.errors.front().location.line, 1);
+    EXPECT_NE(std::string(e.errors.front().what()).find("followed.osl:1:"), std::string::npos);
+  }
+  write("followed.osl", "surface followed() { Ci = 0.5 * diffuse(N); }");
+  d.apply(d.text(), {});
+  EXPECT_TRUE(d.valid());
+}
+
 }  // namespace
 }  // namespace etendue::studio

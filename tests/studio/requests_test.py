@@ -47,6 +47,22 @@ class Requests(unittest.TestCase):
         self.addCleanup(studio.__exit__)
         return studio
 
+    def test_a_shader_that_is_saved_is_followed(self):
+        shader = pathlib.Path(self.folder.name) / "followed.osl"
+        shader.write_text("surface followed(float k = 0.25) { Ci = k * diffuse(N); }")
+        scene = 'plugin "followed.osl"\n' + SCENE.replace("Lambertian { color: 0.5 }", "Followed {}")
+        with self.open(scene).page() as page:
+            page.good("warnings")
+            time.sleep(0.5)  # the file has been looked at
+            shader.write_text("surface followed(float k = 0.25) { Ci = nothing(N); }")
+            told = page.wait(lambda e: e.get("event") == "document" and e["errors"])
+            self.assertIn("followed.osl:1:", told["errors"][0]["message"])
+            self.assertEqual(told["errors"][0]["line"], 1)
+            page.events.clear()
+            shader.write_text("surface followed(float k = 0.25, float added = 1) { Ci = k * added * diffuse(N); }")
+            page.wait(lambda e: e.get("event") == "tree" and "added" in str(e))
+            page.wait(lambda e: e.get("event") == "document" and not e["errors"])
+
     def test_warnings_and_advice(self):
         dark = SCENE.replace("emission: DiffuseEmission { radiance: 3 } ", "").replace("PathTracer", "LightTracer")
         with self.open(dark).page() as page:

@@ -49,6 +49,7 @@ class RgbProductMap final : public ObjectMap, public RgbSource {
     rgb(p, c);
     return (c[0] + c[1] + c[2]) / 3;
   }
+  std::string rgb_space_name() const override { return color_space; }
   void rgb(const SurfacePoint& p, float out[3]) const override {
     float other[3];
     first_.look_up(p, out);

@@ -11,6 +11,8 @@ class RgbSource {
   virtual bool has_rgb() const { return true; }
   /// Writes the three numbers at a point, decoded by the map's transfer function.
   virtual void rgb(const SurfacePoint&, float out[3]) const = 0;
+  /// The name of the space in which they are RGB (rgb_space).
+  virtual std::string rgb_space_name() const { return "srgb"; }
 
  protected:
   ~RgbSource() = default;

@@ -3,6 +3,7 @@
 // library's functions see it during the run.
 
 #include <atomic>
+#include <chrono>
 #include <string>
 #include <string_view>
 
@@ -68,6 +69,9 @@ struct RunState {
   unsigned steps = 0;  ///< of all loops of this run
   /// A run with more steps of its loops than this is taken for endless: a second of empty steps at the most, for one point.
   static constexpr unsigned most_steps = 10'000'000;
+  /// Likewise one that is still in its loops after this time. It ends the render, so no picture depends on the machine's speed.
+  static constexpr std::chrono::seconds most_time{10};
+  std::chrono::steady_clock::time_point looked_first;  ///< when the loops of this run were first looked at
   RunServices services{*this};
 
   RunState() = default;

@@ -121,6 +121,12 @@ class Loop final : public Node {
   /// Now and then: a shader that never ends is stopped with its render, or as a fault.
   void look_up(RunState& run) const {
     if (run.abort && run.abort->load(std::memory_order_relaxed)) throw RunAborted();
+    const auto now = std::chrono::steady_clock::now();
+    if (run.steps == 0x100) run.looked_first = now;
+    if (now - run.looked_first > RunState::most_time)
+      throw Error(fmt::format("shader {}: this loop, or one around it, does not end: {} seconds at one point",
+                              run.group->shader_name(run.layer)->text(), RunState::most_time.count()),
+                  place_);
     if (run.steps < RunState::most_steps) return;
     throw Error(fmt::format("shader {}: this loop, or one around it, does not end: {} steps at one point",
                             run.group->shader_name(run.layer)->text(), RunState::most_steps),

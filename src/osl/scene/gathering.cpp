@@ -35,6 +35,10 @@ RgbCoefficients recent_coefficients(const RgbSpace& space, const Triple& c) {
   return entry.coefficients;
 }
 
+Frame facet_frame(const SurfacePoint& p, const MicrofacetDistribution& d) {
+  return d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p);
+}
+
 }  // namespace
 
 SurfacePoint Gathering::at(const Triple& normal, const Triple& tangent) const {
@@ -91,6 +95,20 @@ void Gathering::warn(const std::string& text) const { etendue::warn(place_.name 
 
 void Gathering::add(const Scatter* scatter, Lobes lobes, Spectrum weight) {
   if (!scatter || !scatter->has(lobes) || weight.black()) return;
+  constexpr Lobes through = diffuse_transmission | glossy_transmission | specular_transmission;
+  if (place_.exits && scatter->has(Lobes(lobes & through))) {
+    warn("light is let through beside subsurface scattering, and is lost: a surface has one of them");
+    lobes &= Lobes(~through);
+    if (!scatter->has(lobes)) return;
+  }
+  push(scatter, lobes, weight);
+}
+
+void Gathering::add_entry(const Scatter* scatter, Spectrum weight) {
+  if (!weight.black()) push(scatter, specular_transmission, weight);
+}
+
+void Gathering::push(const Scatter* scatter, Lobes lobes, const Spectrum& weight) {
   if (count_ == Mixture::most_parts)
     throw Error(fmt::format("{}: a closure has more than {} components at one point", place_.name, Mixture::most_parts));
   std::construct_at(&parts_[count_++], MixturePart{scatter, weight, lobes, covers_});
@@ -104,8 +122,11 @@ void Gathering::add(const etendue::Shader& model, const SlotValues& values, cons
 
 void Gathering::add_facets(const SurfacePoint& p, const MicrofacetDistribution& d, const SchlickFresnel& fresnel) {
   if (d.smooth()) return add(arena().make<MirrorModel>(p, fresnel), specular_reflection);
-  const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p);
-  add(arena().make<SchlickModel>(p, frame, d, fresnel), glossy_reflection);
+  add(arena().make<FacetModel<SchlickFresnel>>(p, facet_frame(p, d), d, fresnel), glossy_reflection);
+}
+
+void Gathering::add_film_facets(const SurfacePoint& p, const MicrofacetDistribution& d, const FilmFresnel& fresnel) {
+  add(arena().make<FacetModel<FilmFresnel>>(p, facet_frame(p, d), d, fresnel), glossy_reflection);
 }
 
 void Gathering::add_layers(const ClosureNode* top, const ClosureNode* base) {

@@ -4,6 +4,7 @@
 #include "components/shaders/fresnel.h"
 #include "components/shaders/half_vector.h"
 #include "components/shaders/layered/sheen.h"
+#include "components/shaders/microfacet/film_interference.h"
 #include "components/shaders/microfacet/microfacet.h"
 #include "etendue/core/warp.h"
 #include "etendue/scatter_model.h"
@@ -139,6 +140,29 @@ struct SchlickFresnel {
   Spectrum mean() const { return f0 + (f90 - f0) * (2 / ((exponent + 1) * (exponent + 2))); }
 };
 
+/// Fresnel reflection of a film (film_interference.h), times a colour.
+struct FilmFresnel {
+  Spectrum color = Spectrum(1.0f), outside = Spectrum(1.0f), film, base, absorbing;
+  Spectrum thickness;  ///< in wavelengths
+
+  void set_thickness(float nanometres, const Wavelengths& w) {
+    for (int i = 0; i < spectrum_size; ++i) thickness.set(i, nanometres / w[i]);
+  }
+  Spectrum at(float cosine) const {
+    Spectrum r;
+    for (int i = 0; i < spectrum_size; ++i)
+      r.set(i, film_fractions(cosine, outside[i], film[i], {base[i], absorbing[i]}, thickness[i]).reflected);
+    return color * r;
+  }
+  /// The mean under diffuse light, the integral of 2 c F(c), by the midpoint rule in c^2.
+  Spectrum mean() const {
+    constexpr int steps = 8;
+    Spectrum sum;
+    for (int i = 0; i < steps; ++i) sum += at(std::sqrt((float(i) + 0.5f) / steps));
+    return sum / float(steps);
+  }
+};
+
 // A mirror with that reflectance; exponent 5 and F0 = F90 = 1 is the perfect one.
 class MirrorModel final : public ScatterModel<MirrorModel> {
  public:
@@ -193,16 +217,17 @@ class CoatModel final : public ScatterModel<CoatModel> {
 };
 
 // Facets with that reflectance: f = F D G2 / (4 |out.z in.z|) [1/sr] and multiple scattering, as of a metal (conductor.cpp).
-class SchlickModel final : public ScatterModel<SchlickModel> {
+template <class Fresnel>
+class FacetModel final : public ScatterModel<FacetModel<Fresnel>> {
+  using Base = ScatterModel<FacetModel<Fresnel>>;
+
  public:
-  SchlickModel(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution,
-               const SchlickFresnel& fresnel)
-      : ScatterModel(p, frame, glossy_reflection),
-        distribution_(distribution),
-        multiple_reflection_(distribution),
-        fresnel_(fresnel),
-        multiple_(multiple_reflection_.factor(fresnel.mean())),
-        multiple_over_single_(multiple_.average() / std::max(fresnel.mean().average(), 1e-6f)) {}
+  FacetModel(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution, const Fresnel& fresnel)
+      : Base(p, frame, glossy_reflection), distribution_(distribution), multiple_reflection_(distribution), fresnel_(fresnel) {
+    const Spectrum mean = fresnel.mean();
+    multiple_ = multiple_reflection_.factor(mean);
+    multiple_over_single_ = multiple_.average() / std::max(mean.average(), 1e-6f);
+  }
 
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes lobes) const {
     return local_value_and_pdf(out, in, lobes).value;
@@ -244,7 +269,7 @@ class SchlickModel final : public ScatterModel<SchlickModel> {
   }
   MicrofacetDistribution distribution_;
   MultipleReflection multiple_reflection_;
-  SchlickFresnel fresnel_;
+  Fresnel fresnel_;
   Spectrum multiple_;
   float multiple_over_single_;
 };

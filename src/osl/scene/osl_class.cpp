@@ -10,6 +10,9 @@
 
 #include "etendue/describe/color.h"
 #include "etendue/describe/description.h"
+#include "etendue/object_map.h"
+#include "osl_part.h"
+#include "osl_volume.h"
 #include "parameter_values.h"
 
 namespace etendue::osl {
@@ -49,7 +52,7 @@ const Constant* default_of(const Symbol& s) {
   return s.initial && s.initial->kind == Expression::Kind::constant ? &s.initial->constant : nullptr;
 }
 
-/// The kind of a member for a parameter's type; false: there is none.
+/// The kind of a member for a parameter's type; false: there is none. A number or a color is a map: it may vary.
 bool set_kind(Member& m, const Symbol& s) {
   const Type& t = s.type;
   if (t.closure || t.is_structure() || t.base == Base::void_ || t.base == Base::spectrum) return false;
@@ -59,15 +62,22 @@ bool set_kind(Member& m, const Symbol& s) {
     case Base::int_:
       m.kind = !m.list && widget && (*widget == "checkBox" || *widget == "boolean") ? Kind::boolean : Kind::integer;
       return true;
-    case Base::float_: m.kind = Kind::number; return true;
+    case Base::float_:
+      m.kind = m.list ? Kind::number : Kind::component;
+      m.meaning = m.list ? Meaning::plain : Meaning::number;
+      break;
     case Base::string: m.kind = widget && *widget == "filename" ? Kind::file : Kind::string; return true;
-    case Base::color: m.kind = default_of(s) && !is_color(*default_of(s)) ? Kind::vector3 : Kind::color; return true;
+    case Base::color:
+      m.kind = default_of(s) && !is_color(*default_of(s)) ? Kind::vector3 : m.list ? Kind::color : Kind::component;
+      break;
     case Base::point: m.kind = Kind::point3; return true;
     case Base::vector: m.kind = Kind::vector3; return true;
     case Base::normal: m.kind = Kind::vector3; return true;
     case Base::matrix: m.kind = Kind::transform; return !m.list;
     default: return false;
   }
+  if (m.kind == Kind::component) m.component_class = "ObjectMap";
+  return true;
 }
 
 /// The metadata of the language's specification: help, label, page, min, max, widget, options.
@@ -78,7 +88,7 @@ void read_metadata(Member& m, const Symbol& s) {
   if (units && !units->empty()) m.text += " [" + *units + "]";
   if (!default_of(s)) m.text += "; by default computed by the shader";
   if (page) m.group = *page;
-  const bool numeric = m.kind == Kind::number || m.kind == Kind::integer;
+  const bool numeric = m.kind == Kind::number || m.kind == Kind::integer || m.meaning == Meaning::number;
   if (m.kind != Kind::integer && m.kind != Kind::string && m.kind != Kind::boolean && m.kind != Kind::file) m.unit = "1";
   if (numeric) {
     const auto low = number_of(s, {"min"}), high = number_of(s, {"max"});
@@ -126,6 +136,17 @@ std::string class_name(const std::string& shader) {
 /// Holds a default while it is converted.
 class Scratch final : public Component, public DeclaredMembers {};
 
+/// Stores a map that is a number, within the member's range.
+void store_number(Component& c, const Member& m, const etendue::Value& v) {
+  if (const auto* n = v.as<Number>(); n && m.range && n->dimension == Dimension::none && !m.range->contains(n->value))
+    throw Error(fmt::format("is {:.9g}, and must be {}", n->value, m.range->text()), v.location);
+  Member plain;
+  plain.kind = m.kind;
+  plain.component_class = m.component_class;
+  keep_as_value(plain);
+  plain.store(c, m, v);
+}
+
 void add_members(ClassInfo& info, OslClass& of) {
   for (const Symbol* s : of.shader->parameters) {
     if (s->role != Symbol::Role::parameter) continue;
@@ -135,11 +156,11 @@ void add_members(ClassInfo& info, OslClass& of) {
     while (reserved(m.name) || info.find(m.name)) m.name += '_';
     read_metadata(m, *s);
     keep_as_value(m);
+    if (m.meaning == Meaning::number) m.store = store_number;
     const Constant* given = default_of(*s);
     Member unlimited = m;
     unlimited.range.reset();
-    if (given && m.range && m.kind == Kind::number && !m.list && !m.range->contains(double(given->at<float>())))
-      m.range.reset();
+    if (given && m.range && m.meaning == Meaning::number && !m.range->contains(double(given->at<float>()))) m.range.reset();
     if (given && m.range && m.kind == Kind::integer && !m.list && !m.range->contains(double(given->at<int>()))) m.range.reset();
     if (m.soft && !m.range) m.soft.reset();
     try {
@@ -170,6 +191,19 @@ void add_output(ClassInfo& info, const OslClass& of) {
   info.members.push_back(m);
 }
 
+void add_bound(ClassInfo& info) {
+  Member m;
+  m.name = bound_name;
+  m.kind = Kind::number;
+  m.unit = "1/m";
+  m.text = bound_text;
+  m.range = Range{0, INFINITY, false};
+  keep_as_value(m);
+  m.default_value = etendue::Value(Number{});
+  m.owner = &info;
+  info.members.push_back(m);
+}
+
 /// The settings of the metadatum etendue_opaque by which a surface lets no light through, by members' names.
 std::vector<std::pair<std::string, float>> opaque_settings(const OslClass& of) {
   std::vector<std::pair<std::string, float>> settings;
@@ -189,23 +223,37 @@ std::vector<std::pair<std::string, float>> opaque_settings(const OslClass& of) {
 std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shader> shader, const std::string& file) {
   using Role = OslClass::Role;
   const ClosureUses uses = uses_of(*shader);
-  std::vector<std::string> outputs;
-  for (const Symbol* s : shader->parameters)
-    if (s->role == Symbol::Role::output && !s->type.is_array() &&
-        (s->type.is_float() || s->type.is_int() || s->type.is_triple()))
-      outputs.push_back(s->name);
+  std::vector<std::string> outputs, others;
+  bool takes_closures = false;
+  for (const Symbol* s : shader->parameters) {
+    takes_closures |= s->role == Symbol::Role::parameter && s->type.closure;
+    if (s->role != Symbol::Role::output) continue;
+    const bool value = !s->type.is_array() && (s->type.is_float() || s->type.is_int() || s->type.is_triple());
+    (value ? outputs : others).push_back(s->name);
+  }
+  // Outputs that are no value of a map can be connected in an OslGroup.
+  if (outputs.empty()) outputs = others;
   if (shader->kind == Shader::Kind::displacement) outputs.insert(outputs.begin(), "displacement");
-  if (shader->kind == Shader::Kind::volume)
-    throw Error("volume shaders are not rendered yet: a map in a MapVolume may be the output of a shader", shader->place);
+  if (calls(*shader, "int raytype("))
+    warn(shader->name + ": raytype() is 0 for all kinds: paths from lights and from the camera meet the same surface",
+         shader->place);
+  const bool volume = shader->kind == Shader::Kind::volume;
+  if (volume && uses.lobes) warn(shader->name + ": closures of surfaces have no effect in a volume shader", shader->place);
 
   struct Wanted {
     Role role;
     const char *interface, *suffix;
   };
   std::vector<Wanted> wanted;
-  const bool surface = shader->kind == Shader::Kind::surface;
-  if (uses.scatters || (surface && !uses.emits && outputs.empty())) wanted.push_back({Role::surface, "Shader", ""});
-  if (uses.emits) wanted.push_back({Role::emission, "EmissionShader", "Emission"});
+  const Symbol* result = shader->globals[size_t(Global::Ci)];
+  // A closure that another layer makes may be anything.
+  const bool has_result = result && result->written, passes_on = takes_closures && has_result;
+  const bool black = shader->kind == Shader::Kind::surface && !(uses.emits && has_result) && outputs.empty();
+  if (volume)
+    wanted.push_back({Role::volume, "VolumeShader", ""});
+  else if ((uses.scatters && has_result) || passes_on || black)
+    wanted.push_back({Role::surface, "Shader", ""});
+  if (!volume && ((uses.emits && has_result) || passes_on)) wanted.push_back({Role::emission, "EmissionShader", "Emission"});
   if (!outputs.empty()) wanted.push_back({Role::map, "ObjectMap", "Map"});
   if (wanted.empty())
     throw Error(
@@ -232,14 +280,41 @@ std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shade
                                      : fmt::format("The shader {} in the Open Shading Language.", shader->name);
     info->members = info->parent->members;
     info->absent = info->parent->absent;
+    if (w.role == Role::volume) add_bound(*info);
     add_members(*info, *of);
     of->opaque = opaque_settings(*of);
     if (w.role == Role::map) add_output(*info, *of);
-    info->make = w.role == Role::surface ? make_surface : w.role == Role::emission ? make_emission : make_map;
+    info->make = w.role == Role::surface    ? make_surface
+                 : w.role == Role::emission ? make_emission
+                 : w.role == Role::volume   ? make_volume
+                                            : make_map;
     info->declared = of;
     classes.push_back(std::move(info));
   }
   return classes;
+}
+
+// A default that is a map is one object of the class's description, so each object has a copy of its own.
+OslPart::OslPart(const ClassInfo& info) : info_(info), of_(*static_cast<const OslClass*>(info.declared.get())) {
+  for (const Member& m : info.members) {
+    if (m.kind != Kind::component || m.list) continue;
+    const auto* map = m.default_value.as<Ref<Component>>();
+    if (map && *map) declared_values.emplace(m.name, etendue::Value(copy(**map)));
+  }
+}
+
+bool OslPart::lets_in() const {
+  if (!of_.uses.interior || of_.opaque.empty()) return of_.uses.interior;
+  const auto is = [this](const std::pair<std::string, float>& setting) {
+    const auto given = declared_values.find(setting.first);
+    const auto* part = given == declared_values.end() ? nullptr : given->second.as<Ref<Component>>();
+    const auto* map = part ? dynamic_cast<const ObjectMap*>(part->get()) : nullptr;
+    const Color all = map ? map->constant() : nullptr;
+    if (!all) return false;
+    const bool number = info_.find(setting.first)->meaning == Meaning::number;
+    return number ? map->scalar({}) == setting.second : rgb_of(*all) == Triple(setting.second);
+  };
+  return !std::ranges::all_of(of_.opaque, is);
 }
 
 }  // namespace etendue::osl

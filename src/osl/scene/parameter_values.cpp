@@ -24,10 +24,10 @@ etendue::Value value_at(const Constant& c, const Member& m, size_t i) {
       const int x = c.at<int>(i);
       return m.kind == Kind::boolean ? etendue::Value(x != 0) : etendue::Value(Number{double(x)});
     }
-    case Base::float_: return detail::Convert<float>::write(c.at<float>(i), m);
+    case Base::float_: return etendue::Value(Number{std::stod(fmt::format("{}", c.at<float>(i)))});
     case Base::string: return etendue::Value(c.at<const String*>(i)->text());
     case Base::color:
-      if (m.kind == Kind::color) {
+      if (m.kind == Kind::color || m.kind == Kind::component) {
         const auto f = floats(3);
         return etendue::Value(rgb_color("srgb", f[0], f[1], f[2]));
       }
@@ -103,6 +103,7 @@ etendue::Value empty_value(const Member& m) {
     case Kind::integer:
     case Kind::number: return etendue::Value(Number{});
     case Kind::color: return etendue::Value(flat_spectrum(0));
+    case Kind::component: return etendue::Value();
     case Kind::transform: return etendue::Value(Transform());
     case Kind::vector3:
     case Kind::point3: return etendue::Value(Numbers{{0, 0, 0}, 1, Dimension::none});
@@ -122,6 +123,16 @@ Triple rgb_of(const SpectralFunction& f) {
   const auto& m = space.from_xyz;
   const auto channel = [&](size_t i) { return float(m[3 * i] * c.x + m[3 * i + 1] * c.y + m[3 * i + 2] * c.z); };
   return {channel(0), channel(1), channel(2)};
+}
+
+Triple converted(const Triple& c, const RgbSpace& from, const RgbSpace& to) {
+  double xyz[3];
+  Triple out;
+  for (size_t i = 0; i < 3; ++i)
+    xyz[i] = from.to_xyz[3 * i] * double(c.x) + from.to_xyz[3 * i + 1] * double(c.y) + from.to_xyz[3 * i + 2] * double(c.z);
+  for (size_t i = 0; i < 3; ++i)
+    out[int(i)] = float(to.from_xyz[3 * i] * xyz[0] + to.from_xyz[3 * i + 1] * xyz[1] + to.from_xyz[3 * i + 2] * xyz[2]);
+  return out;
 }
 
 Constant constant_of(const Type& type, const Member& m, const etendue::Value& value) {
@@ -165,6 +176,20 @@ Constant constant_of(const Type& type, const Member& m, const etendue::Value& va
       throw Error(fmt::format("needs {} values, not {}", type.array, count), value.location);
     c.type = type.as_array(count);
   }
+  return c;
+}
+
+Constant constant_number(const Type& type, float x) {
+  Constant c;
+  c.type = type;
+  Bytes(c).add(x);
+  return c;
+}
+
+Constant constant_color(const Type& type, const SpectralFunction& color) {
+  Constant c;
+  c.type = type;
+  Bytes(c).add(rgb_of(color));
   return c;
 }
 

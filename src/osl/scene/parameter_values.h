@@ -4,6 +4,10 @@
 #include "etendue/describe/registry.h"
 #include "osl/language/tree.h"
 
+namespace etendue {
+struct RgbSpace;
+}
+
 namespace etendue::osl {
 
 /// Whether a constant's colors can be written as colours: no component is negative.
@@ -15,5 +19,7 @@ etendue::Value empty_value(const Member&);
 /// A colour in the shaders' RGB space. Exact for colours that are written by components in it; else the RGB of the spectrum as
 /// a reflectance.
 Triple rgb_of(const SpectralFunction&);
+/// RGB of one space as RGB of another.
+Triple converted(const Triple&, const RgbSpace& from, const RgbSpace& to);
 
 }  // namespace etendue::osl

@@ -14,6 +14,7 @@
 #include "components/maps/footprint.h"
 #include "etendue/mesh_facts.h"
 #include "osl/textures/texture_files.h"
+#include "parameter_values.h"
 
 namespace etendue::osl {
 
@@ -142,6 +143,14 @@ bool RenderServices::to_common(const String* space, Matrix& out) {
 bool RenderServices::attribute(const String* object, const String* name, int index, const Type& type, bool derivatives,
                                void* out) {
   if (object && !object->view().empty()) return false;
+  if (const ObjectMap* map = maps_.find(name)) {
+    const auto give_dual = [&](const auto& v) {
+      std::memcpy(out, &v, derivatives ? sizeof v : sizeof v.value);
+      return true;
+    };
+    if (type.is_float()) return give_dual(number_of(*map, point_, derivatives));
+    return type.is_triple() && give_dual(color_of(*map, point_, derivatives));
+  }
   const auto give = [&](const auto& v) {
     std::memcpy(out, &v, sizeof v);
     if (derivatives) std::memset(static_cast<std::byte*>(out) + type.size(), 0, 2 * type.size());
@@ -208,11 +217,7 @@ void RenderServices::error(std::string_view text, Location at) {
 
 bool RenderServices::transform_color(const String* from, const String* to, const Triple& c, Triple& out) {
   try {
-    const RgbSpace &a = rgb_space(from->text()), &b = rgb_space(to->text());
-    double xyz[3], in[3] = {double(c.x), double(c.y), double(c.z)};
-    for (size_t i = 0; i < 3; ++i) xyz[i] = a.to_xyz[3 * i] * in[0] + a.to_xyz[3 * i + 1] * in[1] + a.to_xyz[3 * i + 2] * in[2];
-    for (size_t i = 0; i < 3; ++i)
-      out[int(i)] = float(b.from_xyz[3 * i] * xyz[0] + b.from_xyz[3 * i + 1] * xyz[1] + b.from_xyz[3 * i + 2] * xyz[2]);
+    out = converted(c, rgb_space(from->text()), rgb_space(to->text()));
     return true;
   } catch (const Error&) {
     return false;

@@ -3,6 +3,7 @@
 
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
+#include "map_inputs.h"
 #include "osl/library/services.h"
 #include "osl/running/globals.h"
 #include "osl/running/point_memory.h"
@@ -12,8 +13,9 @@ namespace etendue::osl {
 class RenderServices final : public Services {
  public:
   /// `wavelengths` may be null where only numbers are asked for.
-  RenderServices(const SurfacePoint& p, const Wavelengths* w, PointMemory& memory, const std::string& class_name)
-      : point_(p), wavelengths_(w), memory_(memory), class_name_(class_name) {}
+  RenderServices(const SurfacePoint& p, const Wavelengths* w, PointMemory& memory, const std::string& class_name,
+                 const MapInputs& maps)
+      : point_(p), wavelengths_(w), memory_(memory), class_name_(class_name), maps_(maps) {}
 
   bool to_common(const String* space, Matrix& out) override;
   bool attribute(const String* object, const String* name, int index, const Type&, bool derivatives, void* out) override;
@@ -36,6 +38,7 @@ class RenderServices final : public Services {
   const Wavelengths* wavelengths_;
   PointMemory& memory_;
   const std::string& class_name_;
+  const MapInputs& maps_;
 };
 
 /// The variables of a point that is seen from where its ray came from, or from the front if that is unknown. `from_behind` says

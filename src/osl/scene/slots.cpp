@@ -45,17 +45,18 @@ class NumberSlot final : public ObjectMap {
   int index_;
 };
 
-class ExtinctionSlot final : public SpectralFunction {
+template <Spectrum SlotValues::* of>
+class SpectrumSlot final : public SpectralFunction {
  public:
-  Spectrum evaluate(const Wavelengths&, ColorUse) const override { return values().extinction; }
-  float at(float, ColorUse) const override { return values().extinction[0]; }
+  Spectrum evaluate(const Wavelengths&, ColorUse) const override { return values().*of; }
+  float at(float, ColorUse) const override { return (values().*of)[0]; }
   std::string expression() const override { return "1"; }
 };
 
 class IndexSlot final : public SpectralFunction {
  public:
   explicit IndexSlot(bool complex) {
-    if (complex) imaginary_ = Color(new ExtinctionSlot);
+    if (complex) imaginary_ = Color(new SpectrumSlot<&SlotValues::extinction>);
   }
   Spectrum evaluate(const Wavelengths&, ColorUse) const override { return values().index; }
   float at(float, ColorUse) const override { return values().index[0]; }
@@ -74,6 +75,9 @@ SlotScope::~SlotScope() { current = before_; }
 Ref<ObjectMap> color_slot(int i) { return Ref<ObjectMap>(make<ColorSlot>(i)); }
 Ref<ObjectMap> number_slot(int i) { return Ref<ObjectMap>(make<NumberSlot>(i)); }
 Color index_slot(bool complex) { return Color(new IndexSlot(complex)); }
+
+Color film_slot() { return Color(new SpectrumSlot<&SlotValues::film>); }
+Color length_slot() { return Color(new SpectrumSlot<&SlotValues::length>); }
 
 Ref<etendue::Shader> make_model(std::string_view class_name, std::initializer_list<std::pair<const char*, Value>> members) {
   const Ref<Component> made = Registry::instance().create(class_name);

@@ -15,6 +15,8 @@ struct SlotValues {
   Spectrum colors[2];
   float numbers[3] = {};
   Spectrum index = Spectrum(1.5f), extinction;  ///< a complex refractive index
+  Spectrum film = Spectrum(1.5f);               ///< index of a film
+  Spectrum length = Spectrum(1e-3f);            ///< [m]
 };
 
 /// Makes the values those of all slots of this thread as long as it lives.
@@ -33,6 +35,8 @@ Ref<ObjectMap> color_slot(int);
 Ref<ObjectMap> number_slot(int);
 /// The real index, or with `complex` the complex one.
 Color index_slot(bool complex);
+Color film_slot();
+Color length_slot();
 
 /// Creates and prepares a shader of the house with given members.
 Ref<etendue::Shader> make_model(std::string_view class_name, std::initializer_list<std::pair<const char*, Value>> members);

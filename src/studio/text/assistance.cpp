@@ -132,7 +132,7 @@ std::vector<Completion> completions(const std::string& text, size_t at) {
       found.classes(nullptr);
       found.functions();
     } else {
-      for (const char* word : {"include", "plugin", "param"}) found.add(word, "keyword", "", std::string(word) + " ");
+      for (const char* word : {"include", "plugin", "class", "param"}) found.add(word, "keyword", "", std::string(word) + " ");
       found.add("Job", "class", Registry::instance().find("Job")->summary, "Job {");
     }
     return found.list;

@@ -31,6 +31,7 @@ class UvTransformMap final : public ObjectMap, public RgbSource {
   }
   float scalar(const SurfacePoint& p) const override { return map->scalar(changed(p)); }
   bool has_rgb() const override { return map && rgb_source(*map); }
+  std::string rgb_space_name() const override { return rgb_source(*map)->rgb_space_name(); }
   void rgb(const SurfacePoint& p, float out[3]) const override { rgb_source(*map)->rgb(changed(p), out); }
 
   Ref<ObjectMap> map = etendue::constant(0.5f);

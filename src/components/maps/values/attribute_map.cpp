@@ -47,6 +47,7 @@ class AttributeMap final : public ObjectMap, public RgbSource {
     return sum / float(channels);
   }
 
+  std::string rgb_space_name() const override { return color_space; }
   void rgb(const SurfacePoint& p, float out[3]) const override {
     float values[4];
     const int count = look_up(p, values);

@@ -67,6 +67,7 @@ class GridMap final : public ObjectMap, public RgbSource, public BoundedMap {
   float largest() const override { return largest_; }
   float bound() const override { return grid_.channels == 3 ? 2 * largest_ : largest_; }
   bool has_rgb() const override { return grid_.channels == 3; }
+  std::string rgb_space_name() const override { return color_space; }
   void rgb(const SurfacePoint& p, float out[3]) const override { look_up(p, out); }
 
   FilePath file;

@@ -93,6 +93,7 @@ class ImageMap final : public ObjectMap, public RgbSource, public ReadsAhead {
     return channels == 1 ? rgb[0] : weights_[0] * rgb[0] + weights_[1] * rgb[1] + weights_[2] * rgb[2];
   }
 
+  std::string rgb_space_name() const override { return color_space; }
   void rgb(const SurfacePoint& p, float out[3]) const override { look_up(p, out); }
 
   float largest() const override {
