@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <thread>
 
 #include "osl/language/compile.h"
@@ -77,8 +78,7 @@ std::string results(const ShaderGroup& group, const std::vector<Memory>& outputs
   return without_signs_of_nan(text + to_text(globals.Ci) + services.said);
 }
 
-std::shared_ptr<const ShaderGroup> group_of(const std::string& text) {
-  Compiled compiled = compile_text(text, "random.osl");
+std::shared_ptr<const ShaderGroup> group_of(const Compiled& compiled, const std::string& text) {
   if (compiled.failed()) {
     ADD_FAILURE() << to_text(compiled.diagnostics) << "\n" << text;
     return nullptr;
@@ -97,6 +97,10 @@ std::shared_ptr<const ShaderGroup> group_of(const std::string& text) {
   return group;
 }
 
+std::shared_ptr<const ShaderGroup> group_of(const std::string& text) {
+  return group_of(compile_text(text, "random.osl"), text);
+}
+
 std::vector<Memory> outputs_of(const ShaderGroup& group) {
   std::vector<Memory> memory;
   for (const Symbol* parameter : group.shader(0).parameters)
@@ -105,8 +109,7 @@ std::vector<Memory> outputs_of(const ShaderGroup& group) {
 }
 
 /// Both ways at some points. False: they differ.
-bool agree(const std::string& text) {
-  const auto group = group_of(text);
+bool agree(const std::shared_ptr<const ShaderGroup>& group, const std::string& text) {
   if (!group) return false;
   const std::vector<Memory> outputs = outputs_of(*group);
   constexpr int points = 12;
@@ -130,11 +133,25 @@ TEST(OslMachine, AgreesWithTheInterpreterOnRandomShaders) {
   const char *count = std::getenv("ETENDUE_OSL_SHADERS"), *first = std::getenv("ETENDUE_OSL_FIRST");
   const unsigned begin = first ? unsigned(std::atoi(first)) : 1, end = begin + unsigned(count ? std::atoi(count) : 200);
   int wrong = 0;
-  for (unsigned seed = begin; seed < end && wrong < 3; ++seed)
-    if (!agree(RandomShader(seed).text())) {
+  for (unsigned seed = begin; seed < end && wrong < 3; ++seed) {
+    const std::string text = RandomShader(seed).text();
+    if (!agree(group_of(text), text)) {
       ++wrong;
       ADD_FAILURE() << "seed " << seed;
     }
+  }
+}
+
+TEST(OslMachine, AgreesWithTheInterpreterOnTheExamples) {
+  ETENDUE_NEEDS_MACHINE;
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(ETENDUE_SOURCE_DIR "/scenes/osl")) {
+    if (entry.path().extension() != ".osl") continue;
+    const std::string name = entry.path().string();
+    EXPECT_TRUE(agree(group_of(compile_file(name, {}), name), name)) << name;
+    ++count;
+  }
+  EXPECT_GE(count, 11);
 }
 
 TEST(OslMachine, StopsALoopThatNeverEndsAtItsPlace) {

@@ -177,9 +177,9 @@ llvm::Value* LlvmCode::pointer(const Spot& at) {
 Word LlvmCode::load(WordKind kind, const Spot& at) {
   const std::byte* const bytes = at.base.value ? nullptr : constant(at.offset);
   if (bytes) {
-      if (kind == WordKind::int_) return integer(*reinterpret_cast<const int*>(bytes));
-      if (kind == WordKind::float_) return number(*reinterpret_cast<const float*>(bytes));
-      return address(*reinterpret_cast<const void* const*>(bytes));
+    if (kind == WordKind::int_) return integer(*reinterpret_cast<const int*>(bytes));
+    if (kind == WordKind::float_) return number(*reinterpret_cast<const float*>(bytes));
+    return address(*reinterpret_cast<const void* const*>(bytes));
   }
   const llvm::Align alignment(kind == WordKind::address ? 8 : 4);
   return {builder_.CreateAlignedLoad(type(kind), pointer(at), alignment)};
@@ -268,7 +268,9 @@ void LlvmCode::jump(Label to) { builder_.CreateBr(block(to)); }
 void LlvmCode::branch(Word truth, Label yes, Label no) { builder_.CreateCondBr(value(truth), block(yes), block(no)); }
 
 void LlvmCode::begin(Label l) {
-  if (function_->getInstructionCount() > most_instructions) throw Error("the shaders are too large to be compiled");
+  // Counted now and then: each count goes through the whole function.
+  if (++begun_ % 1024 == 0 && function_->getInstructionCount() > most_instructions)
+    throw Error("the shaders are too large to be compiled");
   block(l)->insertInto(function_);
   builder_.SetInsertPoint(block(l));
 }

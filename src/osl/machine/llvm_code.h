@@ -59,11 +59,12 @@ class LlvmCode final : public Code {
   llvm::BasicBlock* block(Label);
 
   const MemoryLayout& layout_;
-  std::vector<bool> own_;  ///< by the number of the area
+  std::vector<bool> own_;                                      ///< by the number of the area
   std::unordered_map<std::size_t, llvm::AllocaInst*> copies_;  ///< of areas of the frame, by their numbers
-  std::vector<llvm::AllocaInst*> lent_;  ///< memory of calls that is free again
+  std::vector<llvm::AllocaInst*> lent_;                        ///< memory of calls that is free again
   std::unordered_map<llvm::Value*, std::size_t> lent_sizes_;
   std::vector<llvm::BasicBlock*> labels_;
+  std::size_t begun_ = 0;  ///< labels
   llvm::AllocaInst* counter_ = nullptr;
   llvm::IRBuilder<> builder_;
   llvm::Function* function_;
