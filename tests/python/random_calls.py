@@ -81,6 +81,7 @@ class Caller:
             lambda: tuple(r.random() for _ in range(3)),
             lambda: np.random.default_rng(r.randint(0, 9)).random(r.choice([(3,), (4, 4), (2, 3), (0, 3), (5, 2), (1, 1, 1)])),
             lambda: np.zeros((4, 3), r.choice(["f4", "f8", "i4", "u8", "?"]))[:: r.choice([1, 2, -1])],
+            lambda: (np.ones((2, 3, 4)[: r.randint(1, 3)]) * r.randint(0, 300)).astype(r.choice(["u1", "u2", "f2", "f4", "i8", ">f8"])),
             lambda: etendue.rgb(r.random(), r.random(), r.random()),
             lambda: etendue.translate(r.random(), 0, 0),
             lambda: None,
