@@ -3,7 +3,8 @@ says it raises.
 
     PYTHONPATH=build/python python3 tests/python/random_calls.py --calls 100000 --seed 1
 
-Under sanitizers, the extension module has to be built with them, and Python to be started with their library:
+Under sanitizers, the extension module has to be built with them, and Python to be started with their library, which the tests of such a
+build do (a build of -DETENDUE_SANITIZE=address,undefined -DETENDUE_PYTHON=ON; ctest -R sanitized_random_calls):
 
     LD_PRELOAD=$(clang++-19 -print-file-name=libclang_rt.asan-x86_64.so) ASAN_OPTIONS=detect_leaks=0 python3 tests/python/random_calls.py
 
