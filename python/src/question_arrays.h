@@ -162,4 +162,23 @@ inline WavelengthRows wavelength_rows(const nb::tuple& given) {
   return {nb::cast<Array<float>>(given[0]), nb::cast<Array<float>>(given[1]), nb::cast<Array<bool>>(given[2])};
 }
 
+// ---- questions with one answer ---------------------------------------------------------------------------------------------
+
+/// A number for each item, value(i): shape (count,).
+template <class F>
+nb::object answer_numbers(size_t count, F&& value) {
+  Answers<float> values({count});
+  for_all(count, [&](size_t i, Arena&) { values.set(i, value(i)); });
+  return values.take();
+}
+
+/// A spectrum for each item, value(i, wavelengths): shape (count, number of wavelengths).
+template <class F>
+nb::object answer_spectra(size_t count, const nb::tuple& wavelengths, F&& value) {
+  const WavelengthRows rows = wavelength_rows(wavelengths);
+  Answers<float> values({count, rows.count()});
+  for_all(count, [&](size_t i, Arena&) { rows.fill(i, values[i], [&](const Wavelengths& w) { return value(i, w); }); });
+  return values.take();
+}
+
 }  // namespace etendue::python

@@ -183,13 +183,11 @@ nb::tuple sample_emission(nb::handle part, const Points& points, size_t count, c
 nb::object emission_pdf(nb::handle part, const Points& points, size_t count, const Array<float>& directions) {
   const Asked asked = snapshot_of<EmissionShader>(part, "an emission");
   const Rows<float> given(directions);
-  Answers<float> pdf({count});
-  for_all(count, [&](size_t i, Arena&) {
+  return answer_numbers(count, [&](size_t i) {
     Vector3 d = vector_at(given, i);
     const bool usable = make_unit(d) && points.row(i).exists();
-    pdf.set(i, usable ? asked->as<EmissionShader>().pdf(points.row(i).point, d) : 0);
+    return usable ? asked->as<EmissionShader>().pdf(points.row(i).point, d) : 0;
   });
-  return pdf.take();
 }
 
 nb::tuple sample_incident(nb::handle part, size_t count, const Array<float>& u) {
@@ -207,12 +205,10 @@ nb::tuple sample_incident(nb::handle part, size_t count, const Array<float>& u) 
 nb::object incident_pdf(nb::handle part, size_t count, const Array<float>& directions) {
   const Asked asked = snapshot_of<EmissionShader>(part, "an emission");
   const Rows<float> given(directions);
-  Answers<float> pdf({count});
-  for_all(count, [&](size_t i, Arena&) {
+  return answer_numbers(count, [&](size_t i) {
     Vector3 d = vector_at(given, i);
-    pdf.set(i, make_unit(d) ? asked->as<EmissionShader>().incident_pdf(d) : 0);
+    return make_unit(d) ? asked->as<EmissionShader>().incident_pdf(d) : 0;
   });
-  return pdf.take();
 }
 
 /// The power of an object that emits, with the emission it has.
@@ -220,12 +216,8 @@ nb::object power(nb::handle object, const nb::tuple& wavelengths, size_t count) 
   const Asked asked = snapshot_of<SceneObject>(object, "an object");
   const auto& luminaire = asked->as<SceneObject>();
   if (!luminaire.emission) throw Error(luminaire.class_info().name + ": the object has no emission");
-  const WavelengthRows rows = wavelength_rows(wavelengths);
-  Answers<float> values({count, rows.count()});
-  for_all(count, [&](size_t i, Arena&) {
-    rows.fill(i, values[i], [&](const Wavelengths& w) { return luminaire.emission->power(luminaire, w); });
-  });
-  return values.take();
+  return answer_spectra(count, wavelengths,
+                        [&](size_t, const Wavelengths& w) { return luminaire.emission->power(luminaire, w); });
 }
 
 }  // namespace

@@ -12,25 +12,17 @@ namespace {
 
 nb::object color(nb::handle part, const Points& points, size_t count, const nb::tuple& wavelengths, const std::string& use) {
   const auto asked = snapshot_of<ObjectMap>(part, "a map");
-  const WavelengthRows rows = wavelength_rows(wavelengths);
   const ColorUse as = color_use(use);
-  Answers<float> values({count, rows.count()});
-  for_all(count, [&](size_t i, Arena&) {
+  return answer_spectra(count, wavelengths, [&](size_t i, const Wavelengths& w) {
     const FoundPoint& found = points.row(i);
-    rows.fill(i, values[i], [&](const Wavelengths& w) {
-      return found.exists() ? asked->as<ObjectMap>().color(found.point, w, as) : Spectrum();
-    });
+    return found.exists() ? asked->as<ObjectMap>().color(found.point, w, as) : Spectrum();
   });
-  return values.take();
 }
 
 nb::object scalar(nb::handle part, const Points& points) {
   const auto asked = snapshot_of<ObjectMap>(part, "a map");
-  Answers<float> values({points.count});
-  for_all(points.count, [&](size_t i, Arena&) {
-    values.set(i, points.at[i].exists() ? asked->as<ObjectMap>().scalar(points.at[i].point) : 0);
-  });
-  return values.take();
+  return answer_numbers(
+      points.count, [&](size_t i) { return points.at[i].exists() ? asked->as<ObjectMap>().scalar(points.at[i].point) : 0; });
 }
 
 }  // namespace

@@ -127,12 +127,8 @@ nb::object lobes_at(nb::handle shader, nb::handle scene, const Points& points, s
 
 nb::object interior_index(nb::handle shader, const nb::tuple& wavelengths, size_t count) {
   const auto asked = snapshot_of<Shader>(shader, "a shader");
-  const WavelengthRows rows = wavelength_rows(wavelengths);
-  Answers<float> values({count, rows.count()});
-  for_all(count, [&](size_t i, Arena&) {
-    rows.fill(i, values[i], [&](const Wavelengths& w) { return asked->as<Shader>().interior_index(w); });
-  });
-  return values.take();
+  return answer_spectra(count, wavelengths,
+                        [&](size_t, const Wavelengths& w) { return asked->as<Shader>().interior_index(w); });
 }
 
 /// The kinds of scattering and their bits: "diffuse reflection": 1, …

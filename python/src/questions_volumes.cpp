@@ -35,12 +35,8 @@ nb::tuple coefficients(nb::handle part, size_t count, const Array<float>& points
 
 nb::object majorant(nb::handle part, const nb::tuple& wavelengths, size_t count) {
   const Asked asked = snapshot_of<VolumeShader>(part, "a volume shader");
-  const WavelengthRows rows = wavelength_rows(wavelengths);
-  Answers<float> values({count, rows.count()});
-  for_all(count, [&](size_t i, Arena&) {
-    rows.fill(i, values[i], [&](const Wavelengths& w) { return asked->as<VolumeShader>().majorant(w); });
-  });
-  return values.take();
+  return answer_spectra(count, wavelengths,
+                        [&](size_t, const Wavelengths& w) { return asked->as<VolumeShader>().majorant(w); });
 }
 
 /// T(d) in a medium that fills all of object space: in closed form if the medium is homogeneous, else by ratio tracking with
@@ -87,13 +83,11 @@ nb::object phase(nb::handle part, size_t count, const Array<float>& points, cons
                  const Array<float>& incoming) {
   const Asked asked = snapshot_of<VolumeShader>(part, "a volume shader");
   const Rows<float> at(points), outs(outgoing), ins(incoming);
-  Answers<float> values({count});
-  for_all(count, [&](size_t i, Arena&) {
+  return answer_numbers(count, [&](size_t i) {
     Vector3 out = vector_at(outs, i), in = vector_at(ins, i);
     const bool usable = make_unit(out) && make_unit(in) && is_finite(point_at(at, i));
-    values.set(i, usable ? asked->as<VolumeShader>().phase(point_at(at, i), out, in) : 0);
+    return usable ? asked->as<VolumeShader>().phase(point_at(at, i), out, in) : 0;
   });
-  return values.take();
 }
 
 nb::tuple sample_phase(nb::handle part, size_t count, const Array<float>& points, const Array<float>& outgoing,
@@ -115,14 +109,12 @@ nb::tuple sample_phase(nb::handle part, size_t count, const Array<float>& points
 nb::object phase_value(nb::handle part, size_t count, const Array<double>& cosines) {
   const Asked asked = snapshot_of<PhaseFunction>(part, "a phase function");
   const Rows<double> given(cosines);
-  Answers<float> values({count});
-  for_all(count, [&](size_t i, Arena&) {
+  return answer_numbers(count, [&](size_t i) {
     constexpr double rounding = 1e-6;
     const double h = 1 - given.at(i);
-    values.set(i, h >= -rounding && h <= 2 + rounding ? asked->as<PhaseFunction>().value(clamp(float(h), 0, 2))
-                                                      : std::numeric_limits<float>::quiet_NaN());
+    return h >= -rounding && h <= 2 + rounding ? asked->as<PhaseFunction>().value(clamp(float(h), 0, 2))
+                                               : std::numeric_limits<float>::quiet_NaN();
   });
-  return values.take();
 }
 
 nb::tuple phase_sample(nb::handle part, size_t count, const Array<float>& u) {

@@ -3,7 +3,8 @@ says it raises.
 
     PYTHONPATH=build/python python3 tests/python/random_calls.py --calls 100000 --seed 1
 
-Under sanitizers, the extension module has to be built with them, and Python to be started with their library:
+Under sanitizers, the extension module has to be built with them, and Python to be started with their library, which the tests of such a
+build do (a build of -DETENDUE_SANITIZE=address,undefined -DETENDUE_PYTHON=ON; ctest -R sanitized_random_calls):
 
     LD_PRELOAD=$(clang++-19 -print-file-name=libclang_rt.asan-x86_64.so) ASAN_OPTIONS=detect_leaks=0 python3 tests/python/random_calls.py
 
@@ -81,6 +82,7 @@ class Caller:
             lambda: tuple(r.random() for _ in range(3)),
             lambda: np.random.default_rng(r.randint(0, 9)).random(r.choice([(3,), (4, 4), (2, 3), (0, 3), (5, 2), (1, 1, 1)])),
             lambda: np.zeros((4, 3), r.choice(["f4", "f8", "i4", "u8", "?"]))[:: r.choice([1, 2, -1])],
+            lambda: (np.ones((2, 3, 4)[: r.randint(1, 3)]) * r.randint(0, 300)).astype(r.choice(["u1", "u2", "f2", "f4", "i8", ">f8"])),
             lambda: etendue.rgb(r.random(), r.random(), r.random()),
             lambda: etendue.translate(r.random(), 0, 0),
             lambda: None,

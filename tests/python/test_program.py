@@ -1,5 +1,6 @@
 """The program with plugins that are written in Python."""
 
+import importlib
 import os
 import pathlib
 import subprocess
@@ -86,3 +87,27 @@ def test_errors_of_a_plugin_are_told(folder):
     (folder / "wrong.py").write_text("import etendue\nraise ValueError('mine')\n")
     done = run(folder, "classes", "--plugin", "wrong.py")
     assert done.returncode == 2 and "ValueError: mine" in done.stderr
+
+
+@pytest.mark.parametrize("named_in", ["file", "arguments"])
+def test_the_studio_edits_and_renders_parts_of_a_plugin(folder, named_in, monkeypatch):
+    monkeypatch.syspath_prepend(str(pathlib.Path(__file__).parents[1] / "studio"))
+    monkeypatch.setenv("PYTHONPATH", str(pathlib.Path(PROGRAM).parent / "python-tools"))  # numpy
+    client = importlib.import_module("client")
+    scene = folder / "half.etd"
+    if named_in == "file":
+        scene.write_text('plugin "half.py"\n' + scene.read_text())
+    with client.Studio(scene, *([] if named_in == "file" else ["--plugin", "half.py"]), folder=folder) as studio, studio.page() as page:
+        page.good("watch")
+        components = page.greeting["tree"]["components"]
+        half = next(int(i) for i, c in components.items() if c["class"] == "HalfMap")
+        page.good("edit", component=half, member="value", text="0.25")
+        refused = page.ask("edit", component=half, member="value", text="2")
+        assert not refused["ok"] and "from 0 to 1" in str(refused)
+        generation = page.ask("hello", protocol=1)["progress"]["generation"]
+        page.wait(lambda e: e.get("event") == "progress" and e["state"] == "finished" and e["generation"] >= generation)
+        page.good("save")
+        page.good("save_picture", file="studio.npy")
+    assert "value: 0.25" in scene.read_text()
+    assert run(folder, "render", "half.etd", "--plugin", "half.py", "-o", "fresh.npy", "--quiet").returncode == 0
+    assert (folder / "studio.npy").read_bytes() == (folder / "fresh.npy").read_bytes()

@@ -8,6 +8,8 @@
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/text.h"
+#include "etendue/language/language.h"
+#include "files/regular_file.h"
 #include "studio_serving.h"
 
 namespace etendue {
@@ -40,8 +42,18 @@ std::string password(const StudioOptions& options) {
   return text;
 }
 
+/// Loads the plugins written in Python that a file names. They restart the program within Python, which a studio that is open
+/// refuses (python_plugins.h). Says nothing about a file that is wrong: the studio does.
+void load_python_plugins_of(const std::string& file) {
+  try {
+    if (read_regular_file(file).find(".py\"") != std::string::npos) load_job(file, {});
+  } catch (const std::exception&) {
+  }
+}
+
 int run_studio(const StudioOptions& options) {
   load_plugins(options.plugins);
+  if (!options.file.empty()) load_python_plugins_of(options.file);
   studio::StudioSettings settings;
   settings.render.threads = options.threads;
   settings.read_only = options.read_only;

@@ -12,8 +12,8 @@ std::optional<size_t> reference_variant(const SceneSubjects& subjects) {
   return {};
 }
 
-std::optional<RunResult> render_cell(const CellRequest& request, SceneSubjects& subjects, std::uint64_t seed, const RunKey& key,
-                                     ComparisonWatcher& watcher) {
+bool render_cell(const CellRequest& request, SceneSubjects& subjects, std::uint64_t seed, const RunKey& key,
+                 ComparisonWatcher& watcher, const std::function<void(RunResult)>& keep) {
   const bool for_reference = key.variant == request.variants.size();
   const std::optional<size_t> subject = for_reference ? reference_variant(subjects) : std::optional(key.variant);
   if (!subject || *subject >= request.variants.size())
@@ -31,11 +31,13 @@ std::optional<RunResult> render_cell(const CellRequest& request, SceneSubjects& 
     watcher.at(part);
     return watcher.go_on();
   });
-  if (result && for_reference) {  // only the final image is used
+  if (!result) return false;
+  if (for_reference) {  // only the final image is used
     result->run.marks.erase(result->run.marks.begin(), result->run.marks.end() - 1);
     result->pictures.erase(result->pictures.begin(), result->pictures.end() - 1);
   }
-  return result;
+  keep(std::move(*result));
+  return true;
 }
 
 CellRenderer::CellRenderer(CellRequest request)
@@ -43,9 +45,9 @@ CellRenderer::CellRenderer(CellRequest request)
       subjects_(std::make_unique<SceneSubjects>(request_.scene.load, request_.variants, request_.threads)) {}
 
 std::optional<std::string> CellRenderer::render(std::uint64_t seed, const RunKey& key, ComparisonWatcher& watcher) {
-  const std::optional<RunResult> result = render_cell(request_, *subjects_, seed, key, watcher);
-  if (!result) return {};
-  return run_file(*result);
+  std::optional<std::string> bytes;
+  render_cell(request_, *subjects_, seed, key, watcher, [&](const RunResult& result) { bytes = run_file(result); });
+  return bytes;
 }
 
 }  // namespace etendue::comparing

@@ -20,8 +20,10 @@ struct CellRequest {
 };
 
 /// Renders a run of a variant or, if the key's variant is the number of variants, one for the reference, of which only the
-/// final image is kept. Empty: the watcher ended it.
-std::optional<RunResult> render_cell(const CellRequest&, SceneSubjects&, std::uint64_t seed, const RunKey&, ComparisonWatcher&);
+/// final image is kept. `keep` is called with the result while the watcher still watches, so that an interruption finds the run
+/// stored. False: the watcher ended the run.
+bool render_cell(const CellRequest&, SceneSubjects&, std::uint64_t seed, const RunKey&, ComparisonWatcher&,
+                 const std::function<void(RunResult)>& keep);
 
 class CellRenderer {
  public:

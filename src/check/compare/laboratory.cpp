@@ -121,12 +121,12 @@ bool Laboratory::Members::render(size_t scene, SceneSubjects& subjects, Comparis
       watcher.end(store->run(key).wall_seconds);
       continue;
     }
-    std::optional<RunResult> result = render_cell(request, subjects, identity.seed, key, watcher);
-    if (!result) return false;
-    const double seconds = result->run.wall_seconds;
-    store->keep(key, std::move(*result));
-    watcher.end(seconds);
-    if (!watcher.go_on()) return false;
+    const auto keep = [&](RunResult result) {
+      const double seconds = result.run.wall_seconds;
+      store->keep(key, std::move(result));
+      watcher.end(seconds);
+    };
+    if (!render_cell(request, subjects, identity.seed, key, watcher, keep) || !watcher.go_on()) return false;
   }
   return true;
 }
