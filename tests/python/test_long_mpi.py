@@ -84,8 +84,8 @@ def told(folder, victim, began):
     said = (folder / "err").read_text()
     if "signal 9" in said or "process " in said and not began:
         return True
-    if victim == -1 and not began:
-        return True
+    if victim == -1 and (not began or '"event":"done"' in (folder / "out").read_text()):
+        return True  # or after it has ended
     deadline = time.monotonic() + 10
     while time.monotonic() < deadline and not (folder / "state.killed.txt").exists():
         time.sleep(0.1)
@@ -120,7 +120,7 @@ def test_random_kills(tmp_path):
             print(kills, victim, began, f"{seconds:.1f} s", flush=True)
             longest = max(longest, seconds)
             whom[min(victim, 1)] = whom.get(min(victim, 1), 0) + 1
-            assert told(tmp_path, victim, began), f"{victim}, {began}: " + (tmp_path / "err").read_text()
+            assert told(tmp_path, victim, began), f"{victim}, {began}: " + (tmp_path / "err").read_text() + (tmp_path / "out").read_text()[-300:]
             if (tmp_path / "state").exists():
                 subprocess.run([PROGRAM, "image", "merge", "state", "-o", "some.npy"], cwd=tmp_path, check=True, capture_output=True)
             continue

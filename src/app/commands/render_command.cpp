@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "app/fireflies.h"
 #include "app/interruption.h"
 #include "app/program_team.h"
 #include "app/progress_display.h"
+#include "app/python_plugins.h"
 #include "app/render_options.h"
 #include "app/tev.h"
 #include "app/text.h"
@@ -15,11 +17,13 @@
 #include "check/warnings/advice.h"
 #include "check/warnings/scene_warnings.h"
 #include "core/number_text.h"
+#include "etendue/describe/registry.h"
 #include "etendue/language/language.h"
 #include "files/input_files.h"
 #include "files/whole_file.h"
 #include "render/checkpoint.h"
 #include "render/denoising.h"
+#include "render/team/message_library.h"
 #include "render_series.h"
 #include "render_team.h"
 
@@ -121,6 +125,7 @@ nlohmann::ordered_json efforts_json(const ProcessTeam& team) {
     list.push_back({{"name", team.name_of(int(rank))},
                     {"sent_bytes", efforts[rank].bytes},
                     {"sent_messages", efforts[rank].messages},
+                    {"calls", efforts[rank].calls},
                     {"item_seconds", efforts[rank].items},
                     {"message_seconds", efforts[rank].post},
                     {"processor_seconds", efforts[rank].all}});
@@ -239,6 +244,17 @@ int render(const RenderOptions& options, Series& series) {
   return ended == Ended::interrupted || ended == Ended::aborted ? exit_status::interrupted : exit_status::done;
 }
 
+/// The processes that render together with this one.
+ProcessTeam* join_others(const RenderOptions& options) {
+  // Plugins in Python start the program again (python_plugins.h), which is only possible before it is connected.
+  if (processes_started() > 1)
+    for (const std::string& plugin : options.plugins)
+      if (plugin.ends_with(".py") && std::filesystem::exists(plugin)) Registry::instance().load_plugin(plugin);
+  ProcessTeam* const team = join_team();
+  if (team) refuse_restarts();
+  return team;
+}
+
 }  // namespace
 
 void add_render_command(Command& program) {
@@ -264,7 +280,7 @@ void add_render_command(Command& program) {
       "\nThe first Ctrl-C ends the render after the current pass and writes what there is, a second one aborts it.\n"
       "The picture depends on the file and the seed alone, never on the number of threads.");
   command.runs([options] {
-    ProcessTeam* const team = join_team();
+    ProcessTeam* const team = join_others(*options);
     options->team = team;
     if (team && !team->leads()) return follow_renders(*options, *team);
     return render_series(*options, [](const RenderOptions& one, Series& series) { return render(one, series); });

@@ -351,6 +351,7 @@ Effort ProcessTeam::effort() const {
   ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return {.bytes = traffic.bytes - before_.bytes,
           .messages = traffic.messages - before_.messages,
+          .calls = calls_ - before_.calls,
           .items = items_ - before_.items,
           .post = traffic.seconds - before_.post,
           .all = double(now.tv_sec) + double(now.tv_nsec) * 1e-9 - before_.all};

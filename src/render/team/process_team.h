@@ -24,6 +24,7 @@ struct TeamSettings {
 /// What a process has done for a render so far.
 struct Effort {
   std::uint64_t bytes = 0, messages = 0;  ///< sent
+  std::uint64_t calls = 0;                ///< of Schedule::run whose items were divided
   double items = 0;                       ///< processor time of the items that were dealt to it [s]
   double post = 0;                        ///< of sending and receiving, and of looking for messages [s]
   double all = 0;                         ///< of everything: the rest is what each process does for itself [s]
@@ -118,8 +119,9 @@ class ProcessTeam final : public Team {
   std::atomic<int> share_{1};             ///< the number of threads for this process that the cores suffice for
   std::vector<int> threads_;              ///< of each process, in the current step
   std::atomic<double> items_{0};          ///< Effort::items
-  Effort before_;                         ///< efforts before the current render
-  size_t largest_ = 0;                    ///< samples that each tile keeps (Film::largest_kept)
+  std::atomic<std::uint64_t> calls_{0};
+  Effort before_;       ///< efforts before the current render
+  size_t largest_ = 0;  ///< samples that each tile keeps (Film::largest_kept)
 
   // The leader's.
   std::vector<std::optional<Reading>> prepared_;

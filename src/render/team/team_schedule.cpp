@@ -317,6 +317,7 @@ void TeamSchedule::run(const Items& items, Work& work) {
     return;
   }
   team_.require_whole();
+  ++team_.calls_;
   std::optional<Call> call;
   {
     const std::lock_guard lock(mutex_);
