@@ -26,6 +26,7 @@ struct Viewpoint {
 constexpr int rays_of_tile = 8;
 constexpr int places_of_region = 16;
 constexpr int longest = 8;  // segments of a path
+constexpr int rays_of_turn = 64;
 constexpr int rays_of_luminaire = 64;
 constexpr float by_others = 0.25f;  // d
 constexpr std::uint32_t paths_at_once = 64;
@@ -129,7 +130,7 @@ EnvironmentGuide::Squares look_at_tiles(Lookout& lookout, const SceneObject& env
   EnvironmentGuide::Squares squares{};
   for (int i = 0; i < EnvironmentGuide::tiles * rays_of_tile; ++i) {
     const int tile = i % EnvironmentGuide::tiles;
-    if (tile == 0) lookout.stand(i / EnvironmentGuide::tiles, rays_of_tile);
+    if (i % rays_of_turn == 0) lookout.stand(i / rays_of_turn, EnvironmentGuide::tiles * rays_of_tile / rays_of_turn);
     const Point2 within = lookout.pair();
     const Point2 u{(float(tile % side) + within.x) / side, (float(tile / side) + within.y) / side};
     squares[size_t(tile)] += lookout.square_of(environment, u) / float(rays_of_tile);
