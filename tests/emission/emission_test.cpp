@@ -174,9 +174,14 @@ TEST(EnvironmentEmission, DensityIsThatOfTheSamples) {
   for (double& x : expected) x *= count;
   test::Random random(4);
   for (int i = 0; i < count; ++i) {
-    const DirectionSample s = e->sample_incident(random.pair());
+    const Point2 u = random.pair();
+    const DirectionSample s = e->sample_incident(u);
     ASSERT_GT(s.pdf, 0);
     ASSERT_EQ(s.pdf, e->incident_pdf(s.direction));
+    const std::optional<Point2> place = e->incident_place(s.direction);
+    ASSERT_TRUE(place);
+    ASSERT_NEAR(place->x, u.x, 1e-5f);
+    ASSERT_NEAR(place->y, u.y, 1e-5f);
     ASSERT_NEAR(length(s.direction), 1, 1e-5f);
     double phi = std::atan2(double(s.direction.x), -double(s.direction.z)) / (2 * M_PI);
     if (phi < 0) phi += 1;
