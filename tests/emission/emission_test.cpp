@@ -178,10 +178,11 @@ TEST(EnvironmentEmission, DensityIsThatOfTheSamples) {
     const DirectionSample s = e->sample_incident(u);
     ASSERT_GT(s.pdf, 0);
     ASSERT_EQ(s.pdf, e->incident_pdf(s.direction));
-    const std::optional<Point2> place = e->incident_place(s.direction);
-    ASSERT_TRUE(place);
-    ASSERT_NEAR(place->x, u.x, 1e-5f);
-    ASSERT_NEAR(place->y, u.y, 1e-5f);
+    const IncidentPlaces places = e->incident_places(s.direction);
+    ASSERT_EQ(places.count, 1);
+    ASSERT_EQ(places.pdf[0], s.pdf);
+    ASSERT_NEAR(places.at[0].x, u.x, 1e-5f);
+    ASSERT_NEAR(places.at[0].y, u.y, 1e-5f);
     ASSERT_NEAR(length(s.direction), 1, 1e-5f);
     double phi = std::atan2(double(s.direction.x), -double(s.direction.z)) / (2 * M_PI);
     if (phi < 0) phi += 1;
