@@ -4,9 +4,7 @@
 //
 // A new emission must implement `radiance`, `sample` with `pdf` (directions of emission, for paths that start at lights) and
 // `power`. Optional, for light from infinity: `sample_incident`, `incident_pdf` and `knows_incident` (importance sampling of an
-// environment map; `incident_place`, its inverse), `only_at_infinity`. Optional: `objects_changed` to drop cached values.
-
-#include <optional>
+// environment map; `incident_places`, its inverse), `only_at_infinity`. Optional: `objects_changed` to drop cached values.
 
 #include "etendue/core/spectrum.h"
 #include "etendue/core/surface_point.h"
@@ -19,6 +17,19 @@ namespace etendue {
 struct DirectionSample {
   Vector3 direction;
   float pdf = 0;  ///< [1/sr]
+};
+
+/// The points of the unit square that a sampling function maps to one direction, each with the pdf [1/sr] with which it samples
+/// the direction from there: their sum is the pdf of the direction.
+struct IncidentPlaces {
+  static constexpr int most = 2;
+  int count = 0;
+  Point2 at[most];
+  float pdf[most] = {};
+  void add(Point2 place, float part) {
+    at[count] = place;
+    pdf[count++] = part;
+  }
 };
 
 class EmissionShader : public Component {
@@ -58,9 +69,10 @@ class EmissionShader : public Component {
     return (dot(point.normal, direction) > 0) == (sides == Sides::front);
   }
 
-  /// The inverse of `sample_incident`: the point of the unit square that it maps to this direction. Empty: the inverse is not
-  /// unique, or not implemented.
-  virtual std::optional<Point2> incident_place(const Vector3&) const { return {}; }
+  /// The inverse of `sample_incident`: the points of the unit square that it maps to this direction. 0: not implemented.
+  virtual IncidentPlaces incident_places(const Vector3&) const { return {}; }
+  /// The most that there are of any direction.
+  virtual int most_incident_places() const { return 0; }
 
   Sides sides = Sides::front;
 };

@@ -5,8 +5,7 @@
 // A new object at infinity must implement `surface_point`, which returns the point seen along a ray, `area`, `sample_visible`
 // and `visible_pdf`. A delta light overrides `extent`. A SurroundingObject must implement `reach`.
 
-#include <optional>
-
+#include "etendue/emission_shader.h"
 #include "etendue/scene_object.h"
 
 namespace etendue {
@@ -19,9 +18,10 @@ class InfiniteObject : public SceneObject {
     radius_ = radius;
   }
 
-  /// The point u of the unit square that `sample_visible`, from any place, maps to this direction (unit). Empty: it is not
-  /// unique, or not known.
-  virtual std::optional<Point2> visible_place(const Vector3& /*direction*/, float /*time*/) const { return {}; }
+  /// The points of the unit square that `sample_visible`, from any place, maps to this direction (unit), and the most that
+  /// there are of any direction; 0: not known.
+  virtual IncidentPlaces visible_places(const Vector3& /*direction*/, float /*time*/) const { return {}; }
+  virtual int most_visible_places() const { return 0; }
 
   Extent extent() const override { return Extent::environment; }
   Bounds3 bounds() const final { return {}; }

@@ -26,6 +26,7 @@ struct Viewpoint {
 constexpr int rays_of_tile = 8;
 constexpr int places_of_region = 16;
 constexpr int longest = 8;  // segments of a path
+constexpr int rays_of_turn = 64;
 constexpr int rays_of_luminaire = 64;
 constexpr float by_others = 0.25f;  // d
 constexpr std::uint32_t paths_at_once = 64;
@@ -129,7 +130,7 @@ EnvironmentGuide::Squares look_at_tiles(Lookout& lookout, const SceneObject& env
   EnvironmentGuide::Squares squares{};
   for (int i = 0; i < EnvironmentGuide::tiles * rays_of_tile; ++i) {
     const int tile = i % EnvironmentGuide::tiles;
-    if (tile == 0) lookout.stand(i / EnvironmentGuide::tiles, rays_of_tile);
+    if (i % rays_of_turn == 0) lookout.stand(i / rays_of_turn, EnvironmentGuide::tiles * rays_of_tile / rays_of_turn);
     const Point2 within = lookout.pair();
     const Point2 u{(float(tile % side) + within.x) / side, (float(tile / side) + within.y) / side};
     squares[size_t(tile)] += lookout.square_of(environment, u) / float(rays_of_tile);
@@ -159,8 +160,9 @@ AdaptiveLights::AdaptiveLights(const LightSampler& lights, const Scene& scene)
       chooses_(luminaires_.size() > 1 && luminaires_.size() <= most_luminaires) {
   for (const SceneObject* luminaire : luminaires_)
     if (luminaire->extent() == Extent::environment && !environment_)
-      if (const auto* one = dynamic_cast<const InfiniteObject*>(luminaire); one && one->visible_place({0, 0, 1}, 0))
+      if (const auto* one = dynamic_cast<const InfiniteObject*>(luminaire); one && one->most_visible_places() > 0)
         environment_ = one;
+  one_place_ = environment_ && environment_->most_visible_places() == 1;
 }
 
 void AdaptiveLights::learn(Schedule& schedule, const RenderProcess& process) {
@@ -254,18 +256,27 @@ float AdaptiveLights::mixed(float others, const float* here, const SceneObject& 
 SurfaceSample AdaptiveLights::sample(const SceneObject& luminaire, const Point3& from, const Normal3& normal, Point2 u,
                                      float time) const {
   if (&luminaire != environment_ || guide_.regions() == 0) return lights_.sample(luminaire, from, normal, u, time);
-  const EnvironmentGuide::Guided guided = guide_.sample(guide_.region(from, normal), u);
+  const std::uint32_t region = guide_.region(from, normal);
+  const EnvironmentGuide::Guided guided = guide_.sample(region, u);
   SurfaceSample sampled = environment_->sample_visible(from, guided.place, time);
-  sampled.pdf *= guided.ratio;
+  if (one_place_)
+    sampled.pdf *= guided.ratio;
+  else if (sampled.pdf > 0)
+    sampled.pdf = guided_pdf(region, sampled.direction, time);
   return sampled;
 }
 
 float AdaptiveLights::pdf(const SceneObject& luminaire, const Point3& from, const Normal3& normal, const Vector3& direction,
                           const SurfacePoint& point) const {
-  const float pdf = lights_.pdf(luminaire, from, normal, direction, point);
-  if (&luminaire != environment_ || guide_.regions() == 0) return pdf;
-  const std::optional<Point2> place = environment_->visible_place(direction, point.time);
-  return place ? pdf * guide_.ratio(guide_.region(from, normal), *place) : pdf;
+  if (&luminaire != environment_ || guide_.regions() == 0) return lights_.pdf(luminaire, from, normal, direction, point);
+  return guided_pdf(guide_.region(from, normal), direction, point.time);
+}
+
+float AdaptiveLights::guided_pdf(std::uint32_t region, const Vector3& direction, float time) const {
+  const IncidentPlaces places = environment_->visible_places(direction, time);
+  float pdf = 0;
+  for (int i = 0; i < places.count; ++i) pdf += places.pdf[i] * guide_.ratio(region, places.at[i]);
+  return pdf;
 }
 
 }  // namespace etendue

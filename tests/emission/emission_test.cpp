@@ -174,9 +174,15 @@ TEST(EnvironmentEmission, DensityIsThatOfTheSamples) {
   for (double& x : expected) x *= count;
   test::Random random(4);
   for (int i = 0; i < count; ++i) {
-    const DirectionSample s = e->sample_incident(random.pair());
+    const Point2 u = random.pair();
+    const DirectionSample s = e->sample_incident(u);
     ASSERT_GT(s.pdf, 0);
     ASSERT_EQ(s.pdf, e->incident_pdf(s.direction));
+    const IncidentPlaces places = e->incident_places(s.direction);
+    ASSERT_EQ(places.count, 1);
+    ASSERT_EQ(places.pdf[0], s.pdf);
+    ASSERT_NEAR(places.at[0].x, u.x, 1e-5f);
+    ASSERT_NEAR(places.at[0].y, u.y, 1e-5f);
     ASSERT_NEAR(length(s.direction), 1, 1e-5f);
     double phi = std::atan2(double(s.direction.x), -double(s.direction.z)) / (2 * M_PI);
     if (phi < 0) phi += 1;

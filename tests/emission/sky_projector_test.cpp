@@ -137,8 +137,18 @@ TEST(SkyEmission, SamplesFollowDensity) {
     std::vector<double> counts(rows * columns), expected(rows * columns);
     test::Random random(sun ? 70 : 71);
     for (int i = 0; i < count; ++i) {
-      const DirectionSample s = e->sample_incident(random.pair());
+      const Point2 u = random.pair();
+      const DirectionSample s = e->sample_incident(u);
       ASSERT_EQ(s.pdf, e->incident_pdf(s.direction));
+      // One of the places that lead to the direction is where it came from. (Longitudes are inexact at the pole.)
+      const IncidentPlaces places = e->incident_places(s.direction);
+      float all = 0, nearest = 2;
+      for (int k = 0; k < places.count; ++k) {
+        all += places.pdf[k];
+        nearest = std::min(nearest, std::hypot(places.at[k].x - u.x, places.at[k].y - u.y));
+      }
+      ASSERT_NEAR(all, s.pdf, 1e-5f * s.pdf);
+      ASSERT_LT(nearest, 2e-3f);
       ++counts[test::cell_of(frame, rows, columns, s.direction)];
     }
     double total = 0;

@@ -51,10 +51,14 @@ class AdaptiveLights final : public LightSampler {
   /// P of a luminaire, from P_tree and the CDF of the region.
   float mixed(float others, const float* chances, const SceneObject&) const;
 
+  /// The pdf [1/sr] of a direction to the environment: the sum of its parts times n^2 P_t of their tiles.
+  float guided_pdf(std::uint32_t region, const Vector3& direction, float time) const;
+
   const LightSampler& lights_;
   const std::span<const SceneObject* const> luminaires_;
   const bool chooses_;                           ///< whether there are luminaires to choose among
   const InfiniteObject* environment_ = nullptr;  ///< null: none that is known well enough
+  bool one_place_ = false;                       ///< whether each of its directions has one place in the unit square
   EnvironmentGuide guide_;                       ///< without regions: nothing is learned yet
   std::vector<float> chances_;                   ///< for each region the CDF of its luminaires; all 0: none was seen
 };

@@ -72,17 +72,33 @@ DirectionSample DirectionTable::sample(Point2 u) const {
   return {local, pdf(local)};
 }
 
+size_t DirectionTable::cell(const std::vector<float>& borders, float x) {
+  const size_t i = size_t(std::upper_bound(borders.begin(), borders.end(), x) - borders.begin());
+  return std::clamp<size_t>(i, 1, borders.size() - 1) - 1;
+}
+
+float DirectionTable::longitude(const Vector3& local) const {
+  const float phi = std::atan2(local.y, local.x) - first_;
+  return phi - 2 * pi * std::floor(phi / (2 * pi));
+}
+
 float DirectionTable::pdf(const Vector3& local) const {
   if (empty()) return 0;
-  const float h = polar_height(local);
-  float phi = std::atan2(local.y, local.x) - first_;
-  phi -= 2 * pi * std::floor(phi / (2 * pi));
+  const float h = polar_height(local), phi = longitude(local);
   if (h < height_.front() || h > height_.back() || phi > azimuth_.back()) return 0;
-  const auto cell = [](const std::vector<float>& borders, float x) {
-    const size_t i = size_t(std::upper_bound(borders.begin(), borders.end(), x) - borders.begin());
-    return std::clamp<size_t>(i, 1, borders.size() - 1) - 1;
-  };
   return pdfs_[cell(height_, h) * columns() + cell(azimuth_, phi)];
+}
+
+Point2 DirectionTable::place(const Vector3& local) const {
+  const auto within = [](const std::vector<float>& borders, size_t i, float x, const float* sums) {
+    const float low = i == 0 ? 0 : sums[i - 1];
+    const float t = clamp((x - borders[i]) / (borders[i + 1] - borders[i]), 0, 1);
+    return std::min(lerp(t, low, sums[i]), one_minus_epsilon);
+  };
+  const float h = polar_height(local), phi = longitude(local);
+  const size_t row = cell(height_, h);
+  return {within(height_, row, h, row_sums_.data()),
+          within(azimuth_, cell(azimuth_, phi), phi, sums_.data() + row * columns())};
 }
 
 }  // namespace etendue

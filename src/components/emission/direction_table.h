@@ -22,8 +22,13 @@ class DirectionTable {
   bool empty() const { return !(total_ > 0); }
   DirectionSample sample(Point2 u) const;
   float pdf(const Vector3& local) const;
+  /// The inverse of `sample`, where the pdf is not 0.
+  Point2 place(const Vector3& local) const;
 
  private:
+  /// The row or column that contains a height or a longitude, by its borders.
+  static size_t cell(const std::vector<float>& borders, float x);
+  float longitude(const Vector3& local) const;  // from the first border [rad]
   size_t columns() const { return azimuth_.size() - 1; }
 
   double total_ = 0;

@@ -145,12 +145,16 @@ class EnvironmentEmission final : public EmissionShader {
     const auto [x, y] = texel_at(place(towards));
     return texels_.pdf(x, y);
   }
-  std::optional<Point2> incident_place(const Vector3& towards) const override {
-    if (!(texels_.total() > 0)) return {};
+  int most_incident_places() const override { return texels_.total() > 0; }
+  IncidentPlaces incident_places(const Vector3& towards) const override {
+    IncidentPlaces places;
+    if (!(texels_.total() > 0)) return places;
     const Point2 at = place(towards);
     const auto [x, y] = texel_at(at);
     const double down = (double(towards.y) - row_cosines_[y]) / (row_cosines_[y + 1] - row_cosines_[y]);
-    return texels_.place(x, y, {clamp(at.x * float(image_.width) - float(x), 0, 1), clamp(float(down), 0, 1)});
+    const Point2 within{clamp(at.x * float(image_.width) - float(x), 0, 1), clamp(float(down), 0, 1)};
+    places.add(texels_.place(x, y, within), texels_.pdf(x, y));
+    return places;
   }
 
   FilePath file;

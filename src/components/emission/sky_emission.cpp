@@ -106,6 +106,24 @@ class SkyEmission final : public EmissionShader {
     return disc + (1 - sun_share_) * table_.pdf({towards.z, towards.x, towards.y});
   }
 
+  int most_incident_places() const override { return 2; }
+  IncidentPlaces incident_places(const Vector3& towards) const override {
+    IncidentPlaces places;
+    if (in_disc(towards) && sun_share_ > 0) {
+      const Vector3 d = Frame(Normal3(sun_)).to_local(towards);
+      float turn = std::atan2(d.y, d.x) / (2 * pi);
+      if (turn < 0) turn += 1;
+      places.add({sun_share_ * std::min(polar_height(d) / height_, one_minus_epsilon), std::min(turn, one_minus_epsilon)},
+                 sun_share_ / sun_angle_);
+    }
+    const Vector3 local{towards.z, towards.x, towards.y};
+    if (const float pdf = (1 - sun_share_) * table_.pdf(local); pdf > 0) {
+      const Point2 u = table_.place(local);
+      places.add({std::min(sun_share_ + (1 - sun_share_) * u.x, one_minus_epsilon), u.y}, pdf);
+    }
+    return places;
+  }
+
   static constexpr double true_diameter = 0.53313;  // [deg]: 959.63 arc seconds of radius, at the mean distance
   Vector3 to_sun{1, 1, 1};
   std::string time;

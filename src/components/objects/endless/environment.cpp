@@ -60,11 +60,17 @@ class Environment final : public InfiniteObject {
     return emission->incident_pdf(inside(direction, p.time));
   }
 
-  std::optional<Point2> visible_place(const Vector3& direction, float time) const override {
-    if (emission && emission->knows_incident()) return emission->incident_place(inside(direction, time));
+  int most_visible_places() const override {
+    return emission && emission->knows_incident() ? emission->most_incident_places() : 1;
+  }
+  IncidentPlaces visible_places(const Vector3& direction, float time) const override {
+    if (emission && emission->knows_incident()) return emission->incident_places(inside(direction, time));
     // The inverse of warp::sphere.
-    return Point2{clamp((1 - direction.z) / 2, 0, one_minus_epsilon),
-                  std::min(positive_atan2(direction.y, direction.x) * (1 / (2 * pi)), one_minus_epsilon)};
+    IncidentPlaces places;
+    places.add({clamp((1 - direction.z) / 2, 0, one_minus_epsilon),
+                std::min(positive_atan2(direction.y, direction.x) * (1 / (2 * pi)), one_minus_epsilon)},
+               warp::sphere_pdf);
+    return places;
   }
 
  private:
