@@ -87,9 +87,11 @@ struct ChainBehind {
     if (lobes.count == ChainLobes::longest) followed = false;
     if (followed) lobes.add(lobe);
   }
-  ChainBehind with(Lobe lobe) const {
+  /// For a branch, which may follow another wavelength than the hero of the path.
+  ChainBehind with(Lobe lobe, const Wavelengths& of_branch) const {
     ChainBehind longer = *this;
     longer.add(lobe);
+    longer.wavelengths = of_branch;
     return longer;
   }
   /// Before the walk leaves its last vertex, with the media of the segment that led there.
@@ -151,7 +153,8 @@ class ManifoldProcess final : public RenderProcess {
       if (walk.splits(splitting)) {
         const Vector3 out = walk.vertex.out;
         const Normal3 normal = walk.vertex.point.normal;
-        walk.split(splitting, u, [&](auto& branch) { return follow(branch, behind.with(specular_transmission)); });
+        walk.split(splitting, u,
+                   [&](auto& branch) { return follow(branch, behind.with(specular_transmission, branch.sample.wavelengths)); });
         const bool reflected = (dot(normal, walk.ray.direction) > 0) == (dot(normal, out) > 0);
         behind.add(reflected ? specular_reflection : specular_transmission);
       } else if (const auto next = walk.sample_direction(u.lobe_choice, u.direction)) {
