@@ -26,9 +26,9 @@ class ManifoldPathTracer final : public Renderer {
     d.summary(
         "Path tracing that also searches the ways by which light of a luminaire comes to a surface or a medium through mirrors "
         "and smooth glass: for caustics, also those of small luminaires and of lights without extent, and those that are seen "
-        "through glass. Light of large luminaires, light of an even sky, and chains that it cannot follow (through masks, thin "
-        "panes and gratings, or totally reflected under interpolated or bumped normals) are found by chance, as in "
-        "PathTracer.",
+        "through glass. Light of an even sky, and light by chains that it cannot follow (through masks, thin panes and "
+        "gratings, or totally reflected under interpolated or bumped normals), is found by chance, as in PathTracer; of lights "
+        "without extent, which nothing meets by chance, what comes by such chains is lost.",
         "Zeltner, Georgiev & Jakob 2020, Specular manifold sampling for rendering high-frequency caustics and glints");
     d.group("Paths");
     describe_max_depth<&ManifoldPathTracer::max_depth>(d);
