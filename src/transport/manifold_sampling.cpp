@@ -9,14 +9,21 @@
 namespace etendue {
 namespace {
 
-/// Trials after which a chain that is not found again is given up: it has a probability below 1e-6, or was found by a rounding
-/// error.
-constexpr int most_trials = 1 << 20;
+/// Stands for the probability that a seed of the right lobes leads to a chain, in weights.
+constexpr float usual_probability = 0.25f;
+/// Of weights below this nothing is sampled: the emitter hits have all.
+constexpr float least_weight = 0.01f;
 
 /// The probability with which seeds choose reflection where a surface refracts as well.
 constexpr float reflection_chosen = 0.2f;
 
 constexpr bool single(Lobes lobes) { return (lobes & (lobes - 1)) == 0; }
+
+/// Trials must be independent of each other, so that a hash of two primary samples is continued.
+std::uint64_t seed_of(NumberStream& numbers) {
+  const auto first = std::uint64_t(double(numbers.next()) * 0x1p24), second = std::uint64_t(double(numbers.next()) * 0x1p24);
+  return mix_bits(first << 32 | second);
+}
 
 /// Whether the pdf with which directions to a luminaire at infinity are sampled tells where its light is. Light that comes from
 /// everywhere is found better by scattered rays. The light of the luminaire, if it came evenly from some solid angle, would
@@ -160,20 +167,47 @@ bool ManifoldSampler::seed(const Trial& t, const Seed* wanted, Seed& seed) const
   return seed.lobes.count > 0 && (!wanted || seed.lobes.count == wanted->lobes.count);
 }
 
-/// Whether the chain that starts in a direction, and has the lobes of a seed, would have had the same choices.
-bool ManifoldSampler::chose_as(const Trial& t, const Seed& seed, const Vector3& direction) const {
+/// The choices (Seed::chosen) of a seed that would start in this direction. Empty: the chain cannot be followed.
+std::optional<std::uint32_t> ManifoldSampler::choices(const Trial& t, const ChainLobes& lobes, const Vector3& direction) const {
   const ArenaScope memory(t.arena);
   ChainTracer chain(scene_, t.wavelengths, t.numbers, t.arena);
   chain.begin(t.receiver, direction);
-  for (int i = 0; i < seed.lobes.count; ++i)
-    if (!chain.meet() || single(chain.lobes_here()) == bool(seed.chosen >> i & 1) ||
-        !chain.scatter_by(seed.lobes.at[size_t(i)]))
-      return false;
-  return true;
+  std::uint32_t chosen = 0;
+  for (int i = 0; i < lobes.count; ++i) {
+    if (!chain.meet()) return {};
+    if (!single(chain.lobes_here())) chosen |= 1u << i;
+    if (!chain.scatter_by(lobes.at[size_t(i)])) return {};
+  }
+  return chosen;
 }
 
-/// The light of a chain, without 1 / p_k.
-std::optional<ChainLight> ManifoldSampler::light_of(const Trial& t, const ChainSolution& solution) const {
+/// Whether one more seed, with the lobes and choices of another, leads to the same chain.
+bool ManifoldSampler::found_again(const Trial& t, const Seed& wanted, const ChainSolution& solution) const {
+  Seed next;
+  if (!seed(t, &wanted, next)) return false;
+  const std::optional<ChainSolution> again = solve_chain(scene_, t.receiver, t.wavelengths, t.numbers, t.arena, next.direction,
+                                                         next.lobes, t.target, ChainTracer::Derivatives::approximate);
+  return again && solution.same(*again);
+}
+
+/// M.
+int ManifoldSampler::most_trials(float p_m, float p_b) {
+  // A chain of a delta light that is not found again by then has a probability below 1e-6, or was found by a rounding error.
+  constexpr float most = 1 << 20;
+  return int(p_m < most * p_b ? std::max(p_m / p_b, 8.0f) : most);
+}
+
+/// p_m [1/sr at the receiver], where `density` is P p(a), and `to` the direction from the last vertex to the luminaire.
+float ManifoldSampler::weighting_pdf(double density, const ChainSolution& solution, const Seed& seed,
+                                     const SurfacePoint& luminaire, const Vector3& to, bool infinite) const {
+  double p = density * double(seed.probability() * usual_probability) * std::abs(solution.determinant);
+  if (!infinite) p *= double(square(solution.distance));
+  if (!infinite && luminaire.normal != Normal3{}) p /= std::abs(double(dot(luminaire.normal, to)));
+  return std::isfinite(p) ? float(p) : 0;
+}
+
+/// The light of a chain that the seed led to, without 1 / p_k.
+std::optional<ChainLight> ManifoldSampler::light_of(const Trial& t, const Seed& seed, const ChainSolution& solution) const {
   const ArenaScope memory(t.arena);
   const ScatterValue f = scattering(t.receiver, t.receiver.out, solution.direction, Transport::radiance);
   if (f.value.black()) return {};
@@ -186,19 +220,17 @@ std::optional<ChainLight> ManifoldSampler::light_of(const Trial& t, const ChainS
   const Spectrum emitted = t.luminaire->emission->radiance(a, -to, chain.wavelengths);
   if (emitted.black() || !scene_.in_front(a, -to) || !chain.reaches(a, t.target)) return {};
 
-  double da_dw = std::abs(solution.determinant);
-  if (!t.target.infinite) {
-    da_dw *= double(square(solution.distance));
-    if (a.normal != Normal3{}) da_dw /= std::abs(double(dot(a.normal, to)));
-  }
-  const auto p_m = float(t.density * da_dw);
-  if (!(p_m > 0) || !std::isfinite(p_m)) return {};
-  const float weight = weight_over_pdf(settings_.heuristic, p_m, t.sampled.delta ? 0 : f.pdf * chain.share);
+  const float p_m = weighting_pdf(t.density, solution, seed, a, to, t.target.infinite);
+  if (!(p_m > 0)) return {};
+  const float p_b = t.sampled.delta ? 0 : f.pdf * chain.share;
   ChainLight light;
+  light.weight = heuristic_weight(settings_.heuristic, p_m, p_b);
+  light.trials = most_trials(p_m, p_b);
+  if (light.weight < least_weight) return {};
   light.vertices = solution.lobes.count;
-  light.light = f.value * chain.weight * emitted * weight;
+  light.light = f.value * chain.weight * emitted *
+                (weight_over_pdf(settings_.heuristic, p_m, p_b) * seed.probability() * usual_probability);
   if (light.light.black()) return {};
-  light.weight = weight * p_m;
   light.luminaire = t.luminaire;
   light.in = solution.direction;
   if (PathStates* const states = PathStates::current()) [[unlikely]] {
@@ -217,10 +249,7 @@ void ManifoldSampler::sample(const PathVertex& receiver, const Wavelengths& wave
                              const std::function<void(const ChainLight&)>& add) const {
   const SceneObject* const luminaire = choose(numbers.next());
   const Point2 u = numbers.next_pair();
-  // Trials must be independent of each other, so a hash of two primary samples is continued.
-  const std::uint64_t seed_bits =
-      std::uint64_t(double(numbers.next()) * 0x1p24) << 32 | std::uint64_t(double(numbers.next()) * 0x1p24);
-  ChoiceNumbers random(mix_bits(seed_bits));
+  ChoiceNumbers random(seed_of(numbers));
   const float time = receiver.point.time;
   Trial t{receiver, wavelengths, std::min(longest, settings_.longest), numbers, random, arena, luminaire, {}, {}, 0};
   t.sampled =
@@ -230,60 +259,72 @@ void ManifoldSampler::sample(const PathVertex& receiver, const Wavelengths& wave
   t.target = {t.sampled.point.position, t.sampled.direction, luminaire->infinite()};
   t.density = probability(*luminaire) * double(t.sampled.pdf);
 
-  const auto solve = [&](const Seed& from, ChainTracer::Derivatives derivatives) {
-    return solve_chain(scene_, receiver, wavelengths, t.numbers, arena, from.direction, from.lobes, t.target, derivatives);
+  const auto solve = [&](const Seed& from) {
+    return solve_chain(scene_, receiver, wavelengths, t.numbers, arena, from.direction, from.lobes, t.target,
+                       ChainTracer::Derivatives::exact);
   };
   Seed first;
   if (!settings_.unbiased) {
     std::vector<ChainSolution> found;
     for (int i = 0; i < settings_.seeds; ++i) {
       if (!seed(t, nullptr, first)) continue;
-      const std::optional<ChainSolution> solution = solve(first, ChainTracer::Derivatives::exact);
+      const std::optional<ChainSolution> solution = solve(first);
       if (!solution || std::ranges::any_of(found, [&](const ChainSolution& old) { return old.same(*solution); })) continue;
+      const std::optional<std::uint32_t> chosen = choices(t, first.lobes, solution->direction);
+      if (!chosen) continue;
+      first.chosen = *chosen;
       found.push_back(*solution);
-      if (const std::optional<ChainLight> light = light_of(t, *solution)) add(*light);
+      if (const std::optional<ChainLight> light = light_of(t, first, *solution)) add(*light);
     }
     return;
   }
   if (!seed(t, nullptr, first)) return;
-  const std::optional<ChainSolution> solution = solve(first, ChainTracer::Derivatives::exact);
-  if (!solution || !chose_as(t, first, solution->direction)) return;
-  std::optional<ChainLight> light = light_of(t, *solution);
+  const std::optional<ChainSolution> solution = solve(first);
+  if (!solution || choices(t, first.lobes, solution->direction) != first.chosen) return;
+  std::optional<ChainLight> light = light_of(t, first, *solution);
   if (!light) return;
-  int trials = 1;
-  for (Seed next; trials < most_trials; ++trials) {
-    if ((trials & 255) == 0 && aborted()) return;
-    if (!seed(t, &first, next)) continue;
-    const std::optional<ChainSolution> again = solve(next, ChainTracer::Derivatives::approximate);
-    if (again && solution->same(*again)) break;
-  }
+  int trials = 1;  // min(N, M)
+  while (trials < light->trials && !found_again(t, first, *solution))
+    if ((++trials & 255) == 0 && aborted()) return;
   light->light *= float(trials) / first.probability();
   add(*light);
 }
 
-ManifoldSampler::Pdf ManifoldSampler::pdf(const Ray& start, const MediumStack& media, const ChainLobes& lobes,
-                                          const SurfacePoint& luminaire, const Vector3& direction,
-                                          const Wavelengths& wavelengths, NumberStream numbers, Arena& arena) const {
+float ManifoldSampler::hit_weight(const PathVertex& receiver, const Ray& start, const MediumStack& media, float pdf,
+                                  const ChainLobes& lobes, int longest, const SurfacePoint& luminaire, const Vector3& hit,
+                                  const Wavelengths& wavelengths, NumberStream numbers, Arena& arena) const {
   const SceneObject& object = *luminaire.object;
   const double chosen = probability(object);
-  if (!(chosen > 0) || lobes.count > settings_.longest) return {};
+  longest = std::min(longest, settings_.longest);
+  if (!(chosen > 0) || lobes.count > longest) return 1;
   const ArenaScope memory(arena);
   ChainTracer chain(scene_, wavelengths, numbers, arena);
   chain.derivatives = ChainTracer::Derivatives::exact;
   chain.begin(start, media);
-  if (!chain.follow(lobes)) return {};
-  const ChainTarget target{luminaire.position, direction, object.infinite()};
+  if (!chain.follow(lobes)) return 1;
+  ChoiceNumbers random(seed_of(numbers));
+  Trial t{receiver, wavelengths, longest, numbers, random, arena, &object, {}, {luminaire.position, hit, object.infinite()}, 0};
   ChainSolution solution;
   double r[2];
-  chain_residual(chain, target, solution, r);
-  if (!chain.reaches(luminaire, target)) return {};
-  double p = chosen * std::abs(solution.determinant);
-  if (target.infinite)
-    p *= double(object.visible_pdf(start.origin, direction, luminaire));
-  else
-    p *= double(object.area_pdf(luminaire)) * double(square(solution.distance)) /
-         std::abs(double(dot(luminaire.normal, direction)));
-  return {std::isfinite(p) ? float(p) : 0, chain.share};
+  chain_residual(chain, t.target, solution, r);
+  if (!chain.reaches(luminaire, t.target)) return 1;
+  solution.direction = start.direction;
+  solution.lobes = lobes;
+  Seed seed;
+  seed.lobes = lobes;
+  const std::optional<std::uint32_t> choice = choices(t, lobes, start.direction);
+  if (!choice) return 1;
+  seed.chosen = *choice;
+
+  t.density =
+      chosen * double(t.target.infinite ? object.visible_pdf(start.origin, hit, luminaire) : object.area_pdf(luminaire));
+  const float p_m = weighting_pdf(t.density, solution, seed, luminaire, hit, t.target.infinite), p_b = pdf * chain.share;
+  if (!(p_m > 0) || heuristic_weight(settings_.heuristic, p_m, p_b) < least_weight) return 1;
+  const float weight = heuristic_weight(settings_.heuristic, p_b, p_m);
+  if (!settings_.unbiased) return weight;
+  for (int i = most_trials(p_m, p_b); i > 0; --i)
+    if (found_again(t, seed, solution)) return weight;
+  return 1;
 }
 
 }  // namespace etendue

@@ -146,6 +146,25 @@ TEST(ManifoldSampling, AgreesWithPathTracing) {
   }
 }
 
+// Behind a ball of dispersive glass a lamp is found about as often by emitter hits as by chains, and for the hits the trials of
+// chains are made again, at the wavelength that each branch follows.
+TEST(ManifoldSampling, EachPathCountsOnce) {
+  const std::string camera = "OrthographicCamera { from: [0.1, 0, 0.05], to: [0.1, 0, 0], up: [0, 1, 0], width: 0.3 }";
+  const std::string objects = "Rectangle { corner: [-1, -1, 0], edge_u: [2, 0, 0], edge_v: [0, 2, 0], shader: " + matt +
+                              " }\nSphere { centre: [0, 0, 0.5], radius: 0.3, shader: Dielectric { ior: glass(\"N-SF11\") } }\n"
+                              "Sphere { centre: [-0.4, 0, 1.8], radius: 0.25, emission: DiffuseEmission { radiance: 10 } }\n";
+  const auto mean = [&](const std::string& renderer) {
+    return test::measure(job_text(renderer, camera, 8, objects, "EmbreeScene"));
+  };
+  const test::Measured by_chance = mean("PathTracer { max_depth: 6, samples: 8192 }");
+  for (const char* members : {"", ", split_wavelengths: 1", ", heuristic: balance"}) {
+    const test::Measured m = mean(fmt::format("ManifoldPathTracer {{ max_depth: 6, samples: 512{} }}", members));
+    const double error = std::hypot(m.error, by_chance.error);
+    EXPECT_LT(error, 0.03 * double(m.mean.y));
+    EXPECT_NEAR(m.mean.y, by_chance.mean.y, 4 * error) << members;
+  }
+}
+
 // J of chains from a point of the floor that end at a target, against differences of r.
 TEST(ManifoldSampling, DerivativesOfChainsAreThoseOfTracedRays) {
   Render render(load_job_text(job_text("PathTracer {}", "OrthographicCamera {}", 2, small_scene, "EmbreeScene"), "chain.etd"));

@@ -137,6 +137,7 @@ INSTANTIATE_TEST_SUITE_P(
         LayerCase{"path", "PathTracer { max_depth: 6 }", 32},
         LayerCase{"path_split", "PathTracer { max_depth: 6, split_depth: 3 }", 32},
         LayerCase{"path_by_chance", "PathTracer { max_depth: 6, next_event: false }", 64},
+        LayerCase{"manifold", "ManifoldPathTracer { max_depth: 6 }", 32},
         LayerCase{"guided", "GuidedPathTracer { max_depth: 6 }", 32},
         LayerCase{"adaptive", "AdaptiveSampling { inner: PathTracer { max_depth: 6 } }", 32},
         LayerCase{"bidirectional", "BidirectionalPathTracer { max_depth: 6 }", 32},

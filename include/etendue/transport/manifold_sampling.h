@@ -16,6 +16,14 @@
 // integral"). The biased variant traces a fixed number of seeds and adds all different chains that they find, each once
 // (algorithm 3): it loses those that are missed, and has less variance.
 //
+// Few trials. N is large, and the estimate a firefly, where p_k is small. But for luminaires that rays can hit the trials may
+// end after M: the expectation of min(N, M) is
+//     sum over j < M of (1 - p_k)^j = a / p_k,   a = 1 - (1 - p_k)^M,
+// so the estimate has a times the light of the chain. The rest, 1 - a = (1 - p_k)^M, is the probability that M seeds all miss
+// the chain. So an emitter hit at its end traces M seeds of its own, and counts in full if all miss, else with the weight
+// below: no light is lost, and no chain counts more than M times. M is the ratio of the pdfs below, p_m / p_b, at least 8:
+// about from this p_k on emitter hits find the path more often.
+//
 // Seeds. p_k need not be known, so seeds may come from anywhere, if only each chain has some seeds that lead to it. Half start
 // about straight towards a, as in manifold next event estimation (Hanika, Droske & Fascione 2015), since refraction bends light
 // little; the others towards a random point in the box around a random object that casts caustics. Where a surface both
@@ -24,8 +32,9 @@
 // and the N seeds have them by construction: N is then no greater for dim chains, which are reflected several times.
 //
 // Each path counts once. Emitter hits of the camera path find the same light, with the pdf of the receiver's direction times
-// the share of power that the lobes scatter, p_b = p(w) share. Manifold sampling has the pdf p_m = P p(a) |da / dw| / p_k; p_k
-// is left out of it, as the weights may be any functions of the path that sum to 1. So, for the path light - s_m … s_1 - b,
+// the share of power that the lobes scatter, p_b = p(w) share. Manifold sampling has the pdf p_m = P p(a) |da / dw| p_k; as
+// the weights may be any functions of the path that sum to 1, the probability of the lobes times 1/4 stands for p_k. So, for
+// the path light - s_m … s_1 - b,
 //   - with 1 <= m <= the longest chain, all of which can be followed (specular_chain.h): the two strategies have the weights
 //     p_m / (p_m + p_b) and p_b / (p_m + p_b), or those of the power heuristic. Delta lights have p_b = 0. Where the chain
 //     focuses the luminaire, |da / dw| vanishes, and emitter hits, which see it large, have all of the weight;
@@ -57,6 +66,7 @@ struct ManifoldSettings {
 struct ChainLight {
   int vertices = 0;  ///< m
   Spectrum light;    ///< scattered radiance, weighted [W m^-2 sr^-1 nm^-1]
+  int trials = 0;    ///< M
   float weight = 1;  ///< of multiple importance sampling; already included in `light`
   const SceneObject* luminaire = nullptr;
   Vector3 in;      ///< w
@@ -77,15 +87,12 @@ class ManifoldSampler {
   void sample(const PathVertex& receiver, const Wavelengths&, int longest, NumberStream, Arena&,
               const std::function<bool()>& aborted, const std::function<void(const ChainLight&)>& add) const;
 
-  /// For an emitter hit at the end of a chain: p_m, and the share in p_b.
-  struct Pdf {
-    float manifold = 0;  ///< p_m [1/sr at the receiver]; 0: manifold sampling does not find the path
-    float share = 1;
-  };
-  /// `start` is the ray that left the receiver, `media` those along it, with the wavelengths that the path had there.
-  /// `direction` is that of the ray that hit the luminaire.
-  Pdf pdf(const Ray& start, const MediumStack& media, const ChainLobes&, const SurfacePoint& luminaire,
-          const Vector3& direction, const Wavelengths&, NumberStream, Arena&) const;
+  /// The weight of an emitter hit at the end of a chain. `receiver` is the vertex at which the chain starts, with the media
+  /// around it; its BSDF is not needed. `start` is the ray that left it, with the pdf p(w), `media` are those along it, and
+  /// `longest` and the wavelengths those that `sample` had there. `hit` is the direction of the ray that hit the luminaire.
+  float hit_weight(const PathVertex& receiver, const Ray& start, const MediumStack& media, float pdf, const ChainLobes&,
+                   int longest, const SurfacePoint& luminaire, const Vector3& hit, const Wavelengths&, NumberStream,
+                   Arena&) const;
 
  private:
   struct Trial;
@@ -93,9 +100,13 @@ class ManifoldSampler {
   double probability(const SceneObject& luminaire) const;
   struct Seed;
   bool seed(const Trial&, const Seed* wanted, Seed&) const;
-  bool chose_as(const Trial&, const Seed&, const Vector3& direction) const;
   Vector3 seed_direction(const Trial&) const;
-  std::optional<ChainLight> light_of(const Trial&, const ChainSolution&) const;
+  std::optional<std::uint32_t> choices(const Trial&, const ChainLobes&, const Vector3& direction) const;
+  bool found_again(const Trial&, const Seed& wanted, const ChainSolution&) const;
+  static int most_trials(float p_m, float p_b);
+  float weighting_pdf(double density, const ChainSolution&, const Seed&, const SurfacePoint& luminaire, const Vector3& to,
+                      bool infinite) const;
+  std::optional<ChainLight> light_of(const Trial&, const Seed&, const ChainSolution&) const;
 
   const Scene& scene_;
   const ManifoldSettings settings_;

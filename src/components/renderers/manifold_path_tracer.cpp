@@ -26,9 +26,9 @@ class ManifoldPathTracer final : public Renderer {
     d.summary(
         "Path tracing that also searches the ways by which light of a luminaire comes to a surface or a medium through mirrors "
         "and smooth glass: for caustics, also those of small luminaires and of lights without extent, and those that are seen "
-        "through glass. Light of large luminaires, light of an even sky, and chains that it cannot follow (through masks, thin "
-        "panes and gratings, or totally reflected under interpolated or bumped normals) are found by chance, as in "
-        "PathTracer.",
+        "through glass. Light of an even sky, and light by chains that it cannot follow (through masks, thin panes and "
+        "gratings, or totally reflected under interpolated or bumped normals), is found by chance, as in PathTracer; of lights "
+        "without extent, which nothing meets by chance, what comes by such chains is lost.",
         "Zeltner, Georgiev & Jakob 2020, Specular manifold sampling for rendering high-frequency caustics and glints");
     d.group("Paths");
     describe_max_depth<&ManifoldPathTracer::max_depth>(d);
@@ -72,9 +72,12 @@ namespace {
 struct ChainBehind {
   bool begun = false;     ///< there is a smooth vertex
   bool followed = false;  ///< the specular vertices since then fit into `lobes`
-  Ray ray;                ///< that left the smooth vertex
-  MediumStack media;      ///< along it
-  float pdf = 0;          ///< of its direction [1/sr]
+  PathVertex receiver;    ///< the smooth vertex; its pointers to BSDF and media are not valid
+  MediumStack around;     ///< media at it, on the side of `out`
+  int length = 0;         ///< segments of the path up to it
+  Ray ray;                ///< that left it
+  MediumStack media;      ///< along the ray
+  float pdf = 0;          ///< of the ray's direction [1/sr]
   Wavelengths wavelengths;
   ChainLobes lobes;  ///< of the vertices since then
 
@@ -84,10 +87,17 @@ struct ChainBehind {
     if (lobes.count == ChainLobes::longest) followed = false;
     if (followed) lobes.add(lobe);
   }
-  ChainBehind with(Lobe lobe) const {
+  /// For a branch, which may follow another wavelength than the hero of the path.
+  ChainBehind with(Lobe lobe, const Wavelengths& of_branch) const {
     ChainBehind longer = *this;
     longer.add(lobe);
+    longer.wavelengths = of_branch;
     return longer;
+  }
+  /// Before the walk leaves its last vertex, with the media of the segment that led there.
+  template <class Walk>
+  void at(const Walk& walk) {
+    arrived = walk.media;
   }
   /// The walk has left its vertex by a sampled direction.
   template <class Walk>
@@ -96,11 +106,16 @@ struct ChainBehind {
     if (next.specular()) return add(next.lobe);
     begun = followed = true;
     lobes.count = 0;
+    receiver = walk.vertex;
+    around = arrived;
+    length = walk.length;
     ray = walk.ray;
     media = walk.media;
     pdf = next.pdf;
     wavelengths = walk.sample.wavelengths;
   }
+
+  MediumStack arrived;
 };
 
 class ManifoldProcess final : public RenderProcess {
@@ -138,10 +153,13 @@ class ManifoldProcess final : public RenderProcess {
       if (walk.splits(splitting)) {
         const Vector3 out = walk.vertex.out;
         const Normal3 normal = walk.vertex.point.normal;
-        walk.split(splitting, u, [&](auto& branch) { return follow(branch, behind.with(specular_transmission)); });
+        walk.split(splitting, u,
+                   [&](auto& branch) { return follow(branch, behind.with(specular_transmission, branch.sample.wavelengths)); });
         const bool reflected = (dot(normal, walk.ray.direction) > 0) == (dot(normal, out) > 0);
         behind.add(reflected ? specular_reflection : specular_transmission);
-      } else if (const auto next = walk.sample_direction(u.lobe_choice, u.direction); next && walk.go_on(*next)) {
+      } else if (const auto next = walk.sample_direction(u.lobe_choice, u.direction)) {
+        behind.at(walk);
+        if (!walk.go_on(*next)) continue;
         behind.left(walk, *next);
         if (!roulette.survives(walk)) walk.end();
       }
@@ -173,9 +191,12 @@ class ManifoldProcess final : public RenderProcess {
   template <class Walk>
   [[gnu::noinline]] float chain_hit_weight(const Walk& walk, const ChainBehind& behind, const SurfacePoint& luminaire) const {
     if (!manifold_.useful()) return 1;
-    const ManifoldSampler::Pdf pdf = manifold_.pdf(behind.ray, behind.media, behind.lobes, luminaire, walk.ray.direction,
-                                                   behind.wavelengths, walk.numbers.fork("chain hit"), walk.sample.arena);
-    return pdf.manifold > 0 ? heuristic_weight(settings_.heuristic, behind.pdf * pdf.share, pdf.manifold) : 1;
+    PathVertex receiver = behind.receiver;
+    if (receiver.media) receiver.media = receiver.point.media = &behind.around;
+    receiver.scatter = nullptr;
+    return manifold_.hit_weight(receiver, behind.ray, behind.media, behind.pdf, behind.lobes,
+                                settings_.max_depth - behind.length - 1, luminaire, walk.ray.direction, behind.wavelengths,
+                                walk.numbers.fork("chain hit", std::uint32_t(walk.length)), walk.sample.arena);
   }
 
   const ManifoldPathTracer& settings_;
