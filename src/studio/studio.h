@@ -29,6 +29,8 @@ struct StudioSettings {
   bool read_only = false;
   bool viewing = false;              ///< shows pictures only (Studio::show_pictures)
   std::vector<std::string> plugins;  ///< named at program start
+  /// Called about once a second, to take up what has changed elsewhere; returns whether anything has.
+  std::function<bool(class Studio&)> refresh;
   /// Warnings about a prepared job, with their kinds; and advice about light that its renderer misses.
   std::function<std::vector<std::pair<std::string, Error>>(const Job&)> warnings;
   std::function<std::vector<std::string>(const Job&)> advice;

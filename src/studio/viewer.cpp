@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double share = 0.03, share_when_fresh = 0.12;
 constexpr auto fresh = std::chrono::seconds(2);
 constexpr auto shortest = std::chrono::milliseconds(50), resting = std::chrono::milliseconds(250),
-               longest = std::chrono::milliseconds(4000);
+               longest = std::chrono::milliseconds(4000), refreshing = std::chrono::milliseconds(1000);
 
 double processor_time(clockid_t clock) {
   timespec t{};
@@ -54,7 +54,7 @@ void Studio::wake_viewer() {
 void Studio::look() {
   pthread_setname_np(pthread_self(), "viewer");
   std::uint64_t seen_changes = 0, seen_generations = 0;
-  Clock::time_point looked{}, begun{};
+  Clock::time_point looked{}, begun{}, refreshed = Clock::now();
   double looked_at = 0, cost = 0;  // CPU time of the whole program at the last update, and cost of the last update [s]
   auto pause = shortest;
   while (!ending_) {
@@ -65,6 +65,10 @@ void Studio::look() {
       woken = std::exchange(viewer_woken_, false);
     }
     if (ending_) return;
+    if (settings_.refresh && Clock::now() - refreshed >= refreshing) {
+      woken |= settings_.refresh(*this);
+      refreshed = Clock::now();
+    }
     bool rendering = false;
     std::uint64_t changes = 0, generations = generation;
     const auto count = [&](const Runner::Status& status) {

@@ -78,6 +78,23 @@ class Viewing(unittest.TestCase):
             self.assertFalse(page.ask("picture_probe", picture="a.npy", x=width, y=0)["ok"])
             self.assertFalse(page.ask("picture_probe", picture="none", x=0, y=0)["ok"])
 
+    def test_files_that_are_written_again(self):
+        (self.path / "a.npy").write_bytes(npy([1.0] * 12, 2, 2))
+        with Studio("a.npy", folder=self.path, command="view", threads=0) as studio, studio.page() as page:
+            page.good("watch", layer="pin:a.npy")
+            page.drain(1)
+            before = page.good("picture_probe", picture="a.npy", x=0, y=0)["rgb"][1]
+            frames = len(page.pixels)
+            (self.path / "a.npy").write_bytes(b"half of a")  # it stays until the file is whole
+            page.drain(2)
+            self.assertEqual(page.good("picture_probe", picture="a.npy", x=0, y=0)["rgb"][1], before)
+            (self.path / "b").write_bytes(npy([2.0] * 48, 4, 4))
+            (self.path / "b").rename(self.path / "a.npy")
+            page.drain(4)
+            self.assertAlmostEqual(page.good("picture_probe", picture="a.npy", x=3, y=3)["rgb"][1], 2 * before, places=3)
+            self.assertGreater(len(page.pixels), frames)
+            self.assertEqual((page.pixels[-1].width, page.pixels[-1].height), (4, 4))
+
     def test_what_is_no_picture(self):
         (self.path / "text.exr").write_text("this is no picture", encoding="utf-8")
         done = subprocess.run([PROGRAM, "view", "--no-browser", "text.exr", "none.png"], cwd=self.path, capture_output=True, text=True, timeout=60)

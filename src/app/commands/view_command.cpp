@@ -64,10 +64,46 @@ std::vector<std::string> names_of(const std::vector<std::string>& files) {
   return names;
 }
 
+/// A shown file, as it was when it was read.
+struct Shown {
+  std::string name, file;
+  fs::file_time_type written{};
+  std::uintmax_t size = 0;
+  Shown(std::string name_, std::string file_) : name(std::move(name_)), file(std::move(file_)) { changed(); }
+
+  /// Whether it was written since the last call.
+  bool changed() {
+    std::error_code error;
+    const auto now = fs::last_write_time(file, error);
+    const auto bytes = error ? 0 : fs::file_size(file, error);
+    if (error || (now == written && bytes == size)) return false;
+    written = now;
+    size = bytes;
+    return true;
+  }
+};
+
+/// Shows files that were written since they were read. One that is removed, or is just being written, stays as it was.
+bool refresh(std::vector<Shown>& shown, studio::Studio& studio) {
+  bool any = false;
+  for (Shown& one : shown) {
+    if (!one.changed()) continue;
+    try {
+      studio.pin(one.name, picture_in(one.file));
+      any = true;
+    } catch (const Error&) {
+      one.written = {};  // not yet whole
+    }
+  }
+  return any;
+}
+
 int view(const ViewOptions& options) {
   std::vector<std::pair<std::string, std::shared_ptr<const Image>>> pictures;
   std::vector<Error> errors;
   const std::vector<std::string> names = names_of(options.files);
+  std::vector<Shown> shown;
+  for (size_t i = 0; i < names.size(); ++i) shown.emplace_back(names[i], options.files[i]);
   for (size_t i = 0; i < names.size(); ++i) try {
       pictures.emplace_back(names[i], picture_in(options.files[i]));
     } catch (const Error& error) {
@@ -77,6 +113,7 @@ int view(const ViewOptions& options) {
   studio::StudioSettings settings;
   settings.read_only = true;
   settings.viewing = true;
+  settings.refresh = [&](studio::Studio& studio) { return refresh(shown, studio); };
   settings.folders.allow(fs::current_path().string());
   studio::ServerSettings server_settings;
   server_settings.port = static_cast<unsigned short>(options.port);
@@ -89,7 +126,10 @@ int view(const ViewOptions& options) {
 
 void add_view_command(Command& program) {
   auto options = std::make_shared<ViewOptions>();
-  Command command = program.add_command("view", "Show pictures in the browser: EXR, PNG, NPY and others, checkpoints");
+  Command command = program.add_command("view",
+                                        "Show pictures in the browser: EXR, PNG, NPY and others, checkpoints. A file that is "
+                                        "written again is shown again, so the "
+                                        "checkpoint of a render shows how it grows");
   command.argument("IMAGE", options->files, "The pictures").required();
   command.flag("--no-browser", options->no_browser, "Only print the address");
   command.option("--port N", options->port, "Port; 0: any free one").range(0, 65535);
