@@ -127,7 +127,7 @@ bool agree(const std::shared_ptr<const ShaderGroup>& group, const std::string& t
 #define ETENDUE_NEEDS_MACHINE \
   if (!machine()) GTEST_SKIP() << "built without LLVM"
 
-// ETENDUE_OSL_SHADERS tells how many, ETENDUE_OSL_FIRST the first seed: the long run was of 10,000.
+// ETENDUE_OSL_SHADERS tells how many, ETENDUE_OSL_FIRST the first seed, for longer runs.
 TEST(OslMachine, AgreesWithTheInterpreterOnRandomShaders) {
   ETENDUE_NEEDS_MACHINE;
   const char *count = std::getenv("ETENDUE_OSL_SHADERS"), *first = std::getenv("ETENDUE_OSL_FIRST");
