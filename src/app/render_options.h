@@ -26,12 +26,12 @@ struct RenderOptions : SceneOptions {
   std::string checkpoint, resume, continue_file, every, passes;  ///< as written
   std::string pixel;
   std::optional<std::uint32_t> sample;
-  int paths = 5;         ///< number of the pixel's samples that are printed
-  std::string replay;    ///< the JSON file the paths are written to; empty: none
-  int fireflies = 0;     ///< number of samples that are listed after the render
+  int paths = 5;            ///< number of the pixel's samples that are printed
+  std::string replay;       ///< the JSON file the paths are written to; empty: none
+  int fireflies = 0;        ///< number of samples that are listed after the render
   bool send_scene = false;  ///< to processes that do not see its files
-  Team* team = nullptr;  ///< the processes that render together; null: this one alone
-  std::string tev;       ///< address of the tev that shows the image, as written; empty: none
+  Team* team = nullptr;     ///< the processes that render together; null: this one alone
+  std::string tev;          ///< address of the tev that shows the image, as written; empty: none
 
   void add_to(Command& command);
   /// Adds the options that choose the picture and its files, which are a part of those above.

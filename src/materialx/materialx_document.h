@@ -30,8 +30,9 @@ struct MaterialXDocument {
   mutable std::atomic<bool> told = false;  ///< whoever reads it next need not tell `notes` and problems again
 };
 
-/// Reads a document, or the networks of MaterialX in a USD scene, or returns what was read before, if no file of it has changed since. Only files in its own folder and in
-/// `allowed_folders` are read and named in shaders; others are an Error. Throws Error with the reason, without the file's name.
+/// Reads a document, or the networks of MaterialX in a USD scene, or returns what was read before, if no file of it has changed
+/// since. Only files in its own folder and in `allowed_folders` are read and named in shaders; others are an Error. Throws
+/// Error with the reason, without the file's name.
 std::shared_ptr<const MaterialXDocument> read_materialx(const std::string& path,
                                                         const std::vector<std::string>& allowed_folders);
 /// The same for what may name all files, as a description may, which names the document as a plugin.

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "etendue/core/error.h"
-#include "render/mattes.h"
+#include "render/mattes/mattes.h"
 #include "support/render_support.h"
 
 namespace etendue {

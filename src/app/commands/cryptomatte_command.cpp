@@ -15,7 +15,7 @@
 #include "files/output_files.h"
 #include "film/picture_format.h"
 #include "render/checkpoint.h"
-#include "render/mattes.h"
+#include "render/mattes/mattes.h"
 
 namespace etendue {
 namespace {
