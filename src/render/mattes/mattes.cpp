@@ -10,11 +10,11 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "camera_path.h"
 #include "etendue/core/arena.h"
 #include "etendue/transport/ray_tree.h"
 #include "film/filter_window.h"
 #include "film/picture_format.h"
+#include "render/camera_path.h"
 
 namespace etendue {
 namespace {
