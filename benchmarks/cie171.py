@@ -416,7 +416,9 @@ def write(path, rows, worst, deviations):
             "are computed from each section's law, independently of the renderers. The table has the differences of `etendue measure` from the true value "
             "with their standard errors, in %.", "",
             "Largest difference: **%.2f %%** (allowed: 0.5 %%). The differences are %.2f standard errors, root mean square; pure noise gives 1.07, as the "
-            "errors are themselves estimated from 16 renders." % (100 * worst, math.sqrt(np.mean(np.square(deviations)))), "",
+            "errors are themselves estimated from 16 renders. Rows of one geometry use the same random numbers, so their differences are alike; light that the "
+            "meter sees directly is found in the same way by PathTracer and BidirectionalPathTracer, to the same numbers. LightTracer finds no sky that is "
+            "seen directly." % (100 * worst, math.sqrt(np.mean(np.square(deviations)))), "",
             "| | case | true value | " + " | ".join(RENDERERS) + " |", "|---|---|---:|" + "---:|" * len(RENDERERS)]
     for case, row in sorted(rows, key=lambda r: [int(x) for x in r[0].section.split(".")]):
         text.append("| %s | %s | %.6g | %s |" % (case.section, case.what, case.truth, " | ".join(

@@ -7,8 +7,10 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
 
 #include "etendue/describe/color.h"
+#include "support/program_support.h"
 #include "support/render_support.h"
 
 namespace etendue {
@@ -140,6 +142,16 @@ TEST(Measure, SeedsAreIndependent) {
   };
   for (const double a : renders_of(1))
     for (const double b : renders_of(2)) EXPECT_GT(std::abs(a - b), 1e-9 * a);
+}
+
+using MeasureProgram = RunsProgram;
+
+// A zero that is there because the renderer cannot find the light is not shown without a word.
+TEST_F(MeasureProgram, WarnsOfLightThatIsMissed) {
+  std::ofstream(folder / "sky.etd") << job_text("LightTracer {}", up,
+                                                "Environment { emission: DiffuseEmission { radiance: 1 } }");
+  EXPECT_EQ(run({"measure", "sky.etd", "--samples", "1e4", "--bands", "1"}), 0) << err;
+  EXPECT_TRUE(says("LightTracer cannot find")) << err;
 }
 
 TEST(Measure, RefusesACrop) {
