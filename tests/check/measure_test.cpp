@@ -5,9 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <fstream>
 
 #include "etendue/describe/color.h"
+#include "support/program_support.h"
 #include "support/render_support.h"
 
 namespace etendue {
@@ -124,6 +127,31 @@ TEST(Measure, BandsOfTheFile) {
   const std::string json = measure::measurement_json(m), text = measure::measurement_text(m);
   EXPECT_NE(json.find("\"illuminance\""), std::string::npos);
   EXPECT_NE(text.find("580 to 600"), std::string::npos);
+}
+
+// Each measurement is made of several renders with seeds of their own, and measurements with neighbouring seeds have none in
+// common. Of two renders the mean m and its standard error e tell the values: m - e and m + e.
+TEST(Measure, SeedsAreIndependent) {
+  const std::string lamp =
+      "Disc { radius: 1 m, transform: translate(0.3 m, 2.1 m, -0.2 m) * rotate(90 deg, \"x\"), emission: DiffuseEmission { "
+      "radiance: 1 } }";
+  const auto renders_of = [&](int seed) {
+    const std::string text = job_text("PathTracer {}", up, lamp, "seed: " + std::to_string(seed));
+    const measure::Reading r = measured(text, {.samples = 1 << 14, .renders = 2, .bands = 1}).total;
+    return std::array{r.value - r.error, r.value + r.error};
+  };
+  for (const double a : renders_of(1))
+    for (const double b : renders_of(2)) EXPECT_GT(std::abs(a - b), 1e-9 * a);
+}
+
+using MeasureProgram = RunsProgram;
+
+// A zero that is there because the renderer cannot find the light is not shown without a word.
+TEST_F(MeasureProgram, WarnsOfLightThatIsMissed) {
+  std::ofstream(folder / "sky.etd") << job_text("LightTracer {}", up,
+                                                "Environment { emission: DiffuseEmission { radiance: 1 } }");
+  EXPECT_EQ(run({"measure", "sky.etd", "--samples", "1e4", "--bands", "1"}), 0) << err;
+  EXPECT_TRUE(says("LightTracer cannot find")) << err;
 }
 
 TEST(Measure, RefusesACrop) {

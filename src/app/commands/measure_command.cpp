@@ -7,6 +7,7 @@
 #include "app/scene_options.h"
 #include "app/text.h"
 #include "check/measure/measure.h"
+#include "check/warnings/advice.h"
 #include "etendue/language/language.h"
 
 namespace etendue {
@@ -31,6 +32,9 @@ int measure_file(const MeasureOptions& options) {
     return true;
   };
   const measure::Measurement m = measure::measure(job, how);
+  // The numbers say the renderer's bias, but not what it cannot find.
+  for (const Advice& advice : job->renderer->misses(scene_traits(*job->scene, *job->camera)))
+    warn(advice_text(job->renderer->class_info().name, advice));
   fmt::print("{}", options.json ? measure::measurement_json(m) : measure::measurement_text(m));
   return exit_status::done;
 }

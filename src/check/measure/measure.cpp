@@ -84,6 +84,8 @@ Measurement measure(const Ref<Job>& job, const Options& options) {
   job->renderer->samples = int(std::clamp(std::ceil(options.samples / pixels / renders), 1.0, 1e9));
   job->time_limit = 0;
   job->error_limit = 0;
+  // Measurements with neighbouring seeds share no renders.
+  job->seed *= 10000;
   Render render(job, {.threads = options.threads});
 
   Measurement m;

@@ -1,4 +1,4 @@
-// etendue image diff, info, tonemap, spectrum, sensor, balance, cryptomatte, merge: tools for image files.
+// etendue image diff, info, tonemap, spectrum, sensor, balance, false-colour, glare, cryptomatte, merge: tools for image files.
 
 #include <fmt/format.h>
 
@@ -13,6 +13,8 @@
 #include "files/output_files.h"
 #include "image_balance.h"
 #include "image_cryptomatte.h"
+#include "image_false_color.h"
+#include "image_glare.h"
 #include "image_merge.h"
 #include "image_sensor.h"
 #include "image_spectrum.h"
@@ -169,6 +171,8 @@ void add_image_command(Command& program) {
   add_image_spectrum(command);
   add_image_sensor(command);
   add_image_balance(command);
+  add_image_false_color(command);
+  add_image_glare(command);
   add_image_cryptomatte(command);
   add_image_merge(command);
 }

@@ -47,6 +47,12 @@ Sensor sensor_of(const SensorOptions& options) {
 
 /// The numbers of a display format are fractions of its largest one: a 16 bit file then holds the digital numbers themselves.
 void write_numbers(Image numbers, const std::string& path) {
+  if (path.ends_with(".npy")) {
+    // An NpyOutput writes X, Y and Z. Called so, the numbers are not turned from R, G, B into these.
+    numbers.channels = {"X", "Y", "Z"};
+    numbers.metadata["color_space"] = "xyz";
+    return write_any(numbers, path);
+  }
   const Ref<Output> png = ref_cast<Output>(Registry::instance().create("PngOutput"));
   if (!path.ends_with(".png")) return write_any(numbers, path);
   for (double& v : numbers.values) v /= 65535;
