@@ -163,7 +163,8 @@ Spectrum direct_light(PathBatch& batch, const SurfaceList& s, size_t i) {
   const LightChoice choice = batch.light_sampler.choose(x.position, x.normal, numbers.next());
   const Point2 u = numbers.next_pair();
   LuminaireSample light;
-  if (!choice.luminaire || !sample_luminaire(scene, *choice.luminaire, x, batch.wavelengths[i], u, light)) return {};
+  if (!choice.luminaire || !sample_luminaire(scene, &batch.light_sampler, *choice.luminaire, x, batch.wavelengths[i], u, light))
+    return {};
   const Spectrum f_cos = s.scatters[i]->evaluate(s.out(i), light.direction, {.lobes = smooth_lobes});
   if (f_cos.black() || scene.any(light.shadow)) return {};
   return f_cos * light.radiance / (choice.probability * light.pdf);
