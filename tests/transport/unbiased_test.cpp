@@ -339,7 +339,8 @@ std::string map_text(const ClassInfo& info, const std::string& image) {
       {"TransformedMap", "transform: rotate(20 deg, [0, 0, 1])"}};
   std::string text = info.name + " { ";
   if (const auto found = own.find(info.name); found != own.end()) text += found->second + ", ";
-  bool made = info.name == "CheckerMap";  // only the first part; with all parts replaced, patterns would not show
+  // Only the first part: with all parts replaced, patterns would not show. The map of a group is a shader.
+  bool made = info.name == "CheckerMap" || info.name == "OslGroupMap";
   for (const Member& m : info.members) {
     const bool said = text.find(" " + m.name + ":") != std::string::npos;
     if (m.kind == Kind::component && !m.list && m.component_class == "ObjectMap" && !said && !made) {
