@@ -160,7 +160,7 @@ void RenderOptions::scale_crop(const Job& job, std::vector<Override>& list) cons
   list.push_back({"--size", "image.crop", crop_of(scaled)});
 }
 
-Ref<Job> RenderOptions::load() const {
+Ref<Job> RenderOptions::load_overridden() const {
   // Errors in the command line are thrown before the scene is loaded, which may take long.
   std::vector<Override> list = overrides();
   settings();
@@ -168,7 +168,6 @@ Ref<Job> RenderOptions::load() const {
   for (const Override& override : list) said.push_back({override.option, override.path});
   require_kept(said);
   if (const std::string from = resumed_file(); !from.empty()) read_checkpoint_header(from);
-  const InputsRead inputs;
   Ref<Job> job = SceneOptions::load();
   scale_crop(*job, list);
   std::vector<Error> errors;
@@ -185,6 +184,12 @@ Ref<Job> RenderOptions::load() const {
     errors.emplace_back(fmt::format("an error of {} is no limit: give one that a picture can reach, such as 0.01", error),
                         Location{intern("--error"), 0, 0});
   if (!errors.empty()) throw Errors(std::move(errors));
+  return job;
+}
+
+Ref<Job> RenderOptions::load() const {
+  const InputsRead inputs;
+  Ref<Job> job = load_overridden();
   job->metadata["file"] = file;
   job->metadata["file_hash"] = hash_of(*job, inputs.paths());
   job->metadata["command_line"] = picture_command();

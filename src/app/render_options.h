@@ -39,6 +39,8 @@ struct RenderOptions : SceneOptions {
 
   /// Loads the file, applies all overrides except the outputs, and checks the settings. Throws Errors.
   Ref<Job> load() const;
+  /// Likewise, without what a picture's file tells of the command.
+  Ref<Job> load_overridden() const;
   /// The settings of the render. Throws Error for options that contradict each other.
   RenderSettings settings() const;
   /// The checkpoint to resume from; empty: the render starts anew.

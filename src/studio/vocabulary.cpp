@@ -9,15 +9,19 @@ namespace etendue::studio {
 
 namespace {
 
-/// The descriptions of all classes. They change only when plugins are loaded, which are never unloaded, so the number of
-/// classes identifies the version.
-const Json& known_classes() {
+/// The descriptions of all classes. They change when plugins are loaded, and when a shader's file is read again: its class is
+/// then declared anew. Descriptions are never destroyed, so their addresses tell whether these are still the same.
+Json known_classes() {
   static std::mutex guard;
-  static std::map<size_t, Json> by_count;
+  static std::vector<const ClassInfo*> known;
+  static Json descriptions;
   const std::lock_guard lock(guard);
-  const auto [place, is_new] = by_count.try_emplace(Registry::instance().all().size());
-  if (is_new) place->second = Json::parse(classes_json());
-  return place->second;
+  std::vector<const ClassInfo*> now = Registry::instance().all();
+  if (now != known) {
+    descriptions = Json::parse(classes_json());
+    known = std::move(now);
+  }
+  return descriptions;
 }
 
 }  // namespace

@@ -51,6 +51,25 @@ def test_another_reader_finds_the_same_mattes(tmp_path):
     assert whole.max() <= 1 + 1e-5 and 0.1 < whole.mean() < 0.5
 
 
+def test_a_crop_is_a_part_of_the_whole(tmp_path):
+    """With --crop, and with a crop of the description that --size scales."""
+    (tmp_path / "scene.etd").write_text(SCENE)
+    cropped = SCENE.replace("height: 16 }", "height: 16, crop: [6, 4, 18, 12] }")
+    assert cropped != SCENE
+    (tmp_path / "cropped.etd").write_text(cropped)
+
+    def ball(scene, *options):
+        run("cryptomatte", tmp_path / scene, "-o", tmp_path / "mattes.exr", "--quiet", *options)
+        run("image", "cryptomatte", tmp_path / "mattes.exr", "--select", "ball", "--kind", "crypto_object", "-o", tmp_path / "matte.npy")
+        return np.load(tmp_path / "matte.npy")
+
+    whole = ball("scene.etd")
+    assert whole[4:12, 6:18].mean() > 0.3
+    np.testing.assert_array_equal(ball("scene.etd", "--crop", "6,4,18,12"), whole[4:12, 6:18])
+    half = ball("scene.etd", "--size", "12x8")
+    np.testing.assert_array_equal(ball("cropped.etd", "--size", "12x8"), half[2:6, 3:9])
+
+
 def test_the_same_bytes_for_any_number_of_threads(tmp_path):
     (tmp_path / "scene.etd").write_text(SCENE)
     for threads in (1, 2):

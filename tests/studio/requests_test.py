@@ -62,6 +62,9 @@ class Requests(unittest.TestCase):
             shader.write_text("surface followed(float k = 0.25, float added = 1) { Ci = k * added * diffuse(N); }")
             page.wait(lambda e: e.get("event") == "tree" and "added" in str(e))
             page.wait(lambda e: e.get("event") == "document" and not e["errors"])
+            # A page that is loaded anew knows the class as it is now.
+            followed = next(c for c in page.good("hello", protocol=1)["classes"] if c["name"] == "Followed")
+            self.assertEqual([m["name"] for m in followed["members"]], ["k", "added"])
 
     def test_warnings_and_advice(self):
         dark = SCENE.replace("emission: DiffuseEmission { radiance: 3 } ", "").replace("PathTracer", "LightTracer")

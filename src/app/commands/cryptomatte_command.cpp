@@ -6,7 +6,7 @@
 #include "app/commands.h"
 #include "app/common_options.h"
 #include "app/interruption.h"
-#include "app/scene_options.h"
+#include "app/render_options.h"
 #include "app/text.h"
 #include "components/outputs/encoded_image.h"
 #include "etendue/film/image_tools.h"
@@ -20,10 +20,10 @@
 namespace etendue {
 namespace {
 
-struct MatteOptions : SceneOptions {
-  std::string output, samples, size, seed;
-  int ranks = 0, threads = 0;
-  bool quiet = false;
+/// Samples, seed, size and crop are those of a render.
+struct MatteOptions : RenderOptions {
+  std::string output;
+  int ranks = 0;
 };
 
 /// What sees the first surfaces with the samples of the file's renderer. Only how these are made matters, so that a renderer
@@ -38,15 +38,7 @@ void see_only(Job& job) {
 int render_file(const MatteOptions& options) {
   if (!options.output.ends_with(".exr"))
     throw Error("'" + options.output + "' must end in .exr: mattes are channels of OpenEXR", {intern("--output"), 0, 0});
-  const Ref<Job> job = options.load();
-  if (!options.seed.empty()) set_path(*job, "seed", options.seed);
-  if (!options.samples.empty()) set_path(*job, "renderer.samples", options.samples);
-  if (!options.size.empty()) {
-    int n[2];
-    parse_integers(options.size, 'x', 2, n, "--size", "WxH, such as 640x480");
-    set_path(*job, "image.width", std::to_string(n[0]));
-    set_path(*job, "image.height", std::to_string(n[1]));
-  }
+  const Ref<Job> job = options.load_overridden();
   if (job->renderer) see_only(*job);
   note_inputs_of(*job);
   OutputFiles files;
@@ -89,10 +81,11 @@ int render_file(const MatteOptions& options) {
 void add_cryptomatte_command(Command& program) {
   Command command = program.add_command("cryptomatte", "Write mattes of all objects, materials and assets of a picture");
   auto options = std::make_shared<MatteOptions>();
-  options->add_to(command);
+  options->SceneOptions::add_to(command);
   command.option("-o,--output FILE", options->output, "The EXR file to write").required();
   command.option("--samples N", options->samples, "Samples per pixel");
   command.option("--size WxH", options->size, "Size of the picture in pixels");
+  command.option("--crop X0,Y0,X1,Y1", options->crop, "Mattes of these pixels only; X1 and Y1 are excluded");
   command.option("--ranks N", options->ranks, "Keep only the N largest coverages of a pixel; 0: all")
       .show_default()
       .range(0, 200);

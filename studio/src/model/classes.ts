@@ -64,6 +64,19 @@ export class Classes {
     return this.find(className)?.members.find((m) => m.name === member);
   }
 
+  /** Whether the classes of all components are known, with the members that the components have. */
+  describe(components: Iterable<{ class: string; members: Record<string, unknown> }>): boolean {
+    const seen = new Set<string>();
+    for (const component of components) {
+      if (seen.has(component.class)) continue;
+      seen.add(component.class);
+      const known = this.find(component.class)?.members;
+      if (known?.length !== Object.keys(component.members).length) return false;
+      if (!known.every((m) => m.name in component.members)) return false;
+    }
+    return true;
+  }
+
   /** Whether a component of class `name` may stand where one of class `wanted` is expected. */
   isA(name: string, wanted: string): boolean {
     for (let at = this.find(name); at; at = at.parent ? this.find(at.parent) : undefined) {

@@ -78,6 +78,7 @@ function take(event: Event): void {
       break;
     case "tree":
       takeTree(event as unknown as TreeState);
+      if (!state.classes.value.describe(state.components.value.values())) void hello(); // a plugin has brought or changed classes
       break;
     case "progress":
       takeProgress(event as unknown as Progress);

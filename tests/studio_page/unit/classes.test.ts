@@ -64,3 +64,14 @@ test("a thing is added behind what is selected in a list, and into a scene that 
   assert.deepEqual(slots(sphere, sphere.uses[0] as Use, tree, known).map((s) => [s.component.id, s.index])[0], [2, 1]);
   assert.deepEqual(slots(tree.get(2) as Component, { id: 1, member: "scene" }, tree, known).map((s) => [s.component.id, s.member.name, s.index])[0], [2, "objects", undefined]);
 });
+
+test("components tell when a plugin has brought or changed classes", () => {
+  const place = state(1);
+  const sphere = (name: string, members: Component["members"]): boolean => known.describe([part(4, name, [], members)]);
+  assert.ok(known.describe([...tree.values()].filter((c) => c.class !== "Sphere")));
+  assert.ok(sphere("Sphere", { place, radius: place }));
+  assert.ok(!sphere("Sphere", { place, radius: place, added: place }));
+  assert.ok(!sphere("Sphere", { place }));
+  assert.ok(!sphere("Sphere", { place, renamed: place }));
+  assert.ok(!sphere("Marble", { place }));
+});
