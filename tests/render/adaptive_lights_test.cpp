@@ -122,15 +122,16 @@ TEST(AdaptiveLights, SunInASmallPatchIsNotLost) {
 // Squares of what such lamps give are beyond the range of numbers.
 TEST(AdaptiveLights, NothingIsTooBright) {
   const auto lamps = [](const std::string& radiance) {
-    const std::string lamp = ", 0, 0.5] m, radius: 0.05 m, emission: DiffuseEmission { radiance: " + radiance + " } },";
+    const std::string lamp = "] m, radius: 0.05 m, emission: DiffuseEmission { radiance: " + radiance + " } }";
     return test::job_text("PathTracer { samples: 4, max_depth: 2 }",
                           "PerspectiveCamera { from: [0, 0, 0.5] m, to: [0, 0, 0] m, up: [0, 1, 0], fov: 2 deg }", 16,
-                          "Disc { radius: 2 m, shader: Lambertian { color: 0.5 } }, Sphere { centre: [0.5" + lamp +
-                              "Sphere { centre: [-0.5" + lamp +
-                              "Environment { emission: EnvironmentEmission { radiance: " + radiance + " } }");
+                          "Disc { radius: 2 m, shader: Lambertian { color: 0.5 } }, Sphere { centre: [0.5, 0, 0.5" + lamp +
+                              ", Sphere { centre: [-0.5, 0, 0.5" + lamp + ", Sphere { centre: [0, 0.5, 0.5" + lamp);
   };
   const test::Measured bright = test::measure(lamps("1e25")), usual = test::measure(lamps("1"));
-  EXPECT_NEAR(bright.mean.y / 1e25, usual.mean.y, 5 * (bright.error / 1e25 + usual.error));
+  EXPECT_EQ(bright.bad, 0u);
+  EXPECT_GT(usual.mean.y, 10 * usual.error);
+  EXPECT_NEAR(bright.mean.y / 1e25, usual.mean.y, 5 * std::hypot(bright.error / 1e25, usual.error));
 }
 
 TEST(AdaptiveLights, TheSameBitsForAnyThreads) {
