@@ -75,6 +75,11 @@ Sums rounded(const std::array<double, EnvironmentGuide::side>& weights) {
   return sums;
 }
 
+constexpr float evenly = 0.125f;  // d
+
+/// R_t of a tile whose learned probability is so many parts of 256^2.
+float mixed(int parts) { return evenly + (1 - evenly) * float(parts) / EnvironmentGuide::tiles; }
+
 /// A place's coordinate as a tile's, with the position within the tile.
 int tile_of(float u) { return std::min(int(u * EnvironmentGuide::side), EnvironmentGuide::side - 1); }
 
@@ -132,16 +137,21 @@ void EnvironmentGuide::learn(std::uint32_t region, const Squares& squares) {
 }
 
 EnvironmentGuide::Guided EnvironmentGuide::sample(std::uint32_t region, Point2 r) const {
+  if (r.x < evenly) {
+    r.x = std::min(r.x / evenly, one_minus_epsilon);
+    return {r, ratio(region, r)};
+  }
+  r.x = std::min((r.x - evenly) / (1 - evenly), one_minus_epsilon);
   const Table& table = tables_[region];
   const int row = find(table.rows, r.y), column = find(table.columns[size_t(row)], r.x);
   return {{std::min((float(column) + r.x) / side, one_minus_epsilon), std::min((float(row) + r.y) / side, one_minus_epsilon)},
-          float(share(table.rows, row) * share(table.columns[size_t(row)], column)) / tiles};
+          mixed(share(table.rows, row) * share(table.columns[size_t(row)], column))};
 }
 
 float EnvironmentGuide::ratio(std::uint32_t region, Point2 place) const {
   const Table& table = tables_[region];
   const int row = tile_of(place.y);
-  return float(share(table.rows, row) * share(table.columns[size_t(row)], tile_of(place.x))) / tiles;
+  return mixed(share(table.rows, row) * share(table.columns[size_t(row)], tile_of(place.x)));
 }
 
 }  // namespace etendue

@@ -28,7 +28,8 @@ constexpr int places_of_region = 16;
 constexpr int longest = 8;  // segments of a path
 constexpr int rays_of_turn = 64;
 constexpr int rays_of_luminaire = 64;
-constexpr float by_others = 0.25f;  // d
+constexpr float by_others = 0.25f;        // d
+constexpr float greatest_square = 1e36f;  // sums of a table's entries, and their roots, stay finite
 constexpr std::uint32_t paths_at_once = 64;
 
 /// Learning takes as many rays as a part of a sample for each pixel does: so many candidates, half of which are below the
@@ -108,7 +109,8 @@ class Lookout {
     arena_.reset();
     if (visible.black()) return 0;
     const Spectrum light = visible * luminaire.emission->radiance(seen.point, -seen.direction, wavelengths_);
-    return square(cosine * light.average() / seen.pdf);
+    const float found = square(cosine * light.average() / seen.pdf);
+    return found > 0 ? std::min(found, greatest_square) : 0;  // nothing is learned from what is not a number
   }
 
  private:

@@ -24,10 +24,10 @@ TEST(EnvironmentGuide, SamplesHaveTheProbabilitiesOfTheirTiles) {
     return guide.ratio(0, {(float(column) + 0.5f) / EnvironmentGuide::side, (float(row) + 0.5f) / EnvironmentGuide::side});
   };
   // The roots of the squares are as 2 to 1, in one row; in each dimension an entry has one part of 256, and its share of the
-  // other 240. A part of one dimension times one of the other is 1 / 256 of equal tiles.
-  EXPECT_NEAR(ratio_at(3, 5), 241 * 161 / 256.0, 1e-3);
-  EXPECT_NEAR(ratio_at(4, 5), 241 * 81 / 256.0, 1e-3);
-  EXPECT_NEAR(ratio_at(15, 15), 1 * 16 / 256.0, 1e-4);
+  // other 240. A part of one dimension times one of the other is 1 / 256 of equal tiles. An eighth of the samples is even.
+  EXPECT_NEAR(ratio_at(3, 5), 0.125 + 0.875 * 241 * 161 / 256, 1e-3);
+  EXPECT_NEAR(ratio_at(4, 5), 0.125 + 0.875 * 241 * 81 / 256, 1e-3);
+  EXPECT_NEAR(ratio_at(15, 15), 0.125 + 0.875 * 1 * 16 / 256, 1e-4);
 
   // Midpoints of a fine grid of numbers: the mean of 1 / ratio over samples is the area of the unit square, and as many samples
   // fall into a tile as its probability says.
@@ -98,6 +98,40 @@ TEST(AdaptiveLights, OfTwoLampsThatWhichIsSeenIsAsked) {
   // A lamp chosen with the probability P adds 1 / P - 1 to the relative variance: 1 where both are alike, 0.15 and little more
   // where the one that is seen is chosen seven times out of eight.
   EXPECT_LT(adaptive.error, 0.6 * plain.error);
+}
+
+// A patch of sunlight 40 cm wide in a room of 4 m, which few or none of the paths meet that learn: where nothing of the sun was
+// seen, its samples must not become so rare that each is a firefly.
+TEST(AdaptiveLights, SunInASmallPatchIsNotLost) {
+  const auto room = [](const std::string& renderer) {
+    return test::job_text(renderer, "PerspectiveCamera { from: [0, -1.7, 0.5] m, to: [0, 0, 0] m, up: [0, 0, 1], fov: 60 deg }",
+                          64,
+                          "Disc { radius: 2 m, shader: Lambertian { color: 0.5 } },"
+                          "Cylinder { radius: 2 m, height: 2 m, caps: false, shader: Lambertian { color: 0.5 } },"
+                          "Annulus { inner_radius: 0.2 m, radius: 2 m, shader: Lambertian { color: 0.5 }, "
+                          "transform: translate(0, 0, 1) },"
+                          "Environment { transform: rotate(90 deg, \"x\"), emission: SkyEmission { "
+                          "sun_direction: [0.2, 0.9, 0.1], turbidity: 3, sun: true } }");
+  };
+  const test::Measured adaptive = test::measure(room("PathTracer { samples: 64, max_depth: 4 }")),
+                       plain = test::measure(room("SimplePathTracer { samples: 64, max_depth: 4 }"));
+  EXPECT_NEAR(adaptive.mean.y, plain.mean.y, 5 * std::hypot(adaptive.error, plain.error));
+  EXPECT_LT(adaptive.error, 2.5 * plain.error);
+}
+
+// Squares of what such lamps give are beyond the range of numbers.
+TEST(AdaptiveLights, NothingIsTooBright) {
+  const auto lamps = [](const std::string& radiance) {
+    const std::string lamp = "] m, radius: 0.05 m, emission: DiffuseEmission { radiance: " + radiance + " } }";
+    return test::job_text("PathTracer { samples: 4, max_depth: 2 }",
+                          "PerspectiveCamera { from: [0, 0, 0.5] m, to: [0, 0, 0] m, up: [0, 1, 0], fov: 2 deg }", 16,
+                          "Disc { radius: 2 m, shader: Lambertian { color: 0.5 } }, Sphere { centre: [0.5, 0, 0.5" + lamp +
+                              ", Sphere { centre: [-0.5, 0, 0.5" + lamp + ", Sphere { centre: [0, 0.5, 0.5" + lamp);
+  };
+  const test::Measured bright = test::measure(lamps("1e25")), usual = test::measure(lamps("1"));
+  EXPECT_EQ(bright.bad, 0u);
+  EXPECT_GT(usual.mean.y, 10 * usual.error);
+  EXPECT_NEAR(bright.mean.y / 1e25, usual.mean.y, 5 * std::hypot(bright.error / 1e25, usual.error));
 }
 
 TEST(AdaptiveLights, TheSameBitsForAnyThreads) {

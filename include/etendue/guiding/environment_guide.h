@@ -5,10 +5,12 @@
 // Next event estimation samples an environment's directions in proportion to its radiance, by a map w(u) from the unit square
 // with the pdf p_0(w) [1/sr]. Indoors nearly all of these directions are hidden, but for those through a window. So the unit
 // square is divided into n x n tiles, and in each region of space the tiles have learned probabilities P_t:
-//     u = (t + r) / n,  r uniform in the unit square:    p(w) = p_0(w) n^2 P_t,  with the tile t that contains u(w).
+//     u = (t + r) / n,  r uniform in the unit square:    n^2 P_t p_0(w),  with the tile t that contains u(w).
 // All tiles have the same probability by p_0, so they are small where the environment is bright, and P_t need only know what is
-// hidden, and what the surface's own normal makes dark. Every P_t is positive, so each estimate stays unbiased, whatever was
-// learned.
+// hidden, and what the surface's own normal makes dark. A part d of the samples is by p_0 itself:
+//     p(w) = R_t p_0(w),    R_t = d + (1 - d) n^2 P_t.
+// So each estimate stays unbiased, whatever was learned, and none exceeds 1 / d of what it would be by p_0: in a patch of
+// sunlight that nothing in its region saw while it learned, too.
 //
 // The variance of an estimate is least if P_t is proportional to the root of the mean square of f |cos| L V / p_0 over the
 // tile. A region learns it for diffuse surfaces, from cosines and shadow rays.
@@ -48,16 +50,17 @@ class EnvironmentGuide {
 
   /// The mean square, of each tile row by row, of what a sample in it contributes by p_0.
   using Squares = std::array<float, tiles>;
-  /// Sets the probabilities in a region. They are rounded, and at least a sixteenth of those of equal tiles, in each dimension.
+  /// Sets the probabilities P_t in a region. They are rounded, and at least a sixteenth of those of equal tiles, in each
+  /// dimension.
   void learn(std::uint32_t region, const Squares&);
 
-  /// The point u that replaces the uniform `r`, and n^2 P_t.
+  /// The point u that replaces the uniform `r`, and R_t.
   struct Guided {
     Point2 place;
     float ratio;
   };
   Guided sample(std::uint32_t region, Point2 r) const;
-  /// n^2 P_t of the tile that contains a point of the unit square.
+  /// R_t of the tile that contains a point of the unit square.
   float ratio(std::uint32_t region, Point2 place) const;
 
  private:

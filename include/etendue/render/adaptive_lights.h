@@ -51,7 +51,7 @@ class AdaptiveLights final : public LightSampler {
   /// P of a luminaire, from P_tree and the CDF of the region.
   float mixed(float others, const float* chances, const SceneObject&) const;
 
-  /// The pdf [1/sr] of a direction to the environment: the sum of its parts times n^2 P_t of their tiles.
+  /// The pdf [1/sr] of a direction to the environment: the sum of its parts times R_t of their tiles.
   float guided_pdf(std::uint32_t region, const Vector3& direction, float time) const;
 
   const LightSampler& lights_;
