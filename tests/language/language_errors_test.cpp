@@ -126,7 +126,7 @@ TEST(Language, SyntaxErrors) {
   EXPECT_EQ(part_errors("white LanguagePart {}\nLanguagePart { child: white }"),
             "1:7: expected '=' or '{' after 'white', not 'LanguagePart'");
   EXPECT_EQ(part_errors("3\nLanguagePart {}"),
-            "1:1: expected a statement (name = value, param, include, plugin or a component), not '3'");
+            "1:1: expected a statement (name = value, param, include, plugin, class or a component), not '3'");
   EXPECT_EQ(part_errors("include 3\nLanguagePart {}"), "1:9: expected the file to include, in quotes, not '3'");
   EXPECT_EQ(value_errors("1 2"), "1:3: expected the end of the expression, not '2'");
   EXPECT_EQ(value_errors(""), "1:1: expected a value, not the end of the text");

@@ -225,7 +225,7 @@ TEST(PathLayers, DivideTheLobesOfASurface) {
         scene: BvhScene {{ objects: [ Sphere {{ radius: 1, shader: {} }}
           Sphere {{ centre: [3, 3, 3], radius: 1, emission: DiffuseEmission {{ radiance: 5 }} }} ] }} }})",
                               renderer, shader),
-                  512);
+                  4096);
   };
   const double matt = means(test::rendered(lit("PathTracer", "matt"), two_threads)->picture())["Y"];
   const double metal = means(test::rendered(lit("PathTracer", "metal"), two_threads)->picture())["Y"];

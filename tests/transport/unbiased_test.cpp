@@ -279,10 +279,11 @@ TEST(Unbiased, MapsAreFilteredOnRequestByOneWidth) {
   // A mirror, so that maps are also evaluated at later vertices.
   const std::string more =
       "Rectangle { corner: [-1, -1, 6], edge_u: [0, 2, 0], edge_v: [2, 0, 0], shader: PerfectSpecular {} }";
-  // Light subpaths evaluate maps without a filter; so do those that Automatic tries.
+  // Light subpaths evaluate maps without a filter; so do those that Automatic tries, and chains that are searched.
   const std::vector<std::string> from_both_ends = {"Automatic",
                                                    "BidirectionalPathTracer",
                                                    "InstantRadiosity",
+                                                   "ManifoldPathTracer",
                                                    "ManyLights",
                                                    "MultiplexedMetropolis",
                                                    "PhotonMapper",

@@ -154,7 +154,7 @@ class OslGroupVolume final : public GroupVolume, public GroupMembers {
     d.summary("A participating medium that is a network of shaders in the Open Shading Language.")
         .template member<&OslGroupVolume::volume>(
             "volume", "", "the last layer, whose closures are the medium; of a group without any layer it is a grey mist")
-        .template member<&OslGroupVolume::bound>(bound_name, "1/m", bound_text, at_least(0));
+        .template member<&OslGroupVolume::bound>(bound_name, "1/m", bound_text, at_least(0), soft(0, 1000));
     describe_group(d);
   }
   void prepare() override {
