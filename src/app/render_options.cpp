@@ -167,7 +167,6 @@ Ref<Job> RenderOptions::load_overridden() const {
   std::vector<SetOption> said = set_options();
   for (const Override& override : list) said.push_back({override.option, override.path});
   require_kept(said);
-  if (const std::string from = resumed_file(); !from.empty()) read_checkpoint_header(from);
   Ref<Job> job = SceneOptions::load();
   scale_crop(*job, list);
   std::vector<Error> errors;
@@ -188,6 +187,8 @@ Ref<Job> RenderOptions::load_overridden() const {
 }
 
 Ref<Job> RenderOptions::load() const {
+  // A checkpoint that is none is told before the scene is loaded; it is no input of the picture, so its reading is not noted.
+  if (const std::string from = resumed_file(); !from.empty()) read_checkpoint_header(from);
   const InputsRead inputs;
   Ref<Job> job = load_overridden();
   job->metadata["file"] = file;

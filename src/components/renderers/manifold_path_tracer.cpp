@@ -8,11 +8,14 @@
 // by which each path counts once in all. For those the walk remembers how it left its last smooth vertex, and by which specular
 // lobes it went on from there.
 
+#include <algorithm>
+
 #include "etendue/render/renderer.h"
 #include "etendue/transport/camera_walk.h"
 #include "etendue/transport/manifold_sampling.h"
 #include "etendue/transport/renderer_members.h"
 #include "etendue/transport/roulette.h"
+#include "etendue/transport/scene_traits.h"
 
 namespace etendue {
 
@@ -206,7 +209,25 @@ class ManifoldProcess final : public RenderProcess {
 
 }  // namespace
 
+namespace {
+
+/// Chains are not followed past surfaces that reflect and let light pass straight on as well, and nothing meets delta lights by
+/// chance: what of their light such surfaces reflect is lost. The classes of paths do not tell these surfaces from others.
+void warn_of_panes(const RenderContext& context) {
+  const SceneTraits traits = scene_traits(context.scene, context.camera);
+  if (!traits.delta_luminaires()) return;
+  std::vector<std::string> panes;
+  for (const std::string& name : traits.specular)
+    if (std::ranges::find(traits.null_scattering, name) != traits.null_scattering.end()) panes.push_back(name);
+  if (!panes.empty())
+    warn("ManifoldPathTracer follows no light of lights without extent that " + some_of(panes) +
+         " reflect or scatter: it is lost; BidirectionalPathTracer finds it");
+}
+
+}  // namespace
+
 std::unique_ptr<RenderProcess> ManifoldPathTracer::begin(const RenderContext& context) const {
+  warn_of_panes(context);
   return std::make_unique<ManifoldProcess>(*this, context);
 }
 
