@@ -1,6 +1,6 @@
 // Emissions that are written in Python.
 
-#include "etendue/core/warp.h"
+#include "components/emission/any_radiance.h"
 #include "etendue/emission_shader.h"
 #include "etendue/numbers.h"
 #include "etendue/scene_object.h"
@@ -28,7 +28,7 @@ class PythonEmission final : public PartOf<EmissionShader> {
   }
 
   DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
-    if (!defines(sample_name)) return cosine_sample(p, u);
+    if (!defines(sample_name)) return any_radiance::sample(*this, p, u);
     const PartCall call(*this, sample_name);
     const nb::object returned = call(PointArgument(p), tuple_of(u));
     static const std::string wanted = "a direction and its pdf [1/sr]: ((x, y, z), pdf)";
@@ -41,14 +41,15 @@ class PythonEmission final : public PartOf<EmissionShader> {
   }
 
   float pdf(const SurfacePoint& p, const Vector3& direction) const override {
-    if (!defines(sample_name)) return cosine_pdf(p, direction);
+    if (!defines(sample_name)) return any_radiance::pdf(*this, p, direction);
     if (!emits(p, direction)) return 0;
     const PartCall call(*this, pdf_name);
     return float(to_number(call(PointArgument(p), tuple_of(direction)), call.called));
   }
 
   Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
-    if (!defines(power_name)) return object.infinite() ? power_from_infinity(object, w) : power_of_points(object, w);
+    constexpr int calls = 2048;
+    if (!defines(power_name)) return any_radiance::power(*this, object, w, calls);
     std::array<float, spectrum_size> lambda;
     for (int i = 0; i < spectrum_size; ++i) lambda[size_t(i)] = w[i];
     const PartCall call(*this, power_name);
@@ -56,64 +57,6 @@ class PythonEmission final : public PartOf<EmissionShader> {
   }
 
   bool only_at_infinity() const override { return truth_of(*this, only_at_infinity_name, false); }
-
- private:
-  DirectionSample cosine_sample(const SurfacePoint& p, Point2 u) const {
-    if (p.normal == Normal3{}) return {warp::sphere(u), warp::sphere_pdf};
-    float side = sides == Sides::back ? -1.0f : 1.0f;
-    if (sides == Sides::both) {
-      side = u.x < 0.5f ? 1.0f : -1.0f;
-      u.x = std::min(u.x < 0.5f ? 2 * u.x : 2 * u.x - 1, one_minus_epsilon);
-    }
-    const Vector3 direction = side * Frame(p.normal).to_world(warp::cosine_hemisphere(u));
-    return {direction, cosine_pdf(p, direction)};
-  }
-  float cosine_pdf(const SurfacePoint& p, const Vector3& direction) const {
-    if (p.normal == Normal3{}) return warp::sphere_pdf;
-    if (!emits(p, direction)) return 0;
-    return (sides == Sides::both ? 0.5f : 1.0f) * inverse_pi * std::abs(dot(p.normal, direction));
-  }
-
-  static constexpr int pattern_size = 2048;
-  /// Four numbers of the R sequence (Roberts 2018): i times powers of the inverse of the root of x^5 = x + 1, modulo 1.
-  static std::array<float, 4> pattern(int i) {
-    constexpr double root = 1.1673039782614187;
-    std::array<float, 4> u{};
-    double step = 1;
-    for (float& x : u) {
-      step /= root;
-      x = std::min(float(std::fmod(0.5 + step * (i + 1), 1.0)), one_minus_epsilon);
-    }
-    return u;
-  }
-
-  Spectrum power_of_points(const SceneObject& object, const Wavelengths& w) const {
-    Spectrum sum;
-    for (int i = 0; i < pattern_size; ++i) {
-      const std::array<float, 4> u = pattern(i);
-      const SurfaceSample at = object.sample_area({u[0], u[1]}, 0);
-      const DirectionSample s = sample(at.point, {u[2], u[3]});
-      if (!(at.pdf > 0) || !(s.pdf > 0)) continue;
-      const float cosine = object.delta() ? 1 : std::abs(dot(at.point.normal, s.direction));
-      sum += radiance(at.point, s.direction, w) * (cosine / (at.pdf * s.pdf));
-    }
-    return sum / float(pattern_size);
-  }
-
-  /// Of parallel light from each direction: radiance times the projected area of the scene's bounding sphere, a quarter of its
-  /// surface area.
-  Spectrum power_from_infinity(const SceneObject& object, const Wavelengths& w) const {
-    Spectrum sum;
-    for (int i = 0; i < pattern_size; ++i) {
-      const std::array<float, 4> u = pattern(i);
-      Ray ray;
-      ray.direction = warp::sphere({u[0], u[1]});
-      SurfacePoint p;
-      object.surface_point(ray, {}, p);
-      sum += radiance(p, -ray.direction, w);
-    }
-    return sum * (object.area() * pi / float(pattern_size));
-  }
 };
 
 }  // namespace

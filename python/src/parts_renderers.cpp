@@ -116,6 +116,7 @@ class PythonRenderer final : public PartOf<Renderer> {
     PathClasses lost = no_paths;
     if (!PyTuple_Check(names.ptr()) && !PyList_Check(names.ptr())) called.refuse(names, "a tuple of names of kinds of light");
     for (const nb::handle name : names) lost |= class_named(to_text(name, called), called);
+    if (lost & delta_caustics) lost |= delta_caustics;  // what follows chains but not past panes is not written in Python
     return all_paths & ~lost;
   }
 

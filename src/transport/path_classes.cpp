@@ -38,7 +38,7 @@ std::string caustics(const Names& luminaires, const SceneTraits& t) {
          some_of(onto) + " (caustics)";
 }
 
-constexpr std::array<PathClassInfo, 15> classes{{
+constexpr std::array<PathClassInfo, 16> classes{{
     {seen_luminaires, "seen_luminaires", "luminaires that the camera sees directly",
      [](const SceneTraits& t) { return told("", t.seen_areas, " where the camera sees it directly"); }},
     {seen_environments, "seen_environments", "environments behind the scene",
@@ -55,7 +55,8 @@ constexpr std::array<PathClassInfo, 15> classes{{
      [](const SceneTraits& t) { return told("light that ", t.glossy, verb(t.glossy, "send") + " on to other surfaces"); }},
     {area_caustics, "area_caustics", "caustics of luminaires with an extent",
      [](const SceneTraits& t) { return caustics(extended(t), t); }},
-    {delta_caustics, "delta_caustics", "caustics of delta lights", [](const SceneTraits& t) { return caustics(delta(t), t); }},
+    {delta_caustics_of_bodies, "delta_caustics", "caustics of delta lights",
+     [](const SceneTraits& t) { return caustics(delta(t), t); }},
     {delta_caustics_in_mirrors, "delta_caustics_in_mirrors",
      "caustics of delta lights, where they are seen in mirrors or through glass",
      [](const SceneTraits& t) {
@@ -76,6 +77,13 @@ constexpr std::array<PathClassInfo, 15> classes{{
     {light_through_surfaces, "light_through_surfaces", "light through null-scattering surfaces",
      [](const SceneTraits& t) {
        return told("light that ", t.null_scattering, verb(t.null_scattering, "let") + " pass straight on");
+     }},
+    {delta_caustics_of_panes, "delta_caustics_of_panes", "caustics of delta lights at thin panes and masks",
+     [](const SceneTraits& t) {
+       const Names lamps = delta(t);
+       if (caustics(lamps, t).empty() || t.null_scattering.empty()) return std::string();
+       return "caustics of " + some_of(lamps) + " that " + some_of(t.null_scattering) + verb(t.null_scattering, "reflect") +
+              " or let pass";
      }},
 }};
 

@@ -241,7 +241,8 @@ TEST(ManifoldSampling, SaysWhatItFinds) {
     return job->renderer->finds();
   };
   EXPECT_TRUE(finds("") & delta_caustics_in_mirrors);
-  EXPECT_TRUE(finds("max_depth: 4, chain_depth: 2") & delta_caustics);
+  EXPECT_FALSE(finds("") & delta_caustics_of_panes);
+  EXPECT_TRUE(finds("max_depth: 4, chain_depth: 2") & delta_caustics_of_bodies);
   EXPECT_FALSE(finds("max_depth: 5, chain_depth: 2") & delta_caustics);
 }
 

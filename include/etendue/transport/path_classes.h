@@ -21,17 +21,20 @@ enum PathClass : std::uint32_t {
   diffuse_light = 1u << 5,              ///< indirect light from diffuse surfaces
   glossy_light = 1u << 6,               ///< indirect light from glossy surfaces
   area_caustics = 1u << 7,              ///< caustics of emitters that are not delta lights
-  delta_caustics = 1u << 8,             ///< caustics of delta lights
+  delta_caustics_of_bodies = 1u << 8,   ///< other caustics of delta lights
   delta_caustics_in_mirrors = 1u << 9,  ///< caustics of delta lights, seen in specular reflection or refraction
   scattering_media = 1u << 10,          ///< absorption and scattering in media
   emitting_media = 1u << 11,            ///< emission of media
   heterogeneous_media = 1u << 12,       ///< heterogeneous media
   subsurface_light = 1u << 13,          ///< subsurface scattering with separate entry and exit points
   light_through_surfaces = 1u << 14,    ///< null scattering at surfaces
+  delta_caustics_of_panes = 1u << 15,   ///< caustics of delta lights where thin panes or masks reflect light or let it pass
 };
 using PathClasses = std::uint32_t;
 inline constexpr PathClasses no_paths = 0;
-inline constexpr PathClasses all_paths = (1u << 15) - 1;
+inline constexpr PathClasses all_paths = (1u << 16) - 1;
+/// All caustics of delta lights.
+inline constexpr PathClasses delta_caustics = delta_caustics_of_bodies | delta_caustics_of_panes;
 
 /// Names and descriptions of a class.
 struct PathClassInfo {

@@ -1,6 +1,6 @@
 // DiffuseEmission: the same radiance in all directions.
 
-#include "etendue/core/warp.h"
+#include "any_radiance.h"
 #include "shaped_emission.h"
 
 namespace etendue {
@@ -26,23 +26,8 @@ class DiffuseEmission final : public ShapedEmission {
     return emits(p, direction) ? scaled(p, w, 1) : Spectrum();
   }
 
-  DirectionSample sample(const SurfacePoint& p, Point2 u) const override {
-    if (p.normal == Normal3{}) return {warp::sphere(u), warp::sphere_pdf};
-    float side = sides == Sides::back ? -1.0f : 1.0f, probability = 1;
-    if (sides == Sides::both) {
-      probability = 0.5f;
-      side = u.x < 0.5f ? 1.0f : -1.0f;
-      u.x = std::min(u.x < 0.5f ? 2 * u.x : 2 * u.x - 1, one_minus_epsilon);
-    }
-    const Vector3 local = warp::cosine_hemisphere(u);
-    const Frame frame(p.normal);
-    return {side * frame.to_world(local), probability * warp::cosine_hemisphere_pdf(local.z)};
-  }
-  float pdf(const SurfacePoint& p, const Vector3& direction) const override {
-    if (p.normal == Normal3{}) return warp::sphere_pdf;
-    if (!emits(p, direction)) return 0;
-    return (sides == Sides::both ? 0.5f : 1.0f) * inverse_pi * std::abs(dot(p.normal, direction));
-  }
+  DirectionSample sample(const SurfacePoint& p, Point2 u) const override { return any_radiance::sample(*this, p, u); }
+  float pdf(const SurfacePoint& p, const Vector3& direction) const override { return any_radiance::pdf(*this, p, direction); }
 
  protected:
   float profile(const SurfacePoint&, const Vector3&) const override { return 1; }

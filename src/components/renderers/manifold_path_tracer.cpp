@@ -8,14 +8,11 @@
 // by which each path counts once in all. For those the walk remembers how it left its last smooth vertex, and by which specular
 // lobes it went on from there.
 
-#include <algorithm>
-
 #include "etendue/render/renderer.h"
 #include "etendue/transport/camera_walk.h"
 #include "etendue/transport/manifold_sampling.h"
 #include "etendue/transport/renderer_members.h"
 #include "etendue/transport/roulette.h"
-#include "etendue/transport/scene_traits.h"
 
 namespace etendue {
 
@@ -54,9 +51,10 @@ class ManifoldPathTracer final : public Renderer {
     describe_splitting<&ManifoldPathTracer::split_depth, &ManifoldPathTracer::split_wavelengths>(d);
   }
 
+  /// Nothing meets a delta light by chance, so that only chains that are followed find it.
   PathClasses finds() const override {
-    const PathClasses lost = delta_caustics | delta_caustics_in_mirrors;
-    return chain_depth >= std::min(max_depth - 2, ChainLobes::longest) ? all_paths : all_paths & ~lost;
+    const bool whole = chain_depth >= std::min(max_depth - 2, ChainLobes::longest);
+    return all_paths & ~(whole ? PathClasses(delta_caustics_of_panes) : delta_caustics | delta_caustics_in_mirrors);
   }
   Expectation expectation() const override { return unbiased ? Expectation::unbiased : Expectation::biased; }
 
@@ -209,25 +207,7 @@ class ManifoldProcess final : public RenderProcess {
 
 }  // namespace
 
-namespace {
-
-/// Chains are not followed past surfaces that reflect and let light pass straight on as well, and nothing meets delta lights by
-/// chance: what of their light such surfaces reflect is lost. The classes of paths do not tell these surfaces from others.
-void warn_of_panes(const RenderContext& context) {
-  const SceneTraits traits = scene_traits(context.scene, context.camera);
-  if (!traits.delta_luminaires()) return;
-  std::vector<std::string> panes;
-  for (const std::string& name : traits.specular)
-    if (std::ranges::find(traits.null_scattering, name) != traits.null_scattering.end()) panes.push_back(name);
-  if (!panes.empty())
-    warn("ManifoldPathTracer follows no light of lights without extent that " + some_of(panes) +
-         " reflect or scatter: it is lost; BidirectionalPathTracer finds it");
-}
-
-}  // namespace
-
 std::unique_ptr<RenderProcess> ManifoldPathTracer::begin(const RenderContext& context) const {
-  warn_of_panes(context);
   return std::make_unique<ManifoldProcess>(*this, context);
 }
 

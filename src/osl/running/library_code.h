@@ -4,8 +4,7 @@
 
 #include <span>
 
-#include "code.h"
-#include "nodes.h"
+#include "coded_numbers.h"
 #include "osl/library/table.h"
 
 namespace etendue::osl {
@@ -24,6 +23,37 @@ bool emit_instructions(const Row&, const CodedCall&);
 
 /// The same for noise: a call of a function of numbers.
 bool emit_noise(const Row&, const CodedCall&);
+
+/// Calls a function of the program with a value's address. A value that the layer has its own copy of is lent as a copy, so
+/// that it can be kept in registers.
+class Lent {
+ public:
+  Lent(Code& code, const Memory& m) : code_(code), memory_(m), own_(code.own(m.offset)) {
+    at_ = own_ ? code.borrow(m.type.size()) : code.address_of({m.offset, {}});
+  }
+  ~Lent() {
+    if (own_) code_.give_back(at_);
+  }
+  Lent(const Lent&) = delete;
+  Lent& operator=(const Lent&) = delete;
+  Word in() {
+    if (own_) emit_copy(code_, memory_.type, {0, at_}, 0, {memory_.offset, {}}, 0, memory_.type.size());
+    return at_;
+  }
+  Word address() const { return at_; }
+  void out() {
+    if (own_) emit_copy(code_, memory_.type, {memory_.offset, {}}, 0, {0, at_}, 0, memory_.type.size());
+    if (!memory_.stride) return;
+    for (std::size_t i = 1; i < 3; ++i)
+      code_.clear({memory_.offset + std::uint32_t(i) * memory_.stride, {}}, memory_.type.size());
+  }
+
+ private:
+  Code& code_;
+  Memory memory_;
+  bool own_;
+  Word at_;
+};
 
 /// Where the library's functions find the arguments of a call, and leave the result.
 ///

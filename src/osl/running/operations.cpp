@@ -1,131 +1,12 @@
 #include "operations.h"
 
-#include <cstdint>
-
-#include "coded_numbers.h"
-#include "etendue/core/spectrum.h"
-#include "osl/library/closures.h"
+#include "library_code.h"
+#include "operators.h"
 
 namespace etendue::osl {
 namespace {
 
-// ---- operators, by functors for numbers with and without derivatives
-// ---------------------------------------------------------
-
-struct Add {
-  template <class A, class B>
-  auto operator()(const A& a, const B& b) const {
-    return a + b;
-  }
-  int operator()(int a, int b) const { return int(unsigned(a) + unsigned(b)); }
-};
-struct Subtract {
-  template <class A, class B>
-  auto operator()(const A& a, const B& b) const {
-    return a - b;
-  }
-  int operator()(int a, int b) const { return int(unsigned(a) - unsigned(b)); }
-};
-struct Multiply {
-  template <class A, class B>
-  auto operator()(const A& a, const B& b) const {
-    return a * b;
-  }
-  int operator()(int a, int b) const { return int(unsigned(a) * unsigned(b)); }
-  Matrix operator()(float a, const Matrix& b) const { return b * a; }
-};
-/// What is divided by zero is zero.
-struct Divide {
-  template <class A, class B>
-  auto operator()(const A& a, const B& b) const {
-    return a / b;
-  }
-  float operator()(float a, float b) const { return safe_divide(a, b); }
-  int operator()(int a, int b) const { return b == 0 ? 0 : (b == -1 ? int(0u - unsigned(a)) : a / b); }
-  Matrix operator()(float a, const Matrix& b) const { return Matrix::diagonal(a) / b; }
-  Spectrum operator()(const Spectrum& a, const Spectrum& b) const {
-    Spectrum r;
-    for (int i = 0; i < spectrum_size; ++i) r.set(i, safe_divide(a[i], b[i]));
-    return r;
-  }
-};
-struct Modulus {
-  Whole operator()(Whole a, Whole b) const { return a % b; }
-  int operator()(int a, int b) const { return b == 0 || b == -1 ? 0 : a % b; }
-};
-struct ShiftLeft {
-  Whole operator()(Whole a, Whole b) const { return shifted_left(a, b); }
-  int operator()(int a, int b) const { return int(unsigned(a) << (b & 31)); }
-};
-struct ShiftRight {
-  Whole operator()(Whole a, Whole b) const { return shifted_right(a, b); }
-  int operator()(int a, int b) const { return a >> (b & 31); }
-};
-struct BitAnd {
-  Whole operator()(Whole a, Whole b) const { return a & b; }
-  int operator()(int a, int b) const { return a & b; }
-};
-struct BitOr {
-  Whole operator()(Whole a, Whole b) const { return a | b; }
-  int operator()(int a, int b) const { return a | b; }
-};
-struct BitXor {
-  Whole operator()(Whole a, Whole b) const { return a ^ b; }
-  int operator()(int a, int b) const { return a ^ b; }
-};
-struct Equal {
-  template <class T>
-  int operator()(const T& a, const T& b) const {
-    return a == b;
-  }
-  int operator()(const Spectrum& a, const Spectrum& b) const {
-    for (int i = 0; i < spectrum_size; ++i)
-      if (a[i] != b[i]) return 0;
-    return 1;
-  }
-};
-struct Unequal {
-  template <class T>
-  int operator()(const T& a, const T& b) const {
-    return !Equal()(a, b);
-  }
-};
-struct Less {
-  template <class T>
-  auto operator()(const T& a, const T& b) const {
-    return int_of(a < b);
-  }
-};
-struct LessEqual {
-  template <class T>
-  auto operator()(const T& a, const T& b) const {
-    return int_of(a <= b);
-  }
-};
-struct Greater {
-  template <class T>
-  auto operator()(const T& a, const T& b) const {
-    return int_of(a > b);
-  }
-};
-struct GreaterEqual {
-  template <class T>
-  auto operator()(const T& a, const T& b) const {
-    return int_of(a >= b);
-  }
-};
-struct Negate {
-  template <class T>
-  auto operator()(const T& a) const {
-    return -a;
-  }
-  int operator()(int a) const { return int(0u - unsigned(a)); }
-  Matrix operator()(const Matrix& a) const { return a * -1.0f; }
-};
-struct Complement {
-  Whole operator()(Whole a) const { return ~a; }
-  int operator()(int a) const { return ~a; }
-};
+using namespace operators;
 
 // ---- the same in code
 // --------------------------------------------------------------------------------------------------------
@@ -172,37 +53,6 @@ template <class A, class B, class Op>
 void apply(const A* a, const B* b, std::invoke_result_t<Op, A, B>* out) {
   *out = Op()(*a, *b);
 }
-
-/// Calls a function of the program with a value's address. A value that the layer has its own copy of is lent as a copy, so
-/// that it can be kept in registers.
-class Lent {
- public:
-  Lent(Code& code, const Memory& m) : code_(code), memory_(m), own_(code.own(m.offset)) {
-    at_ = own_ ? code.borrow(m.type.size()) : code.address_of({m.offset, {}});
-  }
-  ~Lent() {
-    if (own_) code_.give_back(at_);
-  }
-  Lent(const Lent&) = delete;
-  Lent& operator=(const Lent&) = delete;
-  Word in() {
-    if (own_) emit_copy(code_, memory_.type, {0, at_}, 0, {memory_.offset, {}}, 0, memory_.type.size());
-    return at_;
-  }
-  Word address() const { return at_; }
-  void out() {
-    if (own_) emit_copy(code_, memory_.type, {memory_.offset, {}}, 0, {0, at_}, 0, memory_.type.size());
-    if (!memory_.stride) return;
-    for (std::size_t i = 1; i < 3; ++i)
-      code_.clear({memory_.offset + std::uint32_t(i) * memory_.stride, {}}, memory_.type.size());
-  }
-
- private:
-  Code& code_;
-  Memory memory_;
-  bool own_;
-  Word at_;
-};
 
 template <class A, class B, class Op, bool dual>
 void emit_binary(Code& code, const Memory& a, const Memory& b, const Memory& out) {
@@ -493,84 +343,6 @@ const Node* whole(NodeStore& nodes, const Value& a, const Value& b, const Memory
   return nodes.make<Binary<int, int, Op>>(a, b, out);
 }
 
-// ---- closures
-// ----------------------------------------------------------------------------------------------------------------
-
-class AddClosures final : public Node {
- public:
-  AddClosures(const Value& a, const Value& b, const Memory& out) : a_(a), b_(b), out_(out) {}
-  Flow run(RunState& run) const override {
-    a_.evaluate(run);
-    b_.evaluate(run);
-    const auto* a = load<const ClosureNode*>(run, a_.memory);
-    const auto* b = load<const ClosureNode*>(run, b_.memory);
-    value_at<const ClosureNode*>(run, out_.offset) = make_sum(run.services, a, b);
-    return Flow::next;
-  }
-  void emit(Code& code) const override {
-    a_.emit(code);
-    b_.emit(code);
-    constexpr auto sum = static_cast<const ClosureNode* (*)(Services&, const ClosureNode*, const ClosureNode*)>(&make_sum);
-    const Word words[] = {code.services(), load_address(code, a_.memory).word, load_address(code, b_.memory).word};
-    code.store({out_.offset, {}}, code.call(reinterpret_cast<const void*>(sum), WordKind::address, words));
-  }
-
- private:
-  Value a_, b_;
-  Memory out_;
-};
-
-/// A closure times a float, a color or a spectrum. The operands are evaluated in the order of the text.
-class WeighClosure final : public Node {
- public:
-  WeighClosure(const Value& closure, const Value& weight, bool weight_first, const Memory& out)
-      : closure_(closure), weight_(weight), weight_first_(weight_first), out_(out) {}
-  Flow run(RunState& run) const override {
-    (weight_first_ ? weight_ : closure_).evaluate(run);
-    (weight_first_ ? closure_ : weight_).evaluate(run);
-    const auto* closure = load<const ClosureNode*>(run, closure_.memory);
-    value_at<const ClosureNode*>(run, out_.offset) = closure ? product(run, closure) : nullptr;
-    return Flow::next;
-  }
-  void emit(Code& code) const override {
-    (weight_first_ ? weight_ : closure_).emit(code);
-    (weight_first_ ? closure_ : weight_).emit(code);
-    const Word closure = load_address(code, closure_.memory).word;
-    Word result;
-    if (weight_.type().base == Base::spectrum) {
-      Lent spectrum(code, weight_.memory);
-      result = code.call(reinterpret_cast<const void*>(&spectral_product), WordKind::address,
-                         {code.services(), spectrum.in(), closure});
-    } else {
-      const bool one = weight_.type().is_float();
-      const Word x = load_number<Real>(code, weight_.memory, 0).word;
-      const Word y = one ? x : load_number<Real>(code, weight_.memory, 1).word;
-      const Word z = one ? x : load_number<Real>(code, weight_.memory, 2).word;
-      result = code.call(reinterpret_cast<const void*>(&color_product), WordKind::address, {code.services(), x, y, z, closure});
-    }
-    code.store({out_.offset, {}}, result);
-  }
-
- private:
-  const ClosureNode* product(RunState& run, const ClosureNode* closure) const {
-    const Type& type = weight_.type();
-    if (type.base == Base::spectrum) return make_product(run.services, load<Spectrum>(run, weight_.memory), closure);
-    return make_product(
-        run.services, type.is_float() ? Triple(load<float>(run, weight_.memory)) : load<Triple>(run, weight_.memory), closure);
-  }
-
-  static const ClosureNode* color_product(Services* services, float x, float y, float z, const ClosureNode* closure) {
-    return make_product(*services, Triple(x, y, z), closure);
-  }
-  static const ClosureNode* spectral_product(Services* services, const Spectrum* weight, const ClosureNode* closure) {
-    return make_product(*services, *weight, closure);
-  }
-
-  Value closure_, weight_;
-  bool weight_first_;
-  Memory out_;
-};
-
 // ---- conversions
 // ---------------------------------------------------------------------------------------------------------------
 
@@ -678,9 +450,9 @@ class MakeTriple final : public Node {
 // --------------------------------------------------------------------------------------------------------------
 
 const Node* binary_node(NodeStore& nodes, Operator operation, const Value& a, const Value& b, const Memory& out) {
-  if (a.type().is_closure() && b.type().is_closure()) return nodes.make<AddClosures>(a, b, out);
-  if (a.type().is_closure()) return nodes.make<WeighClosure>(a, b, false, out);
-  if (b.type().is_closure()) return nodes.make<WeighClosure>(b, a, true, out);
+  if (a.type().is_closure() && b.type().is_closure()) return closure_sum_node(nodes, a, b, out);
+  if (a.type().is_closure()) return closure_product_node(nodes, a, b, false, out);
+  if (b.type().is_closure()) return closure_product_node(nodes, b, a, true, out);
   switch (operation) {
     case Operator::add: return arithmetic<Add>(nodes, a, b, out);
     case Operator::subtract: return arithmetic<Subtract>(nodes, a, b, out);

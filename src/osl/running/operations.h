@@ -15,6 +15,10 @@ inline bool carries_derivatives(const Type& type) {
 /// operands a `operation` b -> out. Derivatives are computed if `out` has them. Null if the operation does not exist for these
 /// types, which the checker excludes.
 const Node* binary_node(NodeStore&, Operator, const Value& a, const Value& b, const Memory& out);
+/// The sum of two closures.
+const Node* closure_sum_node(NodeStore&, const Value& a, const Value& b, const Memory& out);
+/// A closure times a float, a color or a spectrum. `weight_first`: in the text, which is the order of evaluation.
+const Node* closure_product_node(NodeStore&, const Value& closure, const Value& weight, bool weight_first, const Memory& out);
 const Node* unary_node(NodeStore&, Operator, const Value& a, const Memory& out);
 /// a -> out of out's type.
 const Node* conversion_node(NodeStore&, const Value& a, const Memory& out);

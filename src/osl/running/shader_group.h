@@ -14,8 +14,8 @@
 
 #include "compilation.h"
 #include "globals.h"
-#include "group_description.h"
 #include "nodes.h"
+#include "osl/language/group_description.h"
 #include "osl/language/tree.h"
 
 namespace etendue::osl {

@@ -1,7 +1,7 @@
 #pragma once
 // OslPart: the second base of objects of classes that are shaders: the values of their members, as a layer of a group.
 
-#include "osl/running/group_description.h"
+#include "osl/language/group_description.h"
 #include "osl_class.h"
 
 namespace etendue::osl {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "osl/running/group_description.h"
+#include "osl/language/group_description.h"
 #include "osl/running/machine.h"
 
 namespace etendue::osl {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "etendue/core/error.h"
-#include "osl/language/tree.h"
+#include "tree.h"
 
 namespace etendue::osl {
 
