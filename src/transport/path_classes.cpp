@@ -83,7 +83,7 @@ constexpr std::array<PathClassInfo, 16> classes{{
        const Names lamps = delta(t);
        if (caustics(lamps, t).empty() || t.null_scattering.empty()) return std::string();
        return "caustics of " + some_of(lamps) + " that " + some_of(t.null_scattering) + verb(t.null_scattering, "reflect") +
-              " or let pass";
+              " or" + verb(t.null_scattering, "let") + " pass";
      }},
 }};
 
