@@ -18,7 +18,7 @@ set_property(TARGET etendue_program APPEND PROPERTY INSTALL_RPATH "$ORIGIN")
 install(TARGETS etendue EXPORT etendueByArchitecture
   LIBRARY DESTINATION ${own} COMPONENT by_architecture EXCLUDE_FROM_ALL NAMELINK_SKIP)
 install(TARGETS etendue_options EXPORT etendueByArchitecture)
-install_part(TARGETS etendue_app etendue_formats etendue_osl LIBRARY DESTINATION ${own})
+install_part(TARGETS etendue_app etendue_commands etendue_formats etendue_laboratory etendue_osl etendue_studio LIBRARY DESTINATION ${own})
 install_part(TARGETS etendue_program RUNTIME DESTINATION ${own})
 if(ETENDUE_BUNDLED_OPENIMAGEIO)
   set_property(TARGET etendue_bundled_openimageio PROPERTY INSTALL_RPATH "$ORIGIN:$ORIGIN/../lib")

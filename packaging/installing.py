@@ -16,7 +16,7 @@ import python_headers
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build"
 FOLDER = BUILD / "packages"
-TARGETS = ["etendue_program", "etendue_formats", "etendue_osl", "etendue_assimp", "etendue_draco", "etendue_bundled_openimageio"]
+TARGETS = ["etendue_program", "etendue_commands", "etendue_formats", "etendue_osl", "etendue_assimp", "etendue_draco", "etendue_bundled_openimageio"]
 
 
 def architectures() -> list[str]:

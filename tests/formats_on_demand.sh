@@ -1,5 +1,6 @@
 #!/bin/sh
-# The program (first argument) loads the library of importers, exporters and imitations for what needs it, and for nothing else.
+# The program (first argument) loads the library of importers, exporters and imitations for what needs it, and for nothing else; and
+# it renders without the libraries of its other commands, of the laboratory and of the studio.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -11,6 +12,10 @@ loads() {
 
 if loads "$1" render scenes/cornell_box.etd --size 8x6 --samples 1 --quiet -o "$folder/picture.npy"; then
   echo "a description in our own language loaded the library of foreign formats"
+  exit 1
+fi
+if grep -E 'libetendue_(commands|laboratory|studio)' "$folder/output"; then
+  echo "a render loaded these libraries"
   exit 1
 fi
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$folder/triangle.obj"
@@ -41,7 +46,7 @@ for library in 'libetendue\.so' 'libetendue_app\.so'; do
 done
 tells() {  # a class, and what is told of it
   printf 'ball = %s {}\n' "$1" >"$folder/misspelt.etd"
-  LD_LIBRARY_PATH="$folder/alone" "$folder/alone/etendue" check "$folder/misspelt.etd" >"$folder/output" 2>&1 || true
+  LD_LIBRARY_PATH="$folder/alone" "$folder/alone/etendue" render "$folder/misspelt.etd" >"$folder/output" 2>&1 || true
   if ! grep -q "$2" "$folder/output"; then
     echo "of $1 this is told, without '$2':"
     cat "$folder/output"
@@ -50,3 +55,11 @@ tells() {  # a class, and what is told of it
 }
 tells Sphre "there is no class 'Sphre' (did you mean 'Sphere'?)"
 tells Qwertyuiop 'cannot be loaded'
+
+# Other commands than `render` are told to be missing, not to be unknown.
+LD_LIBRARY_PATH="$folder/alone" "$folder/alone/etendue" check "$folder/misspelt.etd" >"$folder/output" 2>&1 && exit 1
+if ! grep -q "the library of commands ('./etendue build' builds it) cannot be loaded" "$folder/output"; then
+  echo "without the library of commands this is told:"
+  cat "$folder/output"
+  exit 1
+fi

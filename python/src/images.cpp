@@ -15,9 +15,9 @@
 #include "etendue/exposed_tone_map.h"
 #include "etendue/film/image_tools.h"
 #include "etendue/output.h"
+#include "film/relight.h"
 #include "live_render.h"
 #include "picture.h"
-#include "studio/pixels/relight.h"
 
 namespace etendue::python {
 
@@ -197,7 +197,7 @@ void bind_images(nb::module_& m) {
   m.def("compare", &comparison);
   m.def("tile_ratios", &ratios);
   m.def("relight", [](const Picture& picture, const std::map<std::string, std::array<double, 3>>& factors) {
-    return Picture(released([&] { return studio::relit(*picture.image, factors); }));
+    return Picture(released([&] { return relit(*picture.image, factors); }));
   });
 }
 

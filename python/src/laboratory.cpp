@@ -74,7 +74,7 @@ GivenRenderers given_renderers(const nb::list& given) {
 std::vector<verify::NamedRenderer> named(const Job& job, const GivenRenderers& given) {
   std::vector<verify::NamedRenderer> all;
   for (const auto& [name, renderer] : given)
-    all.push_back({name, renderer ? ref_cast<Renderer>(copy(*renderer)) : verify::named_renderer(job, name, "renderers")});
+    all.push_back({name, renderer ? ref_cast<Renderer>(copy(*renderer)) : named_renderer(job, name, "renderers")});
   return all;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The commands of the program. Each has its own file: its add_..._command adds the command with its options, help and what
-// it does to the command line.
+// it does to the command line. All but `render` are in a library of their own (src/app/commands), which is opened for them: so
+// a picture can be had before the studio and the laboratory are built, and starts without them.
 
 #include "command_line.h"
 
@@ -14,6 +15,9 @@ inline constexpr int interrupted = 130;  ///< the status that a shell reports af
 }  // namespace exit_status
 
 void add_render_command(Command& program);
+/// Adds all others. Throws Error if their library is missing.
+void add_other_commands(Command& program);
+
 void add_check_command(Command& program);
 void add_save_command(Command& program);
 void add_convert_command(Command& program);

@@ -2,6 +2,8 @@
 
 #include "program.h"
 
+#include <string_view>
+
 #include "commands.h"
 #include "program_team.h"
 #include "streams.h"
@@ -41,23 +43,7 @@ int run_program(int argument_count, char** arguments) {
   program.require_command();
 
   add_render_command(program);
-  add_check_command(program);
-  add_save_command(program);
-  add_convert_command(program);
-  add_export_command(program);
-  add_format_command(program);
-  add_classes_command(program);
-  add_schema_command(program);
-  add_manual_command(program);
-  add_image_command(program);
-  add_verify_command(program);
-  add_compare_command(program);
-  add_conform_command(program);
-  add_measure_command(program);
-  add_cryptomatte_command(program);
-  add_cluster_command(program);
-  add_studio_command(program);
-  add_shade_command(program);
+  if (argument_count < 2 || std::string_view(arguments[1]) != "render") add_other_commands(program);
   return command_line.run(argument_count, arguments);
 }
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "check/verify/collect.h"
+#include "check/naming/named_renderer.h"
 #include "common_options.h"
 #include "etendue/language/language.h"
 #include "etendue/render/job.h"
@@ -126,11 +126,11 @@ std::vector<SetOption> SceneOptions::set_options() const {
 }
 
 void SceneOptions::apply_renderer(Job& job) const {
-  const Ref<Renderer> named = verify::named_renderer(job, renderer, "--renderer");
+  const Ref<Renderer> named = named_renderer(job, renderer, "--renderer");
   if (named == job.renderer) return;
-  verify::take_over(*named, *job.renderer);
+  take_over(*named, *job.renderer);
   for (const char* member : {"samples", "map_filter"})
-    if (!verify::written(*named, member) && named->class_info().find(member) && job.renderer->class_info().find(member))
+    if (!written(*named, member) && named->class_info().find(member) && job.renderer->class_info().find(member))
       set(*named, member, get(*job.renderer, member));
   job.renderer = named;
 }

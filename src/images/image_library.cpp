@@ -1,12 +1,10 @@
 #include "image_library.h"
 
-#include <dlfcn.h>
-
 #include <atomic>
-#include <filesystem>
 #include <string_view>
 
 #include "etendue/core/error.h"
+#include "files/own_library.h"
 
 namespace etendue {
 namespace {
@@ -15,23 +13,8 @@ constexpr const char* file_name = "libetendue_openimageio.so";
 
 constinit std::atomic<const ImageLibrary*> announced = nullptr;
 
-/// The library's path, in the folder of the library that contains this code; empty: no such file.
-std::string path_beside() {
-  Dl_info own{};
-  if (!dladdr(reinterpret_cast<void*>(&image_library), &own) || !own.dli_fname) return {};
-  const std::filesystem::path path = std::filesystem::path(own.dli_fname).parent_path() / file_name;
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored) ? path.string() : std::string();
-}
-
 const ImageLibrary& load() {
-  if (!announced) {
-    const std::string path = path_beside();
-    // Never closed, as textures and their code may be in use until the program ends. Lazy binding, as binding all functions of
-    // so many libraries at once would take a sixth longer.
-    if (!dlopen(path.empty() ? file_name : path.c_str(), RTLD_LAZY | RTLD_LOCAL))
-      throw Error(fmt::format("the library for image files cannot be loaded: {}", dlerror()));
-  }
+  if (!announced) open_own_library(file_name, "the library for image files");
   if (!announced) throw Error(fmt::format("'{}' is not of this version of Étendue", file_name));
   return *announced;
 }
@@ -56,7 +39,7 @@ const ImageLibrary& image_library() {
 }
 
 void require_image_library() {
-  if (!announced && path_beside().empty()) image_library();
+  if (!announced && own_library_path(file_name).empty()) image_library();
 }
 
 void announce_image_library(const ImageLibrary& library, const char* version) {

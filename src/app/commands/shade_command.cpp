@@ -2,10 +2,9 @@
 
 #include <dlfcn.h>
 
-#include <filesystem>
-
 #include "app/commands.h"
 #include "etendue/core/error.h"
+#include "files/own_library.h"
 
 namespace etendue {
 namespace {
@@ -13,16 +12,7 @@ namespace {
 using Shade = int (*)(int count, const char* const* words);
 
 Shade open_library() {
-  constexpr const char* file_name = "libetendue_osl.so";
-  Dl_info own{};
-  std::string path = file_name;
-  if (dladdr(reinterpret_cast<void*>(&open_library), &own) && own.dli_fname) {
-    const std::filesystem::path beside = std::filesystem::path(own.dli_fname).parent_path() / file_name;
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(beside, ignored)) path = beside.string();
-  }
-  void* library = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
-  if (!library) throw Error(std::string("the library of the shading language cannot be loaded: ") + dlerror());
+  void* const library = open_own_library("libetendue_osl.so", "the library of the shading language");
   const auto shade = reinterpret_cast<Shade>(dlsym(library, "etendue_osl_shade"));
   if (!shade) throw Error("the library of the shading language is not of this version of Étendue");
   return shade;

@@ -52,7 +52,7 @@ void apply(Job& job, const Variant& variant, const Job& described) {
   std::vector<Error> errors;
   if (variant.renderer) {
     const Ref<Renderer> given = ref_cast<Renderer>(copy(*variant.renderer));
-    verify::take_over(*given, *described.renderer);
+    take_over(*given, *described.renderer);
     job.renderer = given;
   }
   for (const auto& [path, expression] : variant.sets) {
@@ -61,8 +61,8 @@ void apply(Job& job, const Variant& variant, const Job& described) {
         set_path(job, path, expression);
         continue;
       }
-      const Ref<Renderer> named = verify::named_renderer(described, expression, "variant '" + variant.name + "'");
-      if (named != described.renderer) verify::take_over(*named, *described.renderer);
+      const Ref<Renderer> named = named_renderer(described, expression, "variant '" + variant.name + "'");
+      if (named != described.renderer) take_over(*named, *described.renderer);
       job.renderer = named;
     } catch (const Errors& several) {
       errors.insert(errors.end(), several.errors.begin(), several.errors.end());

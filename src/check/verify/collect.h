@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "agreement.h"
+#include "check/naming/named_renderer.h"
 #include "etendue/render/render.h"
 
 namespace etendue::verify {
@@ -33,14 +34,6 @@ std::vector<std::string> split_expressions(const std::string& list);
 /// The text without white space at its ends.
 std::string trimmed(const std::string&);
 
-/// The renderer that an expression names. The class of the job's renderer means that renderer with all its settings; any other
-/// expression, such as "PathTracer{next_event: false}", creates a new one. Throws Errors if it is no renderer.
-Ref<Renderer> named_renderer(const Job&, const std::string& expression, const std::string& option);
-/// Gives a new renderer the job's sampler, light sampler and max_depth, unless its expression sets them; likewise a renderer
-/// nested in it. Throws Error if the renderer rejects them.
-void take_over(Renderer& to, const Renderer& from);
-/// Whether a description sets a member of a component.
-bool written(const Component&, const std::string& member);
 /// Descriptions of the scene's light that a renderer misses.
 std::vector<std::string> missed_light(const Renderer&, const SceneTraits&);
 

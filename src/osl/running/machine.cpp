@@ -1,15 +1,14 @@
 #include "machine.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <atomic>
 #include <cstdlib>
-#include <filesystem>
 #include <optional>
 #include <string_view>
 
 #include "etendue/core/error.h"
+#include "files/own_library.h"
 
 namespace etendue::osl {
 namespace {
@@ -22,20 +21,16 @@ constinit std::atomic<const Machine*> announced = nullptr;
 void say(const std::string& text) { fmt::print(stderr, "etendue: {}\n", text); }
 
 const Machine* load() {
-  Dl_info own{};
-  std::filesystem::path path;
-  if (dladdr(reinterpret_cast<void*>(&load), &own) && own.dli_fname)
-    path = std::filesystem::path(own.dli_fname).parent_path() / file_name;
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
+  if (own_library_path(file_name).empty()) {
     say("shaders are interpreted: this build has no compiler for them (docs/shading-language.md)");
     return nullptr;
   }
-  // Never closed: code may be in use until the program ends.
-  if (!dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL))
-    say(fmt::format("shaders are interpreted, as their compiler cannot be loaded: {}", dlerror()));
-  else if (!announced)
-    say(fmt::format("shaders are interpreted: '{}' is not of this version of Étendue", file_name));
+  try {
+    open_own_library(file_name, "their compiler");
+    if (!announced) say(fmt::format("shaders are interpreted: '{}' is not of this version of Étendue", file_name));
+  } catch (const Error& error) {
+    say(fmt::format("shaders are interpreted: {}", error.what()));
+  }
   return announced;
 }
 

@@ -1,15 +1,14 @@
 #include "message_library.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <atomic>
 #include <charconv>
 #include <cstdlib>
-#include <filesystem>
 #include <string_view>
 
 #include "etendue/core/error.h"
+#include "files/own_library.h"
 
 namespace etendue {
 namespace {
@@ -30,15 +29,6 @@ int number(const char* name) {
   return value;
 }
 
-/// The library's path, in the folder of the library that contains this code; empty: no such file.
-std::string path_beside() {
-  Dl_info own{};
-  if (!dladdr(reinterpret_cast<void*>(&announce_messages), &own) || !own.dli_fname) return {};
-  const std::filesystem::path path = std::filesystem::path(own.dli_fname).parent_path() / file_name;
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored) ? path.string() : std::string();
-}
-
 }  // namespace
 
 void announce_messages(MakeMessages make, const char* version) {
@@ -57,15 +47,13 @@ int processes_started() {
 std::unique_ptr<Messages> load_messages() {
   const std::string remedy = "start one process, or set ETENDUE_MPI=off so that each renders by itself";
   if (!announced) {
-    const std::string path = path_beside();
-    if (path.empty())
+    if (own_library_path(file_name).empty())
       throw Error(
           fmt::format("this is one of {} processes, but the program was built without MPI ({} is missing; "
                       "libopenmpi-dev or libmpich-dev was not there): {}",
                       processes_started(), file_name, remedy));
-    // Global, as Open MPI's own modules look for its symbols there. Never closed.
-    if (!dlopen(path.c_str(), RTLD_NOW | RTLD_GLOBAL))
-      throw Error(fmt::format("MPI cannot be loaded: {}; {}", dlerror(), remedy));
+    // Shared, as Open MPI's own modules look for its symbols there.
+    open_own_library(file_name, fmt::format("MPI ({})", remedy), LibraryNames::shared);
   }
   if (!announced) throw Error(fmt::format("'{}' is not of this version of Étendue", file_name));
   return announced.load()();

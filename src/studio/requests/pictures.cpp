@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "etendue/output.h"
+#include "film/relight.h"
 #include "requests.h"
-#include "studio/pixels/relight.h"
 
 namespace etendue::studio {
 

@@ -8,7 +8,7 @@
 #include "etendue/describe/color.h"
 #include "film/image_bands.h"
 
-namespace etendue::studio {
+namespace etendue {
 
 namespace {
 
@@ -80,4 +80,4 @@ Image relit(const Image& picture, const std::map<std::string, std::array<double,
   return result;
 }
 
-}  // namespace etendue::studio
+}  // namespace etendue
