@@ -15,7 +15,21 @@
 
 namespace etendue {
 
+namespace {
+
+/// Throws Error for a file whose name says that it is something else than a description.
+void require_description_name(const std::string& file, Location at) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  if (ending.empty() || ending == ".etd" || language::is_json(file)) return;
+  throw Error(fmt::format("'{}': the name of a description ends in .etd or .json{}", file,
+                          exporter_of(file) ? fmt::format("; 'etendue export' writes {}", ending) : std::string()),
+              at);
+}
+
+}  // namespace
+
 void save_description(const Job& job, const std::string& file, const std::string& comments, bool all, Location at) {
+  require_description_name(file, at);
   note_inputs_of(job);
   OutputFiles files;
   files.add(file, at);

@@ -8,7 +8,8 @@
 namespace etendue {
 
 /// Writes a job as a description, .etd or JSON by the file's name, after the `comments`. `all` writes every member. The file is
-/// written whole or not at all; inputs of the job are not overwritten. Throws Error with `at`, where the file's name was given.
+/// written whole or not at all; inputs of the job are not overwritten. Throws Error with `at`, where the file's name was given,
+/// also for a name of another ending than those two.
 void save_description(const Job&, const std::string& file, const std::string& comments, bool all, Location at);
 
 /// Throws Error with `at` if no exporter writes files named like this.

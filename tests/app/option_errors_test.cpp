@@ -57,6 +57,16 @@ TEST_F(OptionErrors, WhatMeansNothingIsRefused) {
   EXPECT_TRUE(says("--renderers: 'PathTracer' is named twice")) << err;
 }
 
+TEST_F(OptionErrors, DescriptionsAreNotWrittenByOtherNames) {
+  EXPECT_EQ(run({"save", scene, "-o", folder / "box.pbrt"}), 2);
+  EXPECT_TRUE(says("--output: ")) << err;
+  EXPECT_TRUE(says("ends in .etd or .json; 'etendue export' writes .pbrt")) << err;
+  EXPECT_EQ(run({"save", scene, "-o", folder / "box.png"}), 2);
+  EXPECT_TRUE(says("the name of a description ends in .etd or .json\n")) << err;
+  for (const char* name : {"box.pbrt", "box.png"}) EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+  EXPECT_EQ(run({"save", scene, "-o", folder / "box.json"}), 0) << err;
+}
+
 TEST_F(OptionErrors, WhatALaterOneWouldUndoIsRefused) {
   EXPECT_TRUE(refused({"--set", "renderer.max_depth=2", "--set", "renderer=LightTracer"})
                   .starts_with("--set: 'renderer' would overwrite what --set sets in 'renderer.max_depth'"))
