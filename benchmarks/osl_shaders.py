@@ -64,7 +64,8 @@ MATERIALS = {
     "coated": (
         """surface coated(color paint = color(0.5, 0.1, 0.1)) {
              Ci = layer(dielectric_bsdf(N, dPdu, color(1), color(0), 0.1, 0.1, 1.5, "ggx"), paint * diffuse(N)); }""",
-        "Plastic { color: rgb(0.5, 0.1, 0.1), roughness: 0.1 }",
+        # The same two lobes by albedo scaling, here with the transmittance of the coat in both directions; its square is alpha.
+        "Principled { base_color: rgb(0.5, 0.1, 0.1), specular_roughness: 0.31622776 }",
     ),
 }
 

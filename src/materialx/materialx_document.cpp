@@ -85,13 +85,20 @@ std::shared_ptr<MaterialXDocument> parse_materialx(const std::string& text) {
     json.at("files").get_to(document.files);
     json.at("include").get_to(document.include_folders);
     json.at("notes").get_to(document.notes);
+    json.at("texts").get_to(document.texts);
     for (const nlohmann::json& given : json.at("materials")) {
       MaterialXMaterial& m = document.materials.emplace_back();
       given.at("name").get_to(m.name);
       m.class_name = given.at("class").get<std::string>();
       m.problem = given.value("problem", "");
-      m.text = given.value("text", "");
-      m.displacement = given.value("displacement", "");
+      const auto read_shader = [&](const char* name, MaterialXShader& shader) {
+        if (!given.contains(name) || given.at(name).is_null()) return;
+        given.at(name).at("frame").get_to(shader.frame);
+        given.at(name).at("text").get_to(shader.text);
+        if (shader.text >= document.texts.size()) throw Error("the number of a text is out of range");
+      };
+      read_shader("surface", m.surface);
+      read_shader("displacement", m.displacement);
       m.vector = given.value("vector", false);
       m.emits = given.value("emits", false);
     }
@@ -121,8 +128,9 @@ std::shared_ptr<const MaterialXDocument> read_materialx(const std::string& named
     if (free == m.class_name) continue;
     // The name stands in the text of the shader, which is its own but for the word that precedes it.
     for (auto [text, before, after] :
-         {std::tuple(&m.text, "\nsurface " + m.class_name + "\n", "\nsurface " + free + "\n"),
-          std::tuple(&m.displacement, "\nshader " + m.class_name + "Displacement\n", "\nshader " + free + "Displacement\n")})
+         {std::tuple(&m.surface.frame, "\nsurface " + m.class_name + "\n", "\nsurface " + free + "\n"),
+          std::tuple(&m.displacement.frame, "\nshader " + m.class_name + "Displacement\n",
+                     "\nshader " + free + "Displacement\n")})
       if (const size_t at = text->find(before); at != text->npos) text->replace(at, before.size(), after);
     m.class_name = free;
   }

@@ -9,14 +9,21 @@
 
 namespace etendue {
 
+/// A shader of a material: its name and its parameters with their values. The rest of its text many materials share.
+struct MaterialXShader {
+  std::string frame;
+  std::size_t text = 0;  ///< in MaterialXDocument::texts
+  bool empty() const { return frame.empty(); }
+};
+
 struct MaterialXMaterial {
-  std::string name;          ///< its path in the document
-  std::string class_name;    ///< of its shader: after the file, with several materials after file and material
-  std::string problem;       ///< why it cannot be read; empty: it can
-  std::string text;          ///< of a shader whose closure Ci is the material
-  std::string displacement;  ///< of a shader with the output `height`, or x, y and z; empty: it moves nothing
-  bool vector = false;       ///< the displacement has x, y and z, along the tangents and the normal
-  bool emits = false;        ///< with the values that the document gives to its parameters
+  std::string name;              ///< its path in the document
+  std::string class_name;        ///< of its shader: after the file, with several materials after file and material
+  std::string problem;           ///< why it cannot be read; empty: it can
+  MaterialXShader surface;       ///< its closure Ci is the material
+  MaterialXShader displacement;  ///< it has the output `height`, or x, y and z; empty: it moves nothing
+  bool vector = false;           ///< the displacement has x, y and z, along the tangents and the normal
+  bool emits = false;            ///< with the values that the document gives to its parameters
 
   /// The class of its displacement.
   std::string displacement_class() const { return class_name + "Displacement"; }
@@ -26,6 +33,8 @@ struct MaterialXDocument {
   std::vector<std::string> files;            ///< that were read: the document and what it includes, or the scene
   std::vector<std::string> include_folders;  ///< of the headers that the shaders include
   std::vector<std::string> notes;            ///< what is lost or missing
+  /// Of shaders: what stands before the frame, and the body behind it.
+  std::vector<std::pair<std::string, std::string>> texts;
   std::vector<MaterialXMaterial> materials;
   mutable std::atomic<bool> told = false;  ///< whoever reads it next need not tell `notes` and problems again
 };

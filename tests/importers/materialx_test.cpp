@@ -148,7 +148,7 @@ TEST_F(MaterialX, AMaterialIsAClassWithItsInputs) {
   const ClassInfo& info = shader->class_info();
   EXPECT_TRUE(info.name.starts_with("MtlxTest")) << info.name;
   ASSERT_TRUE(info.find("base_color"));
-  EXPECT_EQ(info.find("base_color")->kind, Kind::color);
+  EXPECT_EQ(info.find("base_color")->kind, Kind::component) << "a map";
   ASSERT_TRUE(info.find("transmission"));
   EXPECT_EQ(info.find("transmission")->range->high, 1);
   EXPECT_EQ(info.find("transmission")->group, "Transmission");
@@ -220,6 +220,29 @@ TEST_F(MaterialX, SeveralMaterialsAndLight) {
   EXPECT_TRUE(lamp->shader->class_info().name.ends_with("Lamp")) << lamp->shader->class_info().name;
   EXPECT_TRUE(plain->shader->class_info().name.ends_with("Plain"));
   EXPECT_EQ(plain->shader->origin->name, "plain");
+}
+
+// Materials that differ in names and values only share a compiled shader, and keep what they are.
+TEST_F(MaterialX, ManyMaterialsKeepTheirValues) {
+  constexpr int count = 40;
+  std::string text = head;
+  for (int i = 0; i < count; ++i) {
+    const std::string number = std::to_string(i), value = std::to_string(i / double(count));
+    text += "<standard_surface name=\"S" + number + "\" type=\"surfaceshader\">" + input("base", "float", "1") +
+            input("specular", "float", "0") + input("base_color", "color3", value + "," + value + "," + value) +
+            "</standard_surface>\n<surfacematerial name=\"M" + number +
+            "\" type=\"material\"><input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"S" + number +
+            "\"/></surfacematerial>\n";
+  }
+  const Read r = read(written(text + "</materialx>"));
+  ASSERT_EQ(r.error, "");
+  const auto& objects = ref_cast<Job>(r.job)->scene->objects;
+  ASSERT_GE(objects.size(), size_t(count));
+  for (int i = 0; i < count; ++i) {
+    const Ref<SceneObject>& ball = objects[objects.size() - size_t(count) + size_t(i)];
+    EXPECT_EQ(ball->shader->origin->name, "M" + std::to_string(i));
+    EXPECT_NEAR(albedo(ball->shader)[1], i / double(count), 2e-3) << i;
+  }
 }
 
 TEST_F(MaterialX, DisplacementIsAMap) {

@@ -7,7 +7,7 @@
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
 #include "etendue/shader.h"
-#include "osl/scene/slots.h"
+#include "osl/closures/slots.h"
 
 namespace etendue::osl {
 namespace {

@@ -8,7 +8,7 @@
 #include "etendue/core/warp.h"
 #include "etendue/describe/color.h"
 #include "etendue/object_map.h"
-#include "osl/scene/closure_models.h"
+#include "osl/closures/closure_models.h"
 
 namespace etendue::osl {
 namespace {
@@ -234,6 +234,98 @@ TEST(Closures, SumsReflectAtMostAllLight) {
   // What sums to less is left as it is.
   const Scatter* half = place.bind(make.sum(make.product(Triple(0.5f), diffuse), make.product(Triple(0.3f), diffuse)));
   EXPECT_NEAR(half->albedo({0, 0, 1}).average(), 0.8f, 1e-4f);
+}
+
+// The light that leaves in a direction, of uniform light from everywhere, by a grid of 200 x 200 directions: not by the albedo
+// that the scatter states itself.
+double reflected(const Scatter& s, float cosine) {
+  const Vector3 out{safe_sqrt(1 - cosine * cosine), 0, cosine};
+  constexpr int side = 200;
+  double sum = 0;
+  for (int i = 0; i < side; ++i)
+    for (int k = 0; k < side; ++k) {
+      const Vector3 in = warp::sphere({(float(i) + 0.5f) / side, (float(k) + 0.5f) / side});
+      sum += double(s.evaluate(out, in).average()) * 4 * double(pi) / (side * side);
+    }
+  return sum;
+}
+
+// At every angle, not only where a sum was looked at.
+TEST(Closures, SumsReflectAtMostAllLightAtGrazingAngles) {
+  Place place;
+  Maker make;
+  const ClosureNode* base = make.product(Triple(0.9f), make.component("diffuse", up));
+  const ClosureNode* coat =
+      make.component("dielectric_bsdf", up, along_u, Triple(1), Triple(0), 0.4f, 0.4f, 1.5f, intern_string("ggx"));
+  const ClosurePlace at{place.p, place.w, place.arena, rgb_space("srgb"), false, place.name, false};
+  const Scatter* s = scatter_of(make.sum(coat, base), at);
+  ASSERT_TRUE(s);
+  // 0.9 and 0.04 along the normal: it stays as it is.
+  EXPECT_NEAR(reflected(*s, 0.95f), 0.94, 0.015);
+  for (const float cosine : {0.5f, 0.2f, 0.1f, 0.05f}) {
+    EXPECT_LE(reflected(*s, cosine), 1.01) << cosine;
+    EXPECT_LE(s->albedo({safe_sqrt(1 - cosine * cosine), 0, cosine}).maximum(), 1.001f) << cosine;
+  }
+  // And it stays reciprocal.
+  const Vector3 a = normalize(Vector3{0.9f, 0.1f, 0.12f}), b = normalize(Vector3{-0.5f, 0.3f, 0.8f});
+  EXPECT_NEAR(s->evaluate(a, b)[0] / b.z, s->evaluate(b, a)[0] / a.z, 1e-4f);
+}
+
+TEST(Closures, ARoughWhiteBurleySurfaceReflectsAtMostAllLight) {
+  Place place;
+  Maker make;
+  const Scatter* s = place.bind(make.component("burley_diffuse_bsdf", up, Triple(1), 1.0f));
+  ASSERT_TRUE(s);
+  for (const float cosine : {0.9f, 0.5f, 0.2f, 0.1f, 0.05f}) {
+    const double sum = reflected(*s, cosine);
+    EXPECT_LE(sum, 1.005) << cosine;
+    EXPECT_NEAR(sum, double(s->albedo({safe_sqrt(1 - cosine * cosine), 0, cosine}).average()), 0.05 * sum) << cosine;
+  }
+}
+
+// Glass in two closures is the dielectric that one closure is, also seen from inside by a tilted normal, where each alone would
+// let light out by facets of the opposite tilt in its own way (scatter_corrections.h).
+TEST(Closures, ReflectionAndRefractionOfOneBoundaryAreOneDielectric) {
+  Place place;
+  Maker make;
+  const Triple zero(0);
+  place.p.shading_normal = Normal3(normalize(Vector3{0.3f, 0.1f, 0.95f}));
+  const String* ggx = intern_string("ggx");
+  for (const float rough : {0.0f, 0.3f}) {
+    const ClosureNode* whole = make.component("microfacet", ggx, zero, rough, 1.5f, 2);
+    const ClosureNode* parts = make.sum(make.component("microfacet", ggx, zero, rough, 1.5f, 0),
+                                        make.product(Triple(0.5f), make.component("microfacet", ggx, zero, rough, 1.5f, 1)));
+    const Scatter *a = place.bind(whole), *b = place.bind(parts);
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->lobes(), b->lobes());
+    std::mt19937 random(5);
+    const auto number = [&] { return float(random() >> 8) / float(1 << 24); };
+    for (int i = 0; i < 200; ++i) {
+      const Vector3 out = warp::sphere({number(), number()});
+      EXPECT_NEAR(a->albedo(out, reflection_lobes).average(), b->albedo(out, reflection_lobes).average(), 1e-5f);
+      EXPECT_NEAR(0.5f * a->albedo(out, transmission_lobes).average(), b->albedo(out, transmission_lobes).average(), 1e-5f);
+      const Vector3 in = warp::sphere({number(), number()});
+      const float share = (dot(Vector3(place.p.normal), out) > 0) == (dot(Vector3(place.p.normal), in) > 0) ? 1 : 0.5f;
+      EXPECT_NEAR(share * a->evaluate(out, in).average(), b->evaluate(out, in).average(), 1e-5f);
+    }
+  }
+}
+
+// A loop makes sums that are deeper than a stack.
+TEST(Closures, SumsMayBeDeep) {
+  Place place;
+  Maker make;
+  const ClosureNode* light = make.component("emission");
+  const ClosureNode* sum = make.component("diffuse", up);
+  for (int i = 0; i < 300'000; ++i) sum = make.sum(sum, light);
+  const Scatter* s = place.bind(sum);
+  ASSERT_TRUE(s);
+  EXPECT_NEAR(s->albedo({0, 0, 1}).average(), 1, 1e-4f);
+  EXPECT_GT(light_of(sum, rgb_space("srgb"), place.w).average(), 1000);
+  EXPECT_EQ(refracting_index(sum), 1);
+  const ClosureNode* nested = make.component("diffuse", up);
+  for (int i = 0; i < 100'000; ++i) nested = make.component("layer", nested, light);
+  EXPECT_THROW(place.bind(nested), Error);
 }
 
 TEST(Closures, NoLightIsMadeByALayer) {

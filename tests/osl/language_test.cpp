@@ -180,7 +180,12 @@ TEST(OslLanguage, ErrorsHaveTheirPlaces) {
 TEST(OslLanguage, RecursionIsRefused) {
   EXPECT_EQ(
       errors_of("int g(int i);\nint f(int i) { return g(i); }\nint g(int i) { return f(i); }\nshader s() { int k = f(3); }"),
-      "3:23 the function 'f' calls itself: there is no recursion in the language\n");
+      "3:23 the function 'f' calls itself: recursion is not part of the language\n");
+  EXPECT_EQ(errors_of("int f(int i) { return i * f(i - 1); }\nshader s() { int k = f(3); }"),
+            "1:27 the function 'f' calls itself: recursion is not part of the language\n");
+  const std::string overloaded = errors_of("int f(color c) { return 1; }\nint f(string i) { return f(1, 2); }\nshader s() { }");
+  EXPECT_NE(overloaded.find("'f' itself cannot be called here: recursion is not part of the language"), std::string::npos)
+      << overloaded;
   // A function of the library's name calls the library's.
   EXPECT_TRUE(good("point abs(point p) { return abs(p); }\nshader s() { point q = abs(P); }"));
 }

@@ -105,6 +105,67 @@ TEST(OslClasses, LookTexturesUp) {
   }
 }
 
+// A texture lies beside the shader that names it, or beside the scene; what is found nowhere is told with the places.
+TEST(OslClasses, FindTexturesBesideTheShader) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "beside_shader";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "beside.ppm") << std::string("P6\n1 1\n255\n") + "\xff" + std::string(2, '\0');
+  const std::string file = (folder / "test_beside.osl").string();
+  std::ofstream(file)
+      << "shader test_beside(output float red = 0, output float there = 0, output float missing = 0) { int there_is = 0; "
+         "gettextureinfo(\"beside.ppm\", \"exists\", there_is); there = there_is; "
+         "red = texture(\"beside.ppm\", u, v, \"interp\", \"closest\"); missing = texture(\"nowhere.ppm\", u, v); }";
+  Registry::instance().load_plugin(file);
+  const Ref<ObjectMap> map = ref_cast<ObjectMap>(Registry::instance().create("TestBeside"));
+  testing::internal::CaptureStderr();  // told once
+  for (const char* output : {"red", "there"}) {
+    set(*map, "output", etendue::Value(std::string(output)));
+    prepare_tree(*map);
+    EXPECT_FLOAT_EQ(map->scalar(front()), 1) << output;
+  }
+  set(*map, "output", etendue::Value(std::string("missing")));
+  prepare_tree(*map);
+  EXPECT_EQ(map->scalar(front()), 0);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("there is no file 'nowhere.ppm' in '" + folder.string() + "'"), std::string::npos) << said;
+}
+
+// The value of a member may be a map in which another shader runs: the closures that were made before are still there.
+TEST(OslClasses, AShaderThatRunsWithinAnotherLeavesItsClosures) {
+  Registry::instance().load_plugin(written("test_inner.osl",
+                                           "shader test_inner(output float a = 0) { closure color c = 0.125 * emission(); "
+                                           "for (int i = 0; i < 50; ++i) c += 0.5 * translucent(N); if (c) a = 0.5; }"));
+  Registry::instance().load_plugin(
+      written("test_outer.osl", "surface test_outer(float amount = 1) { closure color c = diffuse(N); Ci = amount * c; }"));
+  const Ref<Component> inner = Registry::instance().create("TestInner"), mixed = Registry::instance().create("MultiplyMap");
+  set(*mixed, "first", etendue::Value(inner));
+  set(*mixed, "second", etendue::Value(inner));
+  const Ref<etendue::Shader> shader = ref_cast<etendue::Shader>(Registry::instance().create("TestOuter"));
+  set(*shader, "amount", etendue::Value(mixed));
+  prepare_tree(*shader);
+  Arena arena;
+  const Scatter* s = shader->bind(front(), visible(), arena);
+  ASSERT_TRUE(s);
+  EXPECT_EQ(s->lobes(), diffuse_reflection);
+}
+
+// What the reader of Shader::albedo_error may rely on.
+TEST(OslClasses, TellHowExactTheirAlbedoIs) {
+  const auto error_of = [](const std::string& name, const std::string& body) {
+    Registry::instance().load_plugin(written(name + ".osl", "surface " + name + "(float x = 0.5) { Ci = " + body + "; }"));
+    const Ref<etendue::Shader> shader =
+        ref_cast<etendue::Shader>(Registry::instance().create("Albedo" + std::string(1, char(std::toupper(name.back())))));
+    prepare_tree(*shader);
+    return shader->albedo_error();
+  };
+  EXPECT_EQ(error_of("albedo_a", "x * diffuse(N)"), 0);
+  EXPECT_EQ(error_of("albedo_b", "mix(diffuse(N), reflection(N, 1.5), x)"), 0);
+  EXPECT_FLOAT_EQ(error_of("albedo_c", "oren_nayar(N, x)"), 0.01f);
+  EXPECT_EQ(error_of("albedo_d", "dielectric_bsdf(N, dPdu, color(1), color(1), 0, 0, 1.5, \"ggx\")"), 0);
+  EXPECT_FLOAT_EQ(error_of("albedo_e", "dielectric_bsdf(N, dPdu, color(1), color(1), x, x, 1.5, \"ggx\")"), 0.15f);
+  EXPECT_FLOAT_EQ(error_of("albedo_f", "diffuse(N) + phong(N, 5)"), 0.3f);
+}
+
 TEST(OslClasses, AnEndlessShaderIsAnErrorAtItsLoop) {
   Registry::instance().load_plugin(
       written("test_endless.osl", "surface test_endless(int k = 1)\n{\n  while (k > 0) { }\n  Ci = diffuse(N);\n}\n"));

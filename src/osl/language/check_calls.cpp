@@ -115,6 +115,8 @@ Checker::Candidate Checker::choose(std::vector<Candidate>& best, Type expected, 
 }
 
 void Checker::refuse_call(const std::string& name, const std::vector<Argument>& arguments, Location at) {
+  // A body does not see its own function: a call of the name would mean another one.
+  const bool recursive = std::ranges::find(open_functions_, name) != open_functions_.end();
   std::string known;
   int count = 0;
   const auto list_one = [&](const std::string& text) {
@@ -134,10 +136,13 @@ void Checker::refuse_call(const std::string& name, const std::vector<Argument>& 
   if (count == 0) {
     if (const Scope::Entry* e = scope_->find(name); e && e->symbol)
       refuse(at, fmt::format("'{}' is a variable, not a function", name));
+    if (recursive) refuse(at, fmt::format("the function '{}' calls itself: recursion is not part of the language", name));
     refuse(at, fmt::format("there is no function '{}'", name));
   }
   refuse(at,
-         fmt::format("no function fits the call '{}'; there {}{}", shown(name, arguments), count == 1 ? "is" : "are", known));
+         fmt::format("no function fits the call '{}'; there {}{}", shown(name, arguments), count == 1 ? "is" : "are", known) +
+             (recursive ? fmt::format("\n'{}' itself cannot be called here: recursion is not part of the language", name)
+                        : std::string()));
 }
 
 // ---- calls

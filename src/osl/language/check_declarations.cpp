@@ -216,6 +216,7 @@ void Checker::check_body(FunctionEntry& f, Function& made, const std::vector<int
   if (functions_deep_ >= most_nested_functions)
     refuse(f.declaration->place, fmt::format("functions call each other more than {} deep", most_nested_functions));
   ++functions_deep_;
+  open_functions_.push_back(f.declaration->name);
   Scope* const outside = std::exchange(scope_, f.scope);
   const Body outer = std::exchange(body_, Body{&made, 0});
   struct Restore {
@@ -223,7 +224,10 @@ void Checker::check_body(FunctionEntry& f, Function& made, const std::vector<int
     Scope* s;
     Body b;
     int& depth;
-    ~Restore() { c.scope_ = s, c.body_ = b, --depth; }
+    ~Restore() {
+      c.scope_ = s, c.body_ = b, --depth;
+      c.open_functions_.pop_back();
+    }
   } const restore{*this, outside, outer, functions_deep_};
   Enter enter(*this);
   scope_->limit = f.number;
@@ -323,7 +327,7 @@ void Checker::finish_functions() {
       const Expression* call = calls[v.next++];
       State& s = state[call->function];
       if (s == State::open) {
-        diagnostics_.error(call->place, fmt::format("the function '{}' calls itself: there is no recursion in the language",
+        diagnostics_.error(call->place, fmt::format("the function '{}' calls itself: recursion is not part of the language",
                                                     call->function->name));
         return;
       }

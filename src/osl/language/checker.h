@@ -159,6 +159,7 @@ class Checker {
   std::vector<Pending> pending_;
   Scope* scope_ = nullptr;
   Body body_;
+  std::vector<std::string> open_functions_;  ///< whose bodies are checked now, each because the one before calls it
   std::size_t number_ = 0, nodes_ = 0, memory_ = 0;
   int depth_ = 0, functions_deep_ = 0;
   /// Expressions that folding made superfluous, kept because pending_ may point into them.

@@ -30,6 +30,7 @@ struct TextureOptions {
   float time = 0;
   const String* interpolation = nullptr;  ///< "smartcubic" (the default, null), "cubic", "linear", "closest"
   const String* color_space = nullptr;
+  const char* shader_file = "";  ///< of the shader that asks: relative names are searched beside it first
   bool has_missing_color = false;
   Triple missing_color;
   float missing_alpha = 0;
@@ -112,8 +113,10 @@ class Services {
                                        TextureLookup&) {
     return "there are no textures here";
   }
-  /// gettextureinfo; `at` are coordinates or null. False if there is no such fact of this type.
-  virtual bool texture_info(const String* /*file*/, const float* /*at*/, const String* /*name*/, const Type&, void* /*out*/) {
+  /// gettextureinfo; `at` are coordinates or null, `shader_file` as in TextureOptions. False if there is no such fact of this
+  /// type.
+  virtual bool texture_info(const String* /*file*/, const float* /*at*/, const String* /*name*/, const Type&, void* /*out*/,
+                            const char* /*shader_file*/ = "") {
     return false;
   }
 

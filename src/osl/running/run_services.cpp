@@ -101,9 +101,12 @@ float RunServices::seconds_per_time() const { return run_->world->seconds_per_ti
 float RunServices::seconds_per_frame() const { return run_->world->seconds_per_frame(); }
 float RunServices::metres_per_unit() const { return run_->world->metres_per_unit(); }
 bool RunServices::ray_type(const String* name) const { return run_->world->ray_type(name); }
+const char* RunServices::shader_file() const { return run_->group->shader(run_->layer).place.file; }
 std::string_view RunServices::texture(const String* file, const Dual<float>& s, const Dual<float>& t,
                                       const TextureOptions& options, TextureLookup& lookup) {
-  return run_->world->texture(file, s, t, options, lookup);
+  TextureOptions here = options;
+  here.shader_file = shader_file();
+  return run_->world->texture(file, s, t, here, lookup);
 }
 std::string_view RunServices::texture3d(const String* file, const Dual<Triple>& p, const TextureOptions& options,
                                         TextureLookup& lookup) {
@@ -111,10 +114,13 @@ std::string_view RunServices::texture3d(const String* file, const Dual<Triple>& 
 }
 std::string_view RunServices::environment(const String* file, const Dual<Triple>& direction, const TextureOptions& options,
                                           TextureLookup& lookup) {
-  return run_->world->environment(file, direction, options, lookup);
+  TextureOptions here = options;
+  here.shader_file = shader_file();
+  return run_->world->environment(file, direction, here, lookup);
 }
-bool RunServices::texture_info(const String* file, const float* at, const String* name, const Type& type, void* out) {
-  return run_->world->texture_info(file, at, name, type, out);
+bool RunServices::texture_info(const String* file, const float* at, const String* name, const Type& type, void* out,
+                               const char*) {
+  return run_->world->texture_info(file, at, name, type, out, shader_file());
 }
 void RunServices::print(std::string_view text) { run_->world->print(text); }
 void RunServices::print_to(const String* file, std::string_view text) { run_->world->print_to(file, text); }

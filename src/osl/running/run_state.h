@@ -41,7 +41,7 @@ class RunServices final : public Services {
                            TextureLookup&) override;
   std::string_view texture3d(const String*, const Dual<Triple>&, const TextureOptions&, TextureLookup&) override;
   std::string_view environment(const String*, const Dual<Triple>&, const TextureOptions&, TextureLookup&) override;
-  bool texture_info(const String*, const float* at, const String* name, const Type&, void* out) override;
+  bool texture_info(const String*, const float* at, const String* name, const Type&, void* out, const char*) override;
   void print(std::string_view) override;
   void print_to(const String*, std::string_view) override;
   void warn(std::string_view, Location) override;
@@ -54,6 +54,7 @@ class RunServices final : public Services {
   void* allocate(std::size_t size, std::size_t alignment) override;
 
  private:
+  const char* shader_file() const;
   RunState* run_;
 };
 

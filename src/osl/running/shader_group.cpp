@@ -117,12 +117,22 @@ bool Execution::run(Globals& globals, Services& services, const std::atomic<bool
 }
 
 bool Execution::run(Globals& globals, Services& services, std::span<const int> layers, const std::atomic<bool>* abort) {
+  std::memcpy(state_.memory, static_cast<const void*>(&globals), sizeof(Globals));
+  const bool complete = run_layers(services, layers, abort);
+  std::memcpy(static_cast<void*>(&globals), state_.memory, sizeof(Globals));
+  return complete;
+}
+
+bool Execution::run(Services& services, const std::atomic<bool>* abort) {
+  return run_layers(services, group_->entries_, abort);
+}
+
+bool Execution::run_layers(Services& services, std::span<const int> layers, const std::atomic<bool>* abort) {
   if (runs_ < often) {
     const Execute mode = execution_mode();
     if (mode == Execute::compiler) group_->compile();
     if (++runs_ == often && mode == Execute::automatic) group_->compilation_.begin();
   }
-  std::memcpy(state_.memory, static_cast<const void*>(&globals), sizeof(Globals));
   std::memset(state_.memory + group_->flags_, 0, group_->flag_count_);
   state_.world = &services;
   state_.abort = abort;
@@ -135,7 +145,6 @@ bool Execution::run(Globals& globals, Services& services, std::span<const int> l
   } catch (const RunAborted&) {
     complete = false;
   }
-  std::memcpy(static_cast<void*>(&globals), state_.memory, sizeof(Globals));
   return complete;
 }
 

@@ -111,6 +111,10 @@ class Execution {
   /// memory come from services.allocate. Returns false if `abort` was set meanwhile; the results are then undefined. Throws
   /// Error at the place of a loop that seems to be endless (RunState::most_steps).
   bool run(Globals& globals, Services& services, const std::atomic<bool>* abort = nullptr);
+  /// The same, of what globals() holds, which a renderer fills without copies.
+  bool run(Services& services, const std::atomic<bool>* abort = nullptr);
+  Globals& globals() { return *state_.globals; }
+  const Globals& globals() const { return *state_.globals; }
   /// Runs some layers alone, by their numbers, in this order. All needed layers run as well, each once.
   bool run(Globals& globals, Services& services, std::span<const int> layers, const std::atomic<bool>* abort = nullptr);
 
@@ -121,6 +125,8 @@ class Execution {
   const ShaderGroup& group() const { return *group_; }
 
  private:
+  bool run_layers(Services&, std::span<const int> layers, const std::atomic<bool>* abort);
+
   struct Free {
     void operator()(std::byte* p) const { ::operator delete[](p, std::align_val_t(MemoryLayout::alignment)); }
   };

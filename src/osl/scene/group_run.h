@@ -19,18 +19,20 @@ class RunsGroup {
    public:
     /// `w` may be null where no closure is asked for.
     Run(const RunsGroup&, const SurfacePoint&, const Wavelengths* w);
-    const ClosureNode* Ci() const { return globals_.Ci; }
-    const Globals& globals() const { return globals_; }
-    const Globals& globals_before() const { return before_; }
+    const ClosureNode* Ci() const { return globals().Ci; }
+    const Globals& globals() const { return execution_.globals(); }
+    /// What P and N were before the run.
+    const Triple& P_before() const { return P_before_; }
+    const Triple& N_before() const { return N_before_; }
     bool from_behind() const { return from_behind_; }
     /// The value of the first of the outputs.
     const std::byte* output() const { return execution_.value(part_.output_); }
 
    private:
     const RunsGroup& part_;
-    bool from_behind_ = false;
-    Globals globals_, before_;
     Execution& execution_;
+    bool from_behind_;
+    Triple P_before_, N_before_;
   };
 
   const Memory& output() const { return output_; }
@@ -45,6 +47,8 @@ class RunsGroup {
   const RgbSpace* space_ = &rgb_space("srgb");
   Network network_;
   std::shared_ptr<const ShaderGroup> group_;
+  NeededGlobals needed_;
+  const char* scene_file_ = "";  ///< that describes the part
   Memory output_{};
 };
 

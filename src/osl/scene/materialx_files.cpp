@@ -35,20 +35,33 @@ bool in_use(const MaterialXDocument& document, const std::string& file) {
   return true;
 }
 
-void declare_shader(const std::string& text, const MaterialXMaterial& m, const MaterialXDocument& document,
-                    const std::string& file) {
+std::shared_ptr<const Shader> compiled(const std::string& text, const MaterialXMaterial& m, const MaterialXDocument& document,
+                                       const std::string& file) {
   CompileOptions options;
   options.include_folders = document.include_folders;
   const std::string name = file + "(" + m.name + ")";
-  const Compiled compiled = compile_text(text, name, options);
-  if (compiled.failed()) {
-    std::string faults;
-    for (const Diagnostic& d : compiled.diagnostics)
-      if (!d.warning) faults += "\n  " + place_text(d.place) + ": " + d.text;
-    throw Error(
-        fmt::format("the shader that the package 'materialx' has written of '{}' cannot be compiled:{}", m.name, faults));
-  }
-  for (std::unique_ptr<ClassInfo>& info : make_classes(compiled.shader, file)) {
+  const osl::Compiled made = compile_text(text, name, options);
+  if (!made.failed()) return made.shader;
+  std::string faults;
+  for (const Diagnostic& d : made.diagnostics)
+    if (!d.warning) faults += "\n  " + place_text(d.place) + ": " + d.text;
+  throw Error(fmt::format("the shader that the package 'materialx' has written of '{}' cannot be compiled:{}", m.name, faults));
+}
+
+/// The shaders of a document's texts, by the text's number and the parameters' types and names.
+using Shaders = std::map<std::string, std::shared_ptr<const Shader>>;
+
+/// Compiling a whole surface takes a hundred times as long as its parameters alone: so of materials that differ in values only
+/// one is compiled, and the others have their own names, parameters and defaults.
+void declare_shader(const MaterialXShader& written, const MaterialXMaterial& m, const MaterialXDocument& document,
+                    const std::string& file, Shaders& known) {
+  const auto& [before, body] = document.texts[written.text];
+  const std::shared_ptr<const Shader> own = compiled(written.frame + "{ }\n", m, document, file);
+  std::string key = std::to_string(written.text);
+  for (const Symbol* s : own->parameters) key += fmt::format(" {} {}", s->type.name(), s->name);
+  std::shared_ptr<const Shader>& shader = known[key];
+  if (!shader) shader = compiled(before + written.frame + body, m, document, file);
+  for (std::unique_ptr<ClassInfo>& info : make_classes(shader, file, own)) {
     const ClassInfo* taken = Registry::instance().find(info->name);
     if (taken && taken->declared && taken->provider != file)
       warn(fmt::format("{}: '{}' has a class of this name, too; from now on it is that of '{}'", info->name, taken->provider,
@@ -70,11 +83,12 @@ void declare_materialx(const std::string& file) {
   for (const std::string& note : document->notes)
     if (!told) warn(note, at);
   bool any = false;
+  Shaders shaders;
   for (const MaterialXMaterial& m : document->materials) {
     try {
       if (!m.problem.empty()) throw Error(m.problem);
-      declare_shader(m.text, m, *document, file);
-      if (!m.displacement.empty()) declare_shader(m.displacement, m, *document, file);
+      declare_shader(m.surface, m, *document, file, shaders);
+      if (!m.displacement.empty()) declare_shader(m.displacement, m, *document, file, shaders);
       any = true;
     } catch (const Error& e) {
       // A material that cannot be read does not take the others with it.

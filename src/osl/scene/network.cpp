@@ -35,6 +35,11 @@ bool may_connect(const Type& from, const Type& to) {
          (from.is_int() && (to.is_float() || to.is_triple()));
 }
 
+bool has_constant_default(const Shader& shader, const std::string& name) {
+  const Symbol* s = shader.find_parameter(name);
+  return s && s->initial && s->initial->kind == Expression::Kind::constant;
+}
+
 std::string trimmed(std::string text) {
   const auto blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
   while (!text.empty() && blank(text.back())) text.pop_back();
@@ -119,17 +124,20 @@ std::string Network::add(const OslPart& part) {
   const Component& self = part.component();
   LayerText layer;
   const std::string written = self.origin ? self.origin->name : std::string();
-  layer.shader = layer.name = free_name(written.empty() ? of.shader->name : written);
+  layer.shader = layer.name = free_name(written.empty() ? of.own->name : written);
   layer.at = self.location_of();
   shaders_[layer.name] = of.shader;  // the name is taken
   parts_[&part] = layer.name;
   std::vector<ConnectionText> connections;
   for (const OslClass::Parameter& parameter : of.parameters) {
-    const auto given = part.declared_values.find(parameter.member);
-    if (given == part.declared_values.end()) continue;
+    const auto found = part.declared_values.find(parameter.member);
     const Member& m = *part.info().find(parameter.member);
+    const etendue::Value* given = found != part.declared_values.end() ? &found->second : nullptr;
+    // A shader that several classes share has the defaults of one of them.
+    if (!given && of.own != of.shader && has_constant_default(*of.own, parameter.symbol->name)) given = &m.default_value;
+    if (!given) continue;
     if (m.kind == Kind::component) {
-      if (const auto* map = given->second.as<Ref<Component>>(); map && *map)
+      if (const auto* map = given->as<Ref<Component>>(); map && *map)
         add_map(part, parameter.member, *parameter.symbol, ref_cast<ObjectMap>(*map), layer, connections);
       continue;
     }
@@ -137,7 +145,7 @@ std::string Network::add(const OslPart& part) {
     text.name = parameter.symbol->name;
     text.at = self.location_of(parameter.member);
     try {
-      text.value = constant_of(parameter.symbol->type, m, given->second);
+      text.value = constant_of(parameter.symbol->type, m, *given);
     } catch (const Error& e) {
       self.fail(parameter.member, e.what());
     }

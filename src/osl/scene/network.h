@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "closure_models.h"
 #include "etendue/object_map.h"
 #include "map_inputs.h"
+#include "osl/closures/closure_models.h"
 #include "osl/running/shader_group.h"
 
 namespace etendue::osl {

@@ -148,7 +148,7 @@ void store_number(Component& c, const Member& m, const etendue::Value& v) {
 }
 
 void add_members(ClassInfo& info, OslClass& of) {
-  for (const Symbol* s : of.shader->parameters) {
+  for (const Symbol* s : of.own->parameters) {
     if (s->role != Symbol::Role::parameter) continue;
     Member m;
     if (!set_kind(m, *s)) continue;
@@ -174,7 +174,7 @@ void add_members(ClassInfo& info, OslClass& of) {
     }
     m.owner = &info;
     info.members.push_back(m);
-    of.parameters.push_back({s, m.name});
+    of.parameters.push_back({of.shader->find_parameter(s->name), m.name});
   }
 }
 
@@ -207,7 +207,7 @@ void add_bound(ClassInfo& info) {
 /// The settings of the metadatum etendue_opaque by which a surface lets no light through, by members' names.
 std::vector<std::pair<std::string, float>> opaque_settings(const OslClass& of) {
   std::vector<std::pair<std::string, float>> settings;
-  const std::string text = text_of(of.shader->metadata, "etendue_opaque");
+  const std::string text = text_of(of.own->metadata, "etendue_opaque");
   for (const std::string& word : text.empty() ? std::vector<std::string>() : split(text, ' ')) {
     const size_t equals = word.find('=');
     const auto named = [&](const OslClass::Parameter& p) { return p.symbol->name == word.substr(0, equals); };
@@ -220,7 +220,9 @@ std::vector<std::pair<std::string, float>> opaque_settings(const OslClass& of) {
 
 }  // namespace
 
-std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shader> shader, const std::string& file) {
+std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shader> shader, const std::string& file,
+                                                     std::shared_ptr<const Shader> own) {
+  if (!own) own = shader;
   using Role = OslClass::Role;
   const ClosureUses uses = uses_of(*shader);
   std::vector<std::string> outputs, others;
@@ -266,18 +268,19 @@ std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shade
   for (const Wanted& w : wanted) {
     auto of = std::make_shared<OslClass>();
     of->shader = shader;
+    of->own = own;
     of->file = file;
     of->role = w.role;
     of->uses = uses;
     of->outputs = outputs;
     auto info = std::make_unique<ClassInfo>();
-    info->name = class_name(shader->name) + (classes.empty() ? "" : w.suffix);
+    info->name = class_name(own->name) + (classes.empty() ? "" : w.suffix);
     info->parent = Registry::instance().find(w.interface);
     info->provider = file;
-    const std::string help = text_of(shader->metadata, "help"), label = text_of(shader->metadata, "label");
+    const std::string help = text_of(own->metadata, "help"), label = text_of(own->metadata, "label");
     info->summary = !help.empty()    ? help
                     : !label.empty() ? label
-                                     : fmt::format("The shader {} in the Open Shading Language.", shader->name);
+                                     : fmt::format("The shader {} in the Open Shading Language.", own->name);
     info->members = info->parent->members;
     info->absent = info->parent->absent;
     if (w.role == Role::volume) add_bound(*info);

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "closure_models.h"
 #include "etendue/describe/declared_class.h"
+#include "osl/closures/closure_models.h"
 #include "osl/language/tree.h"
 #include "osl/running/shader_group.h"
 
@@ -23,6 +23,7 @@ struct OslClass {
   };
 
   std::shared_ptr<const Shader> shader;
+  std::shared_ptr<const Shader> own;  ///< of which the name, the metadata and the defaults are; `shader` unless that is shared
   std::string file;
   Role role = Role::surface;
   ClosureUses uses;
@@ -34,8 +35,10 @@ struct OslClass {
   std::vector<std::pair<std::string, float>> opaque;
 };
 
-/// The classes of a compiled shader: one for each thing that it can be. Throws Error with the place.
-std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shader>, const std::string& file);
+/// The classes of a compiled shader: one for each thing that it can be. Throws Error with the place. `own`: not null where
+/// several classes share the shader: a shader of the same parameters, whose name, metadata and defaults are those of the class.
+std::vector<std::unique_ptr<ClassInfo>> make_classes(std::shared_ptr<const Shader>, const std::string& file,
+                                                     std::shared_ptr<const Shader> own = nullptr);
 
 /// Makes an object of a class. One function for each role, in the file of that role.
 Ref<Component> make_surface(const ClassInfo&);

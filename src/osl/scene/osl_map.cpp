@@ -56,8 +56,7 @@ Triple GroupMap::value_at(const SurfacePoint& p, const Wavelengths* w) const {
 Triple GroupMap::value(const Run& run) const {
   if (displaces_) {
     // P was seen from the front or from behind, and so was N; the displacement is that along the front's normal.
-    const Globals& b = run.globals_before();
-    const float d = dot(run.globals().P.value - b.P.value, b.N.value);
+    const float d = dot(run.globals().P.value - run.P_before(), run.N_before());
     return Triple(run.from_behind() ? -d : d);
   }
   if (output().type.is_triple()) return *reinterpret_cast<const Triple*>(run.output());

@@ -24,6 +24,7 @@ void GroupSurface::build_surface(const Component& self, Network network, const s
   build_group(self, std::move(network), last, {});
   index_ = 1;
   find_exits();
+  refracts_ = (possible_lobes() & specular_transmission) != 0;
   if (!transmits()) return;
   const Wavelengths w;
   index_ = refracting_index(Run(*this, flat_point(), &w).Ci());
@@ -58,16 +59,12 @@ void GroupSurface::find_exits() {
 }
 
 ClosurePlace GroupSurface::place_at(const Run& run, const SurfacePoint& p, const Wavelengths& w, Arena& arena) const {
-  const bool refracts = (possible_lobes() & specular_transmission) != 0;
-  return {p, w, arena, space(), run.from_behind(), name(), refracts, exits_};
+  return {p, w, arena, space(), run.from_behind(), name(), refracts_, exits_};
 }
 
 const Scatter* GroupSurface::bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const {
   const Run run(*this, p, &w);
-  if (!run.Ci()) return nullptr;
-  SurfacePoint with = p;
-  with.dpdu = {run.globals().dPdu.value.x, run.globals().dPdu.value.y, run.globals().dPdu.value.z};
-  return scatter_of(run.Ci(), place_at(run, with, w, arena));
+  return run.Ci() ? scatter_of(run.Ci(), place_at(run, p, w, arena)) : nullptr;
 }
 
 std::optional<SubsurfaceExit> GroupSurface::sample_exit(const SurfacePoint& p, const Scene& scene, const Wavelengths& w,

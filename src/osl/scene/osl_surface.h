@@ -14,7 +14,7 @@ class GroupSurface : public etendue::Shader, public RunsGroup {
   bool transmits() const final { return network().lets_in() && !exits_; }
   /// A shader may depend on the direction of view, and layer() does.
   bool reciprocal() const final { return uses().reciprocal && !network().depends_on_view(); }
-  float albedo_error() const final { return 0.3f; }
+  float albedo_error() const final { return uses().albedo_error; }
   bool has_subsurface_exit() const final { return exits_; }
   std::optional<SubsurfaceExit> sample_exit(const SurfacePoint&, const Scene&, const Wavelengths&, NumberStream&,
                                             Arena&) const final;
@@ -27,7 +27,7 @@ class GroupSurface : public etendue::Shader, public RunsGroup {
   void find_exits();
 
   float index_ = 1;
-  bool exits_ = false;  ///< see ClosurePlace
+  bool exits_ = false, refracts_ = false;  ///< see ClosurePlace
 };
 
 }  // namespace etendue::osl

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "closure_media.h"
 #include "components/volumes/phased_volume.h"
+#include "osl/closures/media.h"
 #include "osl_part.h"
 
 namespace etendue::osl {

@@ -13,6 +13,7 @@
 
 #include "components/maps/footprint.h"
 #include "etendue/mesh_facts.h"
+#include "osl/closures/closure_models.h"
 #include "osl/textures/texture_files.h"
 #include "parameter_values.h"
 
@@ -80,25 +81,39 @@ const RgbSpace& shading_space() {
 
 }  // namespace
 
-Globals globals_of(const SurfacePoint& given, bool& from_behind) {
-  SurfacePoint p = given;
-  with_tangents(p);
-  Globals g;
-  const DoublePoint3 world = world_position(p);
+void NeededGlobals::add(const osl::Shader& shader) {
+  const auto names = [&](Global g) { return shader.globals[std::size_t(g)] != nullptr; };
+  const bool moves = calls(shader, "void displace") || calls(shader, "void bump");
+  position |= names(Global::P) || moves;
+  coordinates |= names(Global::u) || names(Global::v);
+  tangents |= names(Global::dPdu) || names(Global::dPdv);
+  area |= calls(shader, "float surfacearea");
+}
+
+bool set_globals(SurfacePoint p, NeededGlobals needed, Globals& g) {
+  g = Globals();
+  if (needed.tangents || (needed.coordinates && p.footprint > 0)) with_tangents(p);
   Vector3 i = p.ray_direction;
   if (i == Vector3{}) i = -Vector3(p.normal);
-  from_behind = dot(i, p.normal) > 0;
+  const bool from_behind = dot(i, p.normal) > 0;
   const float side = from_behind ? -1.0f : 1.0f;
-  g.P = Dual<Triple>(Triple(float(world.x), float(world.y), float(world.z)));
-  g.u = Dual<float>(p.uv.x);
-  g.v = Dual<float>(p.uv.y);
-  if (p.footprint > 0) {
-    const Footprint f = footprint_of(p);
-    g.P.dx = triple(f.longer);
-    g.P.dy = triple(f.shorter);
-    const UvFootprint uv = uv_footprint(p);
-    g.u.dx = uv.longer.x, g.u.dy = uv.shorter.x;
-    g.v.dx = uv.longer.y, g.v.dy = uv.shorter.y;
+  if (needed.position) {
+    const DoublePoint3 world = world_position(p);
+    g.P = Dual<Triple>(Triple(float(world.x), float(world.y), float(world.z)));
+    if (p.footprint > 0) {
+      const Footprint f = footprint_of(p);
+      g.P.dx = triple(f.longer);
+      g.P.dy = triple(f.shorter);
+    }
+  }
+  if (needed.coordinates) {
+    g.u = Dual<float>(p.uv.x);
+    g.v = Dual<float>(p.uv.y);
+    if (p.footprint > 0) {
+      const UvFootprint uv = uv_footprint(p);
+      g.u.dx = uv.longer.x, g.u.dy = uv.shorter.x;
+      g.v.dx = uv.longer.y, g.v.dy = uv.shorter.y;
+    }
   }
   g.I = Dual<Triple>(triple(i));
   g.N = Dual<Triple>(side * triple(p.shading_normal));
@@ -108,9 +123,8 @@ Globals globals_of(const SurfacePoint& given, bool& from_behind) {
   g.time = Dual<float>(p.time);
   g.backfacing = from_behind;
   g.flipped_handedness = false;
-  g.surface_area = 0;
-  if (p.object && p.object->extent() == Extent::bounded) g.surface_area = p.object->area(p.time);
-  return g;
+  if (needed.area && p.object && p.object->extent() == Extent::bounded) g.surface_area = p.object->area(p.time);
+  return from_behind;
 }
 
 bool RenderServices::to_common(const String* space, Matrix& out) {
@@ -193,16 +207,17 @@ bool RenderServices::attribute(const String* object, const String* name, int ind
 
 std::string_view RenderServices::texture(const String* file, const Dual<float>& s, const Dual<float>& t,
                                          const TextureOptions& options, TextureLookup& lookup) {
-  return texture_files().texture(file, s, t, options, lookup);
+  return texture_files().texture({file, options.shader_file, scene_file_}, s, t, options, lookup);
 }
 
 std::string_view RenderServices::environment(const String* file, const Dual<Triple>& direction, const TextureOptions& options,
                                              TextureLookup& lookup) {
-  return texture_files().environment(file, direction, options, lookup);
+  return texture_files().environment({file, options.shader_file, scene_file_}, direction, options, lookup);
 }
 
-bool RenderServices::texture_info(const String* file, const float* at, const String* name, const Type& type, void* out) {
-  return texture_files().texture_info(file, at, name, type, out);
+bool RenderServices::texture_info(const String* file, const float* at, const String* name, const Type& type, void* out,
+                                  const char* shader_file) {
+  return texture_files().texture_info({file, shader_file, scene_file_}, at, name, type, out);
 }
 
 void RenderServices::print(std::string_view text) {

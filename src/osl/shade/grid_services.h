@@ -30,14 +30,15 @@ class GridServices final : public Services {
   bool attribute(const String* object, const String* name, int index, const Type&, bool derivatives, void* out) override;
   std::string_view texture(const String* file, const Dual<float>& s, const Dual<float>& t, const TextureOptions& options,
                            TextureLookup& lookup) override {
-    return textures_.texture(file, s, t, options, lookup);
+    return textures_.texture({file, options.shader_file}, s, t, options, lookup);
   }
   std::string_view environment(const String* file, const Dual<Triple>& direction, const TextureOptions& options,
                                TextureLookup& lookup) override {
-    return textures_.environment(file, direction, options, lookup);
+    return textures_.environment({file, options.shader_file}, direction, options, lookup);
   }
-  bool texture_info(const String* file, const float* at, const String* name, const Type& type, void* out) override {
-    return textures_.texture_info(file, at, name, type, out);
+  bool texture_info(const String* file, const float* at, const String* name, const Type& type, void* out,
+                    const char* shader_file) override {
+    return textures_.texture_info({file, shader_file}, at, name, type, out);
   }
   void print(std::string_view) override;
   void print_to(const String* file, std::string_view) override;

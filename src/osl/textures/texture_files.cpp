@@ -50,17 +50,29 @@ struct TextureFiles::File {
 TextureFiles::TextureFiles(std::vector<std::string> folders) : folders_(std::move(folders)) {}
 TextureFiles::~TextureFiles() = default;
 
-std::string TextureFiles::found(const std::string& name) const {
-  std::error_code ignored;
-  if (std::filesystem::path(name).is_relative())
-    for (const std::string& folder : folders_) {
-      const std::string path = (std::filesystem::path(folder) / name).string();
-      if (std::filesystem::exists(path, ignored)) return path;
-    }
-  return name;
+/// Where a relative name is searched before the working folder.
+std::vector<std::string> TextureFiles::folders_of(const TextureName& name) const {
+  std::vector<std::string> folders;
+  for (const char* file : {name.shader_file, name.scene_file})
+    if (*file) folders.push_back(std::filesystem::path(file).parent_path().string());
+  folders.insert(folders.end(), folders_.begin(), folders_.end());
+  std::erase(folders, std::string());  // the working folder
+  return folders;
 }
 
-TextureFiles::File& TextureFiles::opened(const String* name, const TextureOptions* options) {
+std::string TextureFiles::found(const TextureName& name) const {
+  const std::string& text = name.text->text();
+  if (!std::filesystem::path(text).is_relative()) return text;
+  std::error_code ignored;
+  const bool tiled = text.find(udim_mark) != std::string::npos;
+  for (const std::string& folder : folders_of(name)) {
+    const std::string path = (std::filesystem::path(folder) / text).string();
+    if (tiled ? !udim_files(path).empty() : std::filesystem::exists(path, ignored)) return path;
+  }
+  return text;
+}
+
+TextureFiles::File& TextureFiles::opened(const TextureName& name, const TextureOptions* options) {
   const String* space = options ? options->color_space : nullptr;
   {
     // Each lookup of each thread comes here: readers do not wait for one another.
@@ -71,10 +83,21 @@ TextureFiles::File& TextureFiles::opened(const String* name, const TextureOption
   std::unique_ptr<File>& file = files_[{name, space}];
   if (file) return *file;
   file = std::make_unique<File>();
-  file->path = found(name->text());
+  file->path = found(name);
   file->transfer = space && (space->view() == "sRGB" || space->view() == "srgb") ? "srgb" : "linear";
-  if (name->text().empty()) {
+  const std::string& text = name.text->text();
+  if (text.empty()) {
     file->reason = "a texture without a file's name";
+    return *file;
+  }
+  std::error_code ignored;
+  if (std::filesystem::path(text).is_relative() && !std::filesystem::exists(file->path, ignored)) {
+    std::vector<std::string> places = folders_of(name);
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    std::string places_text;
+    for (const std::string& folder : places) places_text += fmt::format("'{}', ", folder);
+    if (!places_text.empty()) places_text.replace(places_text.size() - 2, 2, " or ");
+    file->reason = fmt::format("there is no file '{}' in {}the working folder", text, places_text);
     return *file;
   }
   try {
@@ -87,13 +110,15 @@ TextureFiles::File& TextureFiles::opened(const String* name, const TextureOption
 }
 
 /// Of "x.<UDIM>.tx" the file that covers the unit square of (s, t).
-TextureFiles::File& TextureFiles::tile(const String* pattern, float s, float t, const TextureOptions* options) {
-  const std::size_t mark = pattern->text().find(udim_mark);
+TextureFiles::File& TextureFiles::tile(const TextureName& pattern, float s, float t, const TextureOptions* options) {
+  const std::string& text = pattern.text->text();
+  const std::size_t mark = text.find(udim_mark);
   if (mark == std::string::npos) return opened(pattern, options);
-  const int u = std::clamp(int(std::floor(s)), 0, 9), v = std::max(0, int(std::floor(t)));
-  std::string name = pattern->text();
+  const auto whole = [](float x, float most) { return x > 0 ? int(std::min(std::floor(x), most)) : 0; };
+  const int u = whole(s, 9), v = whole(t, 899);
+  std::string name = text;
   name.replace(mark, std::string_view(udim_mark).size(), std::to_string(1001 + u + 10 * v));
-  return opened(intern_string(name), options);
+  return opened({intern_string(name), pattern.shader_file, pattern.scene_file}, options);
 }
 
 // ---- lookups
@@ -144,7 +169,7 @@ struct Sampler {
 
 }  // namespace
 
-std::string_view TextureFiles::texture(const String* name, const Dual<float>& s, const Dual<float>& t,
+std::string_view TextureFiles::texture(const TextureName& name, const Dual<float>& s, const Dual<float>& t,
                                        const TextureOptions& options, TextureLookup& lookup) {
   File& file = tile(name, s.value, t.value, &options);
   const int count = lookup.channels + (lookup.wants_alpha ? 1 : 0);
@@ -154,7 +179,7 @@ std::string_view TextureFiles::texture(const String* name, const Dual<float>& s,
     lookup.value[lookup.channels] = replaced ? options.missing_alpha : 1;
     return replaced ? std::string_view() : std::string_view(file.reason);
   }
-  const bool tiled = name->text().find(udim_mark) != std::string::npos;
+  const bool tiled = name.text->text().find(udim_mark) != std::string::npos;
   const float s0 = tiled ? s.value - std::floor(s.value) : s.value, t0 = tiled ? t.value - std::floor(t.value) : t.value;
   Sampler sampler{footprint(s, t, options),
                   tiled ? Wraps(Wrap::clamp) : Wraps(wrap_of(options.wrap[0]), wrap_of(options.wrap[1])), false, false};
@@ -189,8 +214,8 @@ std::string_view TextureFiles::texture(const String* name, const Dual<float>& s,
 }
 
 /// Longitude and latitude, y upwards: s = 1/2 in the direction +z, 3/4 in -x; t = 0 at +y.
-std::string_view TextureFiles::environment(const String* name, const Dual<Triple>& direction, const TextureOptions& options,
-                                           TextureLookup& lookup) {
+std::string_view TextureFiles::environment(const TextureName& name, const Dual<Triple>& direction,
+                                           const TextureOptions& options, TextureLookup& lookup) {
   const auto coordinates = [](const Triple& d) {
     const float size = length(d);
     const float y = size > 0 ? std::clamp(d.y / size, -1.0f, 1.0f) : 0;
@@ -244,9 +269,9 @@ const TextureFiles::Facts& TextureFiles::facts(File& file) {
   return *file.facts;
 }
 
-bool TextureFiles::texture_info(const String* name, const float* at, const String* fact, const Type& type, void* out) {
+bool TextureFiles::texture_info(const TextureName& name, const float* at, const String* fact, const Type& type, void* out) {
   const std::string_view what = fact->view();
-  const bool tiled = name->text().find(udim_mark) != std::string::npos;
+  const bool tiled = name.text->text().find(udim_mark) != std::string::npos;
   File& file = tiled ? tile(name, at ? at[0] : 0, at ? at[1] : 0, nullptr) : opened(name, nullptr);
   const auto whole = [&](const std::vector<int>& values) {
     if (type.base != Base::int_ || values.empty() || type.elements() != int(values.size())) return false;
@@ -263,7 +288,7 @@ bool TextureFiles::texture_info(const String* name, const float* at, const Strin
   };
   if (what == "exists") {
     bool exists = file.reason.empty();
-    if (tiled && !at) exists = !udim_files(found(name->text())).empty();
+    if (tiled && !at) exists = !udim_files(found(name)).empty();
     return whole({exists});
   }
   if (!file.reason.empty() || (tiled && !at && what == "resolution")) return false;

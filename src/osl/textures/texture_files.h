@@ -6,6 +6,7 @@
 // ellipse that the coordinates' derivatives span, times "width" and widened by "blur"; without derivatives they interpolate
 // between texels.
 
+#include <compare>
 #include <map>
 #include <memory>
 #include <shared_mutex>
@@ -22,29 +23,38 @@ class ImageTexture;
 
 namespace etendue::osl {
 
-/// Thread-safe. Files are opened once; relative names are searched in the given folders.
+/// A file as a shader names it. A relative name is searched in the folder of the shader, then in that of the scene, then in the
+/// given folders and the working folder.
+struct TextureName {
+  const String* text;
+  const char *shader_file = "", *scene_file = "";  ///< interned; empty: there is none
+  auto operator<=>(const TextureName&) const = default;
+};
+
+/// Thread-safe. Files are opened once.
 class TextureFiles {
  public:
   explicit TextureFiles(std::vector<std::string> folders = {});
   ~TextureFiles();
 
   // As those of Services.
-  std::string_view texture(const String* file, const Dual<float>& s, const Dual<float>& t, const TextureOptions&,
+  std::string_view texture(const TextureName&, const Dual<float>& s, const Dual<float>& t, const TextureOptions&,
                            TextureLookup&);
-  std::string_view environment(const String* file, const Dual<Triple>& direction, const TextureOptions&, TextureLookup&);
-  bool texture_info(const String* file, const float* at, const String* name, const Type&, void* out);
+  std::string_view environment(const TextureName&, const Dual<Triple>& direction, const TextureOptions&, TextureLookup&);
+  bool texture_info(const TextureName&, const float* at, const String* name, const Type&, void* out);
 
  private:
   struct File;
   struct Facts;
-  File& opened(const String*, const TextureOptions*);
-  File& tile(const String* pattern, float s, float t, const TextureOptions*);
+  File& opened(const TextureName&, const TextureOptions*);
+  File& tile(const TextureName& pattern, float s, float t, const TextureOptions*);
   const Facts& facts(File&);
-  std::string found(const std::string& name) const;
+  std::vector<std::string> folders_of(const TextureName&) const;
+  std::string found(const TextureName&) const;
 
   std::vector<std::string> folders_;
   std::shared_mutex mutex_;
-  std::map<std::pair<const String*, const String*>, std::unique_ptr<File>> files_;  // by name and colour space
+  std::map<std::pair<TextureName, const String*>, std::unique_ptr<File>> files_;  // by name and colour space
 };
 
 }  // namespace etendue::osl

@@ -8,7 +8,9 @@ FOLDERs are not read: neither documents that this one includes, nor images. With
 as if it stood in FILE, which is of another format.
 
 {"files": [all documents that were read], "include": [folders of the headers that the shaders include], "notes": [texts],
- "materials": [{"name", "class", "problem"} or {"name", "class", "text", "emits", "displacement": text or "", "vector": bool}]}
+ "texts": [[what stands before a shader, its body]],
+ "materials": [{"name", "class", "problem"} or {"name", "class", "surface": shader, "emits", "displacement": shader or null, "vector": bool}]}
+with shader = {"frame": its name and parameters with their values, "text": a number in "texts"}. Materials that differ in values only share a text.
 """
 import json
 import os
@@ -86,6 +88,7 @@ def main():
     path = os.path.abspath(sys.argv[1])
     limit(resource.RLIMIT_CORE, 0)
     limit(resource.RLIMIT_AS, 4 << 30)
+    started_with = resource.getrlimit(resource.RLIMIT_CPU)[0]
     limit(resource.RLIMIT_CPU, 60)
     files = Files(path, sys.argv[2:])
     document = mx.createDocument()
@@ -94,6 +97,10 @@ def main():
         files.read.append(path)
     else:
         files.document(document, path, None)
+    if started_with == resource.RLIM_INFINITY:  # a large document may take longer than a small one that was made to
+        hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
+        more = 60 + len(document.getMaterialNodes()) // 50
+        resource.setrlimit(resource.RLIMIT_CPU, (more if hard == resource.RLIM_INFINITY else min(more, hard), hard))
     made = Generator(document, os.path.dirname(path), files).run(os.path.splitext(os.path.basename(path))[0])
     made["files"] = files.read
     json.dump(made, sys.stdout)

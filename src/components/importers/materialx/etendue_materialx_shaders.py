@@ -12,7 +12,7 @@ import MaterialX.PyMaterialXGenOsl as mx_osl
 import MaterialX.PyMaterialXGenShader as mx_shader
 
 MOST_TEXT = 4 << 20  # bytes of a shader
-MOST_MATERIALS = 1000
+MOST_MATERIALS = 20_000
 # What may hold text for readers, which does not enter the shader.
 PROSE = {"doc", "uiname", "uifolder", "uiadvanced", "enum", "enumvalues", "xpos", "ypos", "version", "colorspace", "contains"}
 # Of a surface node: the inputs that let light through it, unless they have these values; the inputs of which one that is 0 makes
@@ -36,6 +36,7 @@ class Generator:
         """`files.require(path, named)` throws unless the file may be read; `files.allowed(path)` says whether it may."""
         self.document, self.folder, self.require, self.allowed = document, folder, files.require, files.allowed
         self.notes = []
+        self.texts = {}  # of shaders: what stands before them and their bodies, and their numbers
         self.check()  # of the document alone, before the library is there
         path = mx.getDefaultDataSearchPath()
         library = mx.createDocument()
@@ -85,7 +86,12 @@ class Generator:
                 made.append({"name": element.getNamePath(), "class": name, "problem": " ".join(str(error).split())[:400] or type(error).__name__})
         if len(elements) > MOST_MATERIALS:
             self.note(f"more than {MOST_MATERIALS} materials: the others are left out")
-        return {"include": self.include, "notes": self.notes, "materials": made}
+        return {"include": self.include, "notes": self.notes, "texts": list(self.texts), "materials": made}
+
+    def shared(self, written):
+        """A shader as it is printed: its name and parameters, and the number of its text, which many materials may share."""
+        before, frame, body = written
+        return {"frame": frame, "text": self.texts.setdefault((before, body), len(self.texts))}
 
     def elements(self):
         """The materials; of a document that has none, its shaders and outputs."""
@@ -168,10 +174,11 @@ class Generator:
             raise Refused("it displaces surfaces and has no surface of its own")
         surface = surface_of(element)
         text, emits = self.surface(element, name, surface)
-        made = {"text": text, "emits": emits, "displacement": "", "vector": False}
+        made = {"surface": self.shared(text), "emits": emits, "displacement": None, "vector": False}
         moved = element.getConnectedNode("displacementshader") if element.getCategory() == "surfacematerial" else None
         if moved is not None:
-            made["displacement"], made["vector"] = self.displacement(moved, name + "Displacement")
+            text, made["vector"] = self.displacement(moved, name + "Displacement")
+            made["displacement"] = self.shared(text)
         return made
 
     def generated(self, element, name):
@@ -221,17 +228,17 @@ class Generator:
 
     def inputs(self, made, surface):
         """{parameter: {"name", "help", "min", "max", ...}} of those that somebody may want to set."""
-        found = {}
+        found, definitions = {}, {}
         block = made.getStage("pixel").getUniformBlock("u")
         for i in range(block.size()):
             port = block[i]
             path = port.getPath()
             element = self.document.getDescendant(path) if path else None
             node, key = path.rsplit("/", 1) if "/" in path else (path, "")
-            definition = None
-            owner = self.document.getDescendant(node) if key else None
-            if isinstance(owner, mx.Node) and owner.getNodeDef() is not None:
-                definition = owner.getNodeDef().getActiveInput(key)
+            if node not in definitions:
+                owner = self.document.getDescendant(node) if key else None
+                definitions[node] = owner.getNodeDef() if isinstance(owner, mx.Node) else None
+            definition = definitions[node].getActiveInput(key) if definitions[node] is not None else None
             described = {"own": surface is not None and node == surface.getNamePath(), "key": key, "node": node}
             for source in (definition, element):
                 for attribute in ("uimin", "uimax", "uisoftmin", "uisoftmax", "doc", "uifolder"):
@@ -302,6 +309,10 @@ def camel(text):
 RANGES = ("min", "max", "slidermin", "slidermax")
 
 # "    string file = "a.png"" of the shader's list of parameters; metadata follow.
+NAME = re.compile("[A-Za-z][A-Za-z0-9_]*")
+WORD = re.compile(r"\b[A-Za-z_]\w*\b")
+# "    closure color S_out = ...": a variable of the shader's body, not of a block in it.
+LOCAL = re.compile(r"^    (?:closure color|[A-Za-z_]\w*) ([A-Za-z_]\w*)(?= = |;)", re.M)
 PARAMETER = re.compile(r"^    (output )?(\w+) (\w+) = (.*?)(,?)$")
 
 
@@ -320,6 +331,8 @@ class Frame:
         self.body = parts.group(3)
         self.kind, self.end, self.outputs, self.metadata = "surface", "", (), {}
         self.result, self.result_value, self.result_name = "", "", ""
+        self.words = set(re.findall(r"\w+", self.body))
+        self.renamed = {}  # names of the body, and what they become when it is written
         self.parameters = []  # [type, name, value, {metadata}]
         for line in parts.group(2).split("\n"):
             given = PARAMETER.match(line)
@@ -336,12 +349,23 @@ class Frame:
         self.inner = {}  # of an input of the surface node: its parameter
 
     def rename(self, old, new):
-        self.body = re.sub(rf"\b{re.escape(old)}\b", new, self.body)
+        self.renamed[old] = new
+        self.words.discard(old)
+        self.words.add(new)
+
+    def rename_locals(self):
+        """Names of variables, which the generator makes from those of the document's nodes, become numbers: then materials that differ in
+        names and values only have one text."""
+        count = 0
+        for name in dict.fromkeys(LOCAL.findall(self.body)):
+            while f"value{count}" in self.words:
+                count += 1
+            if name not in TAKEN and name not in self.renamed and name != "out":
+                self.rename(name, f"value{count}")
 
     def free(self, name):
         """Whether nothing in the shader is called so."""
-        return re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name) and name not in TAKEN and not re.search(rf"\b{name}\b", self.body) \
-            and all(p[1] != name for p in self.parameters)
+        return NAME.fullmatch(name) and name not in TAKEN and name not in self.words and all(p[1] != name for p in self.parameters)
 
     def name_parameters(self, described, surface):
         kept, variables = [], []
@@ -384,7 +408,10 @@ class Frame:
         return " ".join(f"{name}={value}" for name, value in names) if names and all(name for name, _ in names) else ""
 
     def written(self, name):
-        lines = [self.text.rstrip("\n"), "", f"{self.kind} {name}", "[["]
+        """(what stands before the shader, its name and parameters, its body)"""
+        self.rename_locals()
+        body = WORD.sub(lambda word: self.renamed.get(word.group(), word.group()), self.body)
+        lines = ["", f"{self.kind} {name}", "[["]
         lines.append(",\n".join(f"    string {key} = {quoted(value)}" for key, value in self.metadata.items()))
         lines += ["]]", "("]
         signature = []
@@ -392,10 +419,10 @@ class Frame:
             meta = [f"{kind if key in RANGES else 'string'} {key} = {given}" for key, given in metadata.items()]
             signature.append(f"    {kind} {parameter} = {value}" + (f" [[ {', '.join(meta)} ]]" if meta else ""))
         signature += [f"    output float {output} = 0" for output in self.outputs]
-        lines += [",\n".join(signature), ")", "{"]
-        lines += [f"    {kind} {variable} = {self.known(value)};" for kind, variable, value, _ in self.variables]
-        lines += [f"    {self.result} out = {self.result_value};", self.body.rstrip("\n"), f"    {self.end}", "}", ""]
-        return "\n".join(lines)
+        lines += [",\n".join(signature), ")", ""]
+        inner = [f"    {kind} {self.renamed.get(variable, variable)} = {self.known(value)};" for kind, variable, value, _ in self.variables]
+        inner = ["{", *inner, f"    {self.result} out = {self.result_value};", body.rstrip("\n"), f"    {self.end}", "}", ""]
+        return self.text.rstrip("\n") + "\n", "\n".join(lines), "\n".join(inner)
 
     @staticmethod
     def known(value):

@@ -6,9 +6,8 @@
 
 #include "components/shaders/reflectance.h"
 #include "components/shaders/tangent_frame.h"
-#include "etendue/core/warp.h"
-#include "etendue/scatter_model.h"
 #include "etendue/transport/medium_stack.h"
+#include "facet_reflection.h"
 #include "rgb_reflectance.h"
 #include "roughness.h"
 
@@ -29,108 +28,6 @@ struct BoundaryReflectance {
 
  private:
   Spectrum seen(const Spectrum& reflected) const { return rgb ? rgb->spectrum_of(reflected).evaluate(wavelengths) : reflected; }
-};
-
-class PolishedConductor final : public ScatterModel<PolishedConductor> {
- public:
-  static constexpr bool uses_choice = false;
-
-  PolishedConductor(const SurfacePoint& p, const BoundaryReflectance& boundary, Spectrum tint)
-      : ScatterModel(p, specular_reflection), boundary_(boundary), tint_(tint) {}
-
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return {}; }
-  float local_pdf(const Vector3&, const Vector3&, Lobes) const { return 0; }
-  bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const {
-    s.in = {-out.x, -out.y, out.z};
-    s.value = tint_ * boundary_.at(std::abs(out.z));
-    s.pdf = 1;
-    s.lobe = specular_reflection;
-    return true;
-  }
-  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
-    return (lobes & specular_reflection) ? tint_ * boundary_.at(std::abs(out.z)) : Spectrum();
-  }
-
- private:
-  BoundaryReflectance boundary_;
-  Spectrum tint_;
-};
-
-// f is the sum of single scattering, f1 = F D(m) G2 / (4 |out.z in.z|)  [1/sr]  (Torrance & Sparrow 1967; Walter et al. 2007,
-// eq. 20), and multiple scattering, f2 (see MultipleReflection).
-//
-// f1 is sampled by visible normals, f2 with the pdf cos / pi. f2 is chosen with a probability q that is its share of the
-// reflected light, computed with the mean of F. Samples of f1 that lead below the surface are absorbed, so the pdf integrates
-// to less than 1.
-class RoughConductor final : public ScatterModel<RoughConductor> {
- public:
-  RoughConductor(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution,
-                 const BoundaryReflectance& boundary, Spectrum tint, bool multiple)
-      : ScatterModel(p, frame, glossy_reflection),
-        distribution_(distribution),
-        multiple_reflection_(distribution),
-        boundary_(boundary),
-        tint_(tint) {
-    has_choice_ = multiple;
-    if (!multiple) return;
-    const Spectrum mean = boundary.mean();
-    multiple_ = multiple_reflection_.factor(mean);
-    multiple_over_single_ = multiple_.average() / std::max(mean.average(), 1e-6f);
-  }
-
-  Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes lobes) const {
-    return local_value_and_pdf(out, in, lobes).value;
-  }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
-    if (!(out.z * in.z > 0)) return 0;
-    const float multiple = has_choice_ ? probability_of_multiple(multiple_reflection_.missing(out)) : 0;
-    return pdf(out, in, reflection_half_vector(out, in), multiple);
-  }
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const {
-    if (!(out.z * in.z > 0)) return {};
-    const Vector3 m = reflection_half_vector(out, in);
-    Spectrum value = boundary_.at(std::abs(dot(out, m))) * (distribution_.D(m) * distribution_.visibility(out, in));
-    if (!has_choice_) return {tint_ * value, pdf(out, in, m, 0)};
-    const float missing = multiple_reflection_.missing(out);
-    value += multiple_ * multiple_reflection_.value(missing, multiple_reflection_.missing(in));
-    return {tint_ * value, pdf(out, in, m, probability_of_multiple(missing))};
-  }
-
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
-    if (has_choice_ && choice < probability_of_multiple(multiple_reflection_.missing(out))) {
-      s.in = warp::cosine_hemisphere(u);
-      if (out.z < 0) s.in.z = -s.in.z;
-    } else {
-      s.in = reflect(out, distribution_.sample_visible(out, u));
-    }
-    const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
-    s.value = both.value * std::abs(s.in.z);
-    s.pdf = both.pdf;
-    s.lobe = glossy_reflection;
-    return s.pdf > 0;
-  }
-
-  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
-    if (!(lobes & glossy_reflection)) return {};
-    const float missing = multiple_reflection_.missing(out);
-    return tint_ * (boundary_.at(distribution_.typical_cosine(out)) * (1 - missing) + multiple_ * missing);
-  }
-
- private:
-  float probability_of_multiple(float missing) const {
-    const float multiple = missing * multiple_over_single_;
-    return multiple / (multiple + 1 - missing);
-  }
-  float pdf(const Vector3& out, const Vector3& in, const Vector3& m, float multiple) const {
-    return (1 - multiple) * distribution_.visible_pdf(out, m) * reflection_jacobian(dot(out, m)) +
-           multiple * std::abs(in.z) * inverse_pi;
-  }
-
-  MicrofacetDistribution distribution_;
-  MultipleReflection multiple_reflection_;
-  BoundaryReflectance boundary_;
-  Spectrum tint_, multiple_;  ///< multiple_: factor of multiple scattering relative to F = 1
-  float multiple_over_single_ = 0;
 };
 
 class Conductor final : public Shader {
@@ -199,9 +96,9 @@ class Conductor final : public Shader {
     const BoundaryReflectance boundary = boundary_of(p, w);
     MicrofacetDistribution d = distribution_at(distribution, *roughness, roughness_v.get(), p);
     if (!multiple_scattering) d.heights = heights;
-    if (d.smooth()) return arena.make<PolishedConductor>(p, boundary, tint);
+    if (d.smooth()) return arena.make<MirrorReflection<BoundaryReflectance>>(p, boundary, tint);
     const Frame frame = d.isotropic() ? Frame(p.shading_normal) : tangent_frame(p, rotation->scalar(p));
-    return arena.make<RoughConductor>(p, frame, d, boundary, tint, multiple_scattering);
+    return arena.make<FacetReflection<BoundaryReflectance>>(p, frame, d, boundary, tint, multiple_scattering);
   }
   /// A rough metal's reflectance is taken at one angle for all facets, and its energy loss from a table.
   float albedo_error() const override { return possible_lobes() == specular_reflection ? 0 : 0.1f; }

@@ -1,13 +1,13 @@
 #pragma once
 // The scatter models of closures that no shader of the house has.
 
+#include <array>
+
 #include "components/shaders/fresnel.h"
 #include "components/shaders/half_vector.h"
 #include "components/shaders/layered/sheen.h"
+#include "components/shaders/microfacet/facet_reflection.h"
 #include "components/shaders/microfacet/film_interference.h"
-#include "components/shaders/microfacet/microfacet.h"
-#include "etendue/core/warp.h"
-#include "etendue/scatter_model.h"
 
 namespace etendue::osl {
 
@@ -42,7 +42,9 @@ class SheenModel final : public ScatterModel<SheenModel> {
 
 // The diffuse part of Burley 2012, "Physically based shading at Disney":
 //   f = color / pi (1 + (F90 - 1) (1 - v)^5) (1 + (F90 - 1) (1 - v')^5)   [1/sr],   F90 = 1/2 + 2 roughness u^2,
-// with the cosines v, v' of the directions with the normal and u of either with the half-vector. Sampled with cos / pi.
+// with the cosines v, v' of the directions with the normal and u of either with the half-vector. A rough white surface would
+// reflect up to 1.3 of the light at grazing angles: with a(v) its albedo seen from v, f is multiplied by the smaller of
+// 1 / max(1, a(v)) and 1 / max(1, a(v')), which keeps it reciprocal and below 1. Sampled with cos / pi.
 class BurleyModel final : public ScatterModel<BurleyModel> {
  public:
   static constexpr bool uses_choice = false;
@@ -50,7 +52,9 @@ class BurleyModel final : public ScatterModel<BurleyModel> {
       : ScatterModel(p, diffuse_reflection), color_(color), roughness_(roughness) {}
 
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes) const {
-    return out.z * in.z > 0 ? color_ * (inverse_pi * relative(out, in)) : Spectrum();
+    if (!(out.z * in.z > 0)) return {};
+    const float most = std::max(white_albedo(std::abs(out.z)), white_albedo(std::abs(in.z)));
+    return color_ * (inverse_pi * relative(out, in, roughness_) / std::max(most, 1.0f));
   }
   float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
     return out.z * in.z > 0 ? std::abs(in.z) * inverse_pi : 0;
@@ -64,28 +68,49 @@ class BurleyModel final : public ScatterModel<BurleyModel> {
     return s.pdf > 0;
   }
   Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
-    return lobes & diffuse_reflection ? color_ * mean(std::abs(out.z)) : Spectrum();
+    return lobes & diffuse_reflection ? color_ * std::min(white_albedo(std::abs(out.z)), 1.0f) : Spectrum();
   }
 
  private:
-  float relative(const Vector3& out, const Vector3& in) const {
-    const float u = half_vector(out, in).u, f = 2 * roughness_ * u * u - 0.5f;
+  static float relative(const Vector3& out, const Vector3& in, float roughness) {
+    const float u = half_vector(out, in).u, f = 2 * roughness * u * u - 0.5f;
     return (1 + f * schlick_growth(std::abs(out.z))) * (1 + f * schlick_growth(std::abs(in.z)));
   }
-  /// The mean of `relative` over directions with the pdf cos / pi, by 4 x 8 midpoints.
-  float mean(float cosine) const {
+  /// a(v) of a white surface: the mean of `relative` over directions with the pdf cos / pi. It is a polynomial of second degree
+  /// in the roughness, whose coefficients are tabulated by the cosine.
+  float white_albedo(float cosine) const {
+    static const auto table = [] {
+      std::array<std::array<float, 3>, cells + 1> t;
+      for (int i = 0; i <= cells; ++i) {
+        const float c = std::max(float(i) / cells, 1e-4f), none = mean(c, 0), half = mean(c, 0.5f), full = mean(c, 1);
+        t[size_t(i)] = {none, 4 * half - 3 * none - full, 2 * (none + full - 2 * half)};
+      }
+      return t;
+    }();
+    const float x = std::min(cosine, 1.0f) * cells;
+    const int i = std::min(int(x), cells - 1);
+    const auto at = [&](int k) {
+      const auto& c = table[size_t(k)];
+      return c[0] + roughness_ * (c[1] + roughness_ * c[2]);
+    };
+    return lerp(x - float(i), at(i), at(i + 1));
+  }
+  /// By 64 x 64 midpoints.
+  static float mean(float cosine, float roughness) {
+    constexpr int steps = 64;
     const Vector3 out = towards_x(cosine);
-    float sum = 0;
-    for (int i = 0; i < 4; ++i) {
-      const float z = std::sqrt((float(i) + 0.5f) / 4), sine = safe_sqrt(1 - z * z);
-      for (int k = 0; k < 8; ++k) {
-        const float phi = pi * (float(k) + 0.5f) / 8;
-        sum += relative(out, {sine * std::cos(phi), sine * std::sin(phi), z});
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+      const float z = std::sqrt((float(i) + 0.5f) / steps), sine = safe_sqrt(1 - z * z);
+      for (int k = 0; k < steps; ++k) {
+        const float phi = pi * (float(k) + 0.5f) / steps;
+        sum += double(relative(out, {sine * std::cos(phi), sine * std::sin(phi), z}, roughness));
       }
     }
-    return sum / 32;
+    return float(sum / (steps * steps));
   }
 
+  static constexpr int cells = 64;
   Spectrum color_;
   float roughness_;
 };
@@ -140,9 +165,9 @@ struct SchlickFresnel {
   Spectrum mean() const { return f0 + (f90 - f0) * (2 / ((exponent + 1) * (exponent + 2))); }
 };
 
-/// Fresnel reflection of a film (film_interference.h), times a colour.
+/// Fresnel reflection of a film (film_interference.h).
 struct FilmFresnel {
-  Spectrum color = Spectrum(1.0f), outside = Spectrum(1.0f), film, base, absorbing;
+  Spectrum outside = Spectrum(1.0f), film, base, absorbing;
   Spectrum thickness;  ///< in wavelengths
 
   void set_thickness(float nanometres, const Wavelengths& w) {
@@ -152,7 +177,7 @@ struct FilmFresnel {
     Spectrum r;
     for (int i = 0; i < spectrum_size; ++i)
       r.set(i, film_fractions(cosine, outside[i], film[i], {base[i], absorbing[i]}, thickness[i]).reflected);
-    return color * r;
+    return r;
   }
   /// The mean under diffuse light, the integral of 2 c F(c), by the midpoint rule in c^2.
   Spectrum mean() const {
@@ -161,28 +186,6 @@ struct FilmFresnel {
     for (int i = 0; i < steps; ++i) sum += at(std::sqrt((float(i) + 0.5f) / steps));
     return sum / float(steps);
   }
-};
-
-// A mirror with that reflectance; exponent 5 and F0 = F90 = 1 is the perfect one.
-class MirrorModel final : public ScatterModel<MirrorModel> {
- public:
-  static constexpr bool uses_choice = false;
-  MirrorModel(const SurfacePoint& p, const SchlickFresnel& fresnel) : ScatterModel(p, specular_reflection), fresnel_(fresnel) {}
-  Spectrum local_evaluate(const Vector3&, const Vector3&, Lobes) const { return {}; }
-  float local_pdf(const Vector3&, const Vector3&, Lobes) const { return 0; }
-  bool local_sample(const Vector3& out, float, Point2, Lobes, LocalSample& s) const {
-    s.in = {-out.x, -out.y, out.z};
-    s.value = fresnel_.at(std::abs(out.z));
-    s.pdf = 1;
-    s.lobe = specular_reflection;
-    return true;
-  }
-  Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
-    return lobes & specular_reflection ? fresnel_.at(std::abs(out.z)) : Spectrum();
-  }
-
- private:
-  SchlickFresnel fresnel_;
 };
 
 // The reflection of a smooth dielectric boundary through which no light goes: a coat, of which only the reflection is wanted.
@@ -216,40 +219,37 @@ class CoatModel final : public ScatterModel<CoatModel> {
   Spectrum color_, eta_;
 };
 
-// Facets with that reflectance: f = F D G2 / (4 |out.z in.z|) [1/sr] and multiple scattering, as of a metal (conductor.cpp).
-template <class Fresnel>
-class FacetModel final : public ScatterModel<FacetModel<Fresnel>> {
-  using Base = ScatterModel<FacetModel<Fresnel>>;
-
+// The same with facets: f = F D G2 / (4 |out.z in.z|) [1/sr]. Light that the coat scatters more than once counts as
+// transmitted, as in the house's coats (CoatTransmittance).
+class RoughCoatModel final : public ScatterModel<RoughCoatModel> {
  public:
-  FacetModel(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution, const Fresnel& fresnel)
-      : Base(p, frame, glossy_reflection), distribution_(distribution), multiple_reflection_(distribution), fresnel_(fresnel) {
-    const Spectrum mean = fresnel.mean();
-    multiple_ = multiple_reflection_.factor(mean);
-    multiple_over_single_ = multiple_.average() / std::max(mean.average(), 1e-6f);
-  }
+  static constexpr bool uses_choice = false;
+  RoughCoatModel(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution, Spectrum color,
+                 Spectrum eta)
+      : ScatterModel(p, frame, glossy_reflection),
+        distribution_(distribution),
+        color_(color),
+        eta_(eta),
+        varies_(eta.minimum() != eta.maximum()) {}
 
   Spectrum local_evaluate(const Vector3& out, const Vector3& in, Lobes lobes) const {
     return local_value_and_pdf(out, in, lobes).value;
   }
-  float local_pdf(const Vector3& out, const Vector3& in, Lobes lobes) const { return local_value_and_pdf(out, in, lobes).pdf; }
-  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const {
-    if (!(out.z * in.z > 0)) return {};
+  float local_pdf(const Vector3& out, const Vector3& in, Lobes) const {
+    if (!(out.z * in.z > 1e-7f)) return 0;
     const Vector3 m = reflection_half_vector(out, in);
-    const float missing = multiple_reflection_.missing(out), multiple = probability_of_multiple(missing);
-    if (std::abs(out.z * in.z) < 1e-7f) return {};  // along the surface
-    return {fresnel_.at(std::abs(dot(out, m))) * (distribution_.D(m) * distribution_.visibility(out, in)) +
-                multiple_ * multiple_reflection_.value(missing, multiple_reflection_.missing(in)),
-            (1 - multiple) * distribution_.visible_pdf(out, m) * reflection_jacobian(dot(out, m)) +
-                multiple * std::abs(in.z) * inverse_pi};
+    return distribution_.visible_pdf(out, m) * reflection_jacobian(dot(out, m));
   }
-  bool local_sample(const Vector3& out, float choice, Point2 u, Lobes lobes, LocalSample& s) const {
-    if (choice < probability_of_multiple(multiple_reflection_.missing(out))) {
-      s.in = warp::cosine_hemisphere(u);
-      if (out.z < 0) s.in.z = -s.in.z;
-    } else {
-      s.in = reflect(out, distribution_.sample_visible(out, u));
-    }
+  ScatterValue local_value_and_pdf(const Vector3& out, const Vector3& in, Lobes) const {
+    if (!(out.z * in.z > 1e-7f)) return {};
+    const Vector3 m = reflection_half_vector(out, in);
+    const float out_m = dot(out, m);
+    const Spectrum f = of_each(out, [&](float eta) { return fresnel_dielectric(std::abs(out_m), eta); });
+    return {color_ * f * (distribution_.D(m) * distribution_.visibility(out, in)),
+            distribution_.visible_pdf(out, m) * reflection_jacobian(out_m)};
+  }
+  bool local_sample(const Vector3& out, float, Point2 u, Lobes lobes, LocalSample& s) const {
+    s.in = reflect(out, distribution_.sample_visible(out, u));
     const ScatterValue both = local_value_and_pdf(out, s.in, lobes);
     s.value = both.value * std::abs(s.in.z);
     s.pdf = both.pdf;
@@ -258,20 +258,29 @@ class FacetModel final : public ScatterModel<FacetModel<Fresnel>> {
   }
   Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     if (!(lobes & glossy_reflection)) return {};
-    const float missing = multiple_reflection_.missing(out);
-    return fresnel_.at(distribution_.typical_cosine(out)) * (1 - missing) + multiple_ * missing;
+    return color_ * of_each(out, [&](float eta) { return reflected(out, eta); });
   }
 
  private:
-  float probability_of_multiple(float missing) const {
-    const float multiple = missing * multiple_over_single_;
-    return multiple / (multiple + 1 - missing);
+  /// f of the index behind the surface over that in front, at each wavelength.
+  template <class F>
+  Spectrum of_each(const Vector3& out, const F& f) const {
+    const auto at = [&](int i) { return f(out.z > 0 ? eta_[i] : 1 / eta_[i]); };
+    Spectrum s(at(0));
+    for (int i = 1; i < spectrum_size && varies_; ++i) s.set(i, at(i));
+    return s;
   }
+  /// The albedo of single reflection. It is tabulated for isotropic distributions; of others for the alpha along `out`.
+  float reflected(const Vector3& out, float eta) const {
+    const float s2 = out.x * out.x + out.y * out.y, x2 = s2 > 0 ? out.x * out.x / s2 : 1;
+    const MicrofacetDistribution d(distribution_.kind,
+                                   std::sqrt(lerp(x2, square(distribution_.alpha_y), square(distribution_.alpha_x))));
+    return 1 - CoatTransmittance(d, clamp(eta, 0.2501f, 3.999f))(out);
+  }
+
   MicrofacetDistribution distribution_;
-  MultipleReflection multiple_reflection_;
-  Fresnel fresnel_;
-  Spectrum multiple_;
-  float multiple_over_single_;
+  Spectrum color_, eta_;
+  bool varies_;
 };
 
 }  // namespace etendue::osl

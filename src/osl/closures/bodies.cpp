@@ -131,9 +131,9 @@ void hair(Gathering& g, const ClosureComponent& c) {
 }
 
 constexpr ClosureModel rows[] = {
-    {"subsurface", subsurface, diffuse_reflection, false},
-    {"subsurface_bssrdf", subsurface, diffuse_reflection, false},
-    {"chiang_hair_bsdf", hair, glossy_reflection | glossy_transmission | null_scattering, false},
+    {"subsurface", subsurface, diffuse_reflection, 0.3f, false},
+    {"subsurface_bssrdf", subsurface, diffuse_reflection, 0.3f, false},
+    {"chiang_hair_bsdf", hair, glossy_reflection | glossy_transmission | null_scattering, 0.3f, false},
 };
 
 }  // namespace

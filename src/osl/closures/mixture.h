@@ -19,6 +19,9 @@ struct MixturePart {
   Spectrum weight;
   Lobes lobes = all_lobes;        ///< the lobes of the scatter that belong to the closure; the others are as if absent
   const Cover* covers = nullptr;  ///< the layers over the part
+
+  /// Of the requested lobes those that the part has.
+  Lobes present(Lobes asked) const { return Lobes(scatter->lobes() & lobes & asked); }
 };
 
 /// f = sum of w_k T_k f_k [1/sr]. T_k is what the layers over part k let through: the product over these layers of 1 - R(v), R
@@ -26,8 +29,10 @@ struct MixturePart {
 /// language's specification names for layer(); it is not reciprocal, and `transport` tells which of the directions is v, so
 /// that the scattering of importance is the adjoint of that of radiance.
 ///
-/// Parts may sum to more than all light, as weights are the author's: then f is that sum times `scale`, which depends on the
-/// wavelength alone, so that what is reciprocal stays so.
+/// Parts may sum to more than all light, as weights are the author's. With a(v) the albedo of the sum, seen from v, and s(v) =
+/// min(1, 1 / a(v)), f is then that sum times min(s(out), s(in)). The factor is symmetric, so that what is reciprocal stays so,
+/// and from no direction more than all light is scattered: a(out) s(out) <= 1. `may_exceed` says that weights allow a > 1;
+/// sums that cannot are not looked at.
 ///
 /// Sampling: a part is chosen with the probability P_k, in proportion to w_k T_k times its albedo (see `promise` in
 /// components/shaders/part_choice.h), and samples a direction. All parts could have sampled it, so the pdf is the sum of P_k
@@ -36,26 +41,44 @@ class Mixture final : public Scatter {
  public:
   static constexpr int most_parts = 32;
 
-  /// `parts`: in memory that lives as long as the mixture; at most most_parts.
-  Mixture(const SurfacePoint&, const MixturePart* parts, int count);
+  /// The albedos of a part from the last two directions that it was seen from: a path asks the same ones several times at a
+  /// vertex. A mixture belongs to one sample, and so to one thread.
+  struct Seen {
+    Vector3 from[2];
+    Lobes lobes[2] = {no_lobes, no_lobes};  ///< none: nothing is kept
+    Spectrum albedo[2];
+    int last = 0;
+  };
 
-  /// Scales the sum so that its albedo is at most 1, as seen from some directions. Returns the largest albedo before.
-  float limit();
+  /// `parts` and `seen`: `count` each, at most most_parts, in memory that lives as long as the mixture.
+  Mixture(const SurfacePoint&, const MixturePart* parts, Seen* seen, int count, bool may_exceed);
+
+  /// The largest albedo of the sum as seen from a direction, without the factor that limits it.
+  float unlimited_albedo(const Vector3& out) const { return sum_of_albedos(out, lobes_).maximum(); }
 
  private:
-  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext) const override;
-  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, ScatterContext) const override;
+  ScatterValue world_value_and_pdf(const Vector3& out, const Vector3& in, ScatterContext context) const override;
+  std::optional<ScatterSample> world_sample(const Vector3& out, float choice, Point2 u, ScatterContext context) const override;
   Spectrum world_albedo(const Vector3& out, Lobes) const override;
 
+  /// The albedo of a part's lobes, of which it has all.
+  const Spectrum& albedo_of(int part, const Vector3& v, Lobes) const;
   /// w_k T_k for light that leaves in direction v; of the layers over the part only those before `until` count.
-  Spectrum factor(const MixturePart&, const Vector3& v, const Cover* until = nullptr) const;
+  Spectrum factor(int part, const Vector3& v, const Cover* until = nullptr) const;
+  Spectrum sum_of_albedos(const Vector3& out, Lobes) const;
+  /// s(v).
+  Spectrum limit(const Vector3& v) const;
+  /// min(s(out), s(in)).
+  Spectrum limit(const Vector3& out, const Vector3& in) const;
   /// Sets P_k of all parts for requested lobes; false: no part has any of them. The layers over a part count for radiance only:
   /// for importance they depend on the direction that is sampled.
-  bool probabilities(const Vector3& out, ScatterContext, float* p) const;
+  bool probabilities(const Vector3& out, ScatterContext context, float* p) const;
+  std::optional<ScatterSample> sample_straight(const Vector3& out, Transport) const;
 
   const MixturePart* parts_;
+  Seen* seen_;
   int count_;
-  Spectrum scale_ = Spectrum(1.0f);
+  bool may_exceed_;
 };
 
 }  // namespace etendue::osl

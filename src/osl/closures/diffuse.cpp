@@ -47,7 +47,7 @@ void oren_nayar_diffuse_bsdf(Gathering& g, const Component& c) {
 }
 
 void burley_diffuse_bsdf(Gathering& g, const Component& c) {
-  const SurfacePoint p = g.at(c.argument<Triple>(0));
+  const SurfacePoint& p = g.at(c.argument<Triple>(0));
   g.add(g.arena().make<BurleyModel>(p, g.reflectance(c.argument<Triple>(1)), clamp(c.argument<float>(2), 0, 1)),
         diffuse_reflection);
 }
@@ -65,18 +65,18 @@ void translucent(Gathering& g, const Component& c) { transmit_diffusely(g, c.arg
 void translucent_bsdf(Gathering& g, const Component& c) { transmit_diffusely(g, c.argument<Triple>(0), c.argument<Triple>(1)); }
 
 void sheen_bsdf(Gathering& g, const Component& c) {
-  const SurfacePoint p = g.at(c.argument<Triple>(0));
+  const SurfacePoint& p = g.at(c.argument<Triple>(0));
   g.add(g.arena().make<SheenModel>(p, g.reflectance(c.argument<Triple>(1)), c.argument<float>(2)), diffuse_reflection);
 }
 
 constexpr ClosureModel rows[] = {
     {"diffuse", diffuse, diffuse_reflection},
-    {"oren_nayar", oren_nayar, diffuse_reflection},
-    {"oren_nayar_diffuse_bsdf", oren_nayar_diffuse_bsdf, diffuse_reflection},
-    {"burley_diffuse_bsdf", burley_diffuse_bsdf, diffuse_reflection},
+    {"oren_nayar", oren_nayar, diffuse_reflection, 0.01f},
+    {"oren_nayar_diffuse_bsdf", oren_nayar_diffuse_bsdf, diffuse_reflection, 0.01f},
+    {"burley_diffuse_bsdf", burley_diffuse_bsdf, diffuse_reflection, 0.05f},
     {"translucent", translucent, diffuse_transmission},
     {"translucent_bsdf", translucent_bsdf, diffuse_transmission},
-    {"sheen_bsdf", sheen_bsdf, diffuse_reflection},
+    {"sheen_bsdf", sheen_bsdf, diffuse_reflection, 0.02f},
 };
 
 }  // namespace

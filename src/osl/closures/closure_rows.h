@@ -12,11 +12,13 @@ struct ClosureModel {
   const char* name;
   void (*gather)(Gathering&, const ClosureComponent&);  ///< null: the closure emits light
   Lobes lobes;
+  float albedo_error = 0;  ///< as Shader::albedo_error, by its model
   bool reciprocal = true;
 };
 
 std::span<const ClosureModel> diffuse_closures();
 std::span<const ClosureModel> facet_closures();
+std::span<const ClosureModel> boundary_closures();
 /// Bodies that light enters and leaves elsewhere, and fibres.
 std::span<const ClosureModel> body_closures();
 

@@ -46,6 +46,7 @@ struct ClosureUses {
   bool reciprocal = true;  ///< no closure makes the scattering one that is not reciprocal, as layer() does
   bool bodies = false;     ///< closures of subsurface scattering occur
   bool interior = false;   ///< light may go through the surface into the body
+  float albedo_error = 0;  ///< as Shader::albedo_error, of what the closures make together
   ClosureUses& operator|=(const ClosureUses&);
 };
 /// Throws Error with the place of a closure that is not known here.

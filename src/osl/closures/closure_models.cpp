@@ -9,6 +9,7 @@
 
 #include "closure_rows.h"
 #include "closure_walk.h"
+#include "osl/library/closures.h"
 
 namespace etendue::osl {
 
@@ -48,7 +49,7 @@ void volume(Gathering& g, const Component& c) {
 constexpr ClosureModel rows[] = {
     {"transparent", transparent, null_scattering},
     {"transparent_bsdf", transparent, null_scattering},
-    {"layer", layer, no_lobes, false},
+    {"layer", layer, no_lobes, 0, false},
     {"holdout", nothing, no_lobes},
     {"debug", nothing, no_lobes},
     {"anisotropic_vdf", volume, no_lobes},
@@ -65,7 +66,7 @@ const ClosureModel* model_of(const String* name) {
   static const auto table = [] {
     std::unordered_map<const String*, const ClosureModel*> t;
     for (const std::span<const ClosureModel> part :
-         {std::span<const ClosureModel>(rows), diffuse_closures(), facet_closures(), body_closures()})
+         {std::span<const ClosureModel>(rows), diffuse_closures(), facet_closures(), boundary_closures(), body_closures()})
       for (const ClosureModel& m : part) t[intern_string(m.name)] = &m;
     return t;
   }();
@@ -75,10 +76,21 @@ const ClosureModel* model_of(const String* name) {
 
 }  // namespace
 
-void Gathering::add_component(const ClosureComponent& c) {
-  const ClosureModel* m = model_of(c.shape->name);
-  if (!m || !m->gather) return;
+Spectrum Gathering::add_component(const ClosureComponent& c) {
+  // By its place in the language's table, which is faster than by its name.
+  static const auto by_number = [] {
+    std::vector<const ClosureModel*> models;
+    for (const ClosureSignature& s : closures()) {
+      const std::string_view text = s.signature, begin = "closure color ";
+      models.push_back(model_of(intern_string(text.substr(begin.size(), text.find('(') - begin.size()))));
+    }
+    return models;
+  }();
+  const ClosureModel* m = c.shape->known >= 0 ? by_number[std::size_t(c.shape->known)] : model_of(c.shape->name);
+  if (!m || !m->gather) return {};
+  component_bound_ = weight_bound();
   m->gather(*this, c);
+  return component_bound_;
 }
 
 namespace {
@@ -135,12 +147,22 @@ Lobes lobes_of_call(const ClosureModel& m, const Expression& call) {
   return lobes;
 }
 
+/// The error of the albedo of a call of a closure: none of facets that are smooth by constant arguments.
+float error_of_call(const ClosureModel& m, const Expression& call) {
+  const std::string_view name = m.name;
+  const bool smooth = (name == "conductor_bsdf" && zero(call, 2) && zero(call, 3)) ||
+                      (name == "dielectric_bsdf" && zero(call, 4) && zero(call, 5));
+  return smooth ? 0 : m.albedo_error;
+}
+
 }  // namespace
 
 ClosureUses uses_of(const Shader& shader) {
   ClosureUses uses;
   Lobes inside = no_lobes;
+  bool layers = false, sums = false;
   const auto note = [&](const Expression& e) {
+    sums |= e.operation == Operator::add && e.type.is_closure();
     if (e.kind != Expression::Kind::closure) return;
     const ClosureModel* m = model_of(e.shape->name);
     if (!m) throw Error(fmt::format("the closure '{}' is not known here", e.shape->name->text()), e.place);
@@ -148,10 +170,15 @@ ClosureUses uses_of(const Shader& shader) {
     uses.scatters |= m->gather && m->gather != nothing;
     uses.emits |= !m->gather;
     uses.reciprocal &= m->reciprocal;
+    uses.albedo_error = std::max(uses.albedo_error, error_of_call(*m, e));
+    layers |= std::string_view(m->name) == "layer";
     uses.bodies |= is_body(*m);
     if (enters(*m)) inside |= lobes_of_call(*m, e);
   };
   Visit<decltype(note)>(shader, note);
+  // What a layer of uncertain albedo lets through is small where it reflects most. A sum may be limited, and its albedo then
+  // is a bound (Mixture). No closer bound is known of these.
+  if ((layers && uses.albedo_error > 0) || sums) uses.albedo_error = std::max(uses.albedo_error, 0.3f);
   // Thin sheets (translucent) have no body inside; null scattering lets paths enter the object's interior.
   uses.interior = (inside & (specular_transmission | glossy_transmission | null_scattering)) != 0;
   return uses;
@@ -187,6 +214,7 @@ ClosureUses& ClosureUses::operator|=(const ClosureUses& b) {
   reciprocal &= b.reciprocal;
   bodies |= b.bodies;
   interior |= b.interior;
+  albedo_error = std::max(albedo_error, b.albedo_error);
   return *this;
 }
 
@@ -203,21 +231,13 @@ Spectrum light_of(const ClosureNode* node, const RgbSpace& space, const Waveleng
   return sum;
 }
 
-float refracting_index(const ClosureNode* node) {
-  if (!node) return 1;
-  if (node->kind == ClosureNode::Kind::sum) {
-    const float first = refracting_index(static_cast<const ClosureSum*>(node)->a);
-    return first != 1 ? first : refracting_index(static_cast<const ClosureSum*>(node)->b);
-  }
-  if (node->kind == ClosureNode::Kind::product) return refracting_index(static_cast<const ClosureProduct*>(node)->closure);
-  const auto& c = *static_cast<const ClosureComponent*>(node);
+namespace {
+
+/// The index that a component refracts with; 1: it does not.
+float index_of_component(const ClosureComponent& c) {
   const std::string_view name = c.shape->name->view();
   const auto any = [](const Triple& t) { return t.x > 0 || t.y > 0 || t.z > 0; };
   float index = 1;
-  if (name == "layer") {
-    const float first = refracting_index(c.argument<const ClosureNode*>(0));
-    return first != 1 ? first : refracting_index(c.argument<const ClosureNode*>(1));
-  }
   if (name == "dielectric_bsdf" && any(c.argument<Triple>(3))) index = c.argument<float>(6);
   if (name == "refraction") index = c.argument<float>(1);
   if (name == "microfacet") {
@@ -230,6 +250,16 @@ float refracting_index(const ClosureNode* node) {
     index = (1 + root) / (1 - root);
   }
   return index > 0.01f && index < 100 ? index : 1;
+}
+
+}  // namespace
+
+float refracting_index(const ClosureNode* node) {
+  float first = 1;
+  each_component(node, [&](const ClosureComponent& c, const Triple&, const Spectrum&) {
+    if (first == 1) first = index_of_component(c);
+  });
+  return first;
 }
 
 }  // namespace etendue::osl

@@ -1,4 +1,4 @@
-#include "closure_media.h"
+#include "media.h"
 
 #include <algorithm>
 
