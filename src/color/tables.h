@@ -1,5 +1,6 @@
 #pragma once
-// The measured data of src/color/tables_*.cpp, which tools/make_color_tables.py and make_optical_constants.py generate.
+// The measured data of src/color/tables_*.cpp, which tools/make_color_tables.py, make_optical_constants.py and
+// make_camera_tables.py generate.
 
 #include <array>
 #include <span>
@@ -25,6 +26,14 @@ struct Illuminant {
   std::span<const double> power;  ///< relative; 0 outside
 };
 extern const std::span<const Illuminant> illuminants;
+
+struct Camera {
+  const char* name;
+  const char* aliases;
+  double low, step;                 ///< as for illuminants
+  std::span<const double[3]> rows;  ///< relative sensitivity of red, green and blue; 0 outside
+};
+extern const std::span<const Camera> cameras;
 
 /// n^2 = 1 + sum_i b_i L^2 / (L^2 - c_i), L in micrometres.
 struct Glass {

@@ -1,9 +1,14 @@
 // The exposure of a focal plane by a lens of the f-number N, focused far away, is H = q L t / N^2 [lx s] for the luminance L,
-// where q = 0.65 holds the lens's transmittance, vignetting and cos^4 (ISO 12232:2019). A sensor of the speed S saturates at
-// H_sat = 78 / S lx s (saturation based speed). The channel c with the sensitivity s_c has the relative exposure
+// where q = 0.65 holds the lens's transmittance, vignetting and cos^4 (ISO 12232:2019). The speed S says which exposure H_sat
+// saturates the sensor (SpeedRule). The channel c with the sensitivity s_c has the relative exposure
 //   e_c = q t / N^2  683 lm/W  k int L(lambda) s_c(lambda) dlambda / H_sat,   k = int D ybar / max_c int D s_c,
-// so that under D65 (D) the most sensitive channel of a grey is exposed as the photometric rule says. The digital number is e_c
-// times 2^bits - 1, rounded and clipped.
+// so that under D65 (D) the most sensitive channel of a grey is exposed as the photometric rule says.
+//
+// At the base speed S_0 saturation is the full well of n_full electrons; at S the amplification S / S_0 lets n_sat = n_full
+// S_0 / S electrons reach the largest voltage, n_full g for the conversion gain g. So (after the EMVA standard 1288, 3.2)
+//   electrons  n_c = e_c n_sat, with noise n_c ~ Poisson(e_c n_sat + d t) + Normal(0, read^2) for the dark current d,
+//   volts      u_c = n_c g S / S_0,
+//   number     black + (2^bits - 1 - black) n_c / n_sat, rounded and clipped to 0 to 2^bits - 1.
 //
 // With bands of the edges l_b the integral is sum_b L_b int_{l_b}^{l_b+1} s_c dlambda.
 
@@ -19,30 +24,15 @@
 #include "etendue/core/math.h"
 #include "etendue/describe/color.h"
 #include "image_bands.h"
+#include "sensor_integrals.h"
 
 namespace etendue {
 namespace {
 
-constexpr double lens_factor = 0.65, saturation_exposure = 78, lumens_per_watt = 683;
+constexpr double lens_factor = 0.65, lumens_per_watt = 683;
 
-/// The integral of a function of the wavelength over an interval [nm], by midpoints.
-template <class F>
-double integral(double low, double high, const F& f) {
-  const int steps = std::max(1, int(std::ceil((high - low) / 0.25)));
-  const double step = (high - low) / steps;
-  double sum = 0;
-  for (int i = 0; i < steps; ++i) sum += f(low + (i + 0.5) * step);
-  return sum * step;
-}
-
-template <class F>
-double whole_integral(const F& f) {
-  return integral(double(wavelength_low), double(wavelength_high), f);
-}
-
-double at(const SpectralFunction& f, double wavelength, ColorUse use) { return double(f.at(float(wavelength), use)); }
-double sensitivity(const Sensor& sensor, size_t c, double wavelength) {
-  return at(*sensor.sensitivities[c], wavelength, ColorUse::coefficient);
+double saturation_exposure(const Sensor& sensor) {
+  return (sensor.speed_rule == SpeedRule::saturation ? 78 : 10 / 0.18) / sensor.iso;
 }
 
 /// Edges of bands whose file does not state them: half way between their wavelengths.
@@ -58,7 +48,7 @@ std::vector<double> assumed_edges(const std::vector<ImageBand>& bands) {
 /// The factor from radiance in a band to the relative exposure of a channel: [band][channel].
 std::vector<std::array<double, 3>> factors(const Sensor& sensor, const std::vector<double>& edges) {
   const Color daylight = illuminant_spectrum("D65");
-  const auto light = [&](double l) { return at(*daylight, l, ColorUse::radiance); };
+  const auto light = [&](double l) { return value_at(*daylight, l, ColorUse::radiance); };
   std::array<double, 3> whole{}, under_daylight{};
   for (size_t c = 0; c < 3; ++c) {
     if (range_of(*sensor.sensitivities[c], ColorUse::coefficient).least < 0) throw Error("a sensitivity is negative");
@@ -68,7 +58,7 @@ std::vector<std::array<double, 3>> factors(const Sensor& sensor, const std::vect
   }
   const double luminous = whole_integral([&](double l) { return light(l) * observer(float(l)).y; });
   const double scale = lens_factor * sensor.shutter / (sensor.f_number * sensor.f_number) * lumens_per_watt *
-                       (luminous / *std::ranges::max_element(under_daylight)) * sensor.iso / saturation_exposure;
+                       (luminous / *std::ranges::max_element(under_daylight)) / saturation_exposure(sensor);
   std::vector<std::array<double, 3>> all(edges.size() - 1);
   for (size_t c = 0; c < 3; ++c) {
     double covered = 0;
@@ -84,31 +74,93 @@ std::vector<std::array<double, 3>> factors(const Sensor& sensor, const std::vect
   return all;
 }
 
-/// A relative exposure as the sensor reads it: the number of electrons follows a Poisson distribution, and the read-out adds a
-/// normally distributed error. The numbers depend on the seed and the place alone.
-double with_noise(double exposure, const SensorNoise& noise, std::uint64_t place) {
+/// The electrons that the read-out reports where `expected` are freed on the average. They depend on the seed and the place
+/// alone.
+double with_noise(double expected, const SensorNoise& noise, std::uint64_t place) {
   std::mt19937_64 random(mix_bits(noise.seed + mix_bits(place + 1)));
-  const double electrons = exposure * noise.full_well;
-  // For many electrons the distribution is normal.
-  double read = electrons > 1e6 ? electrons + std::sqrt(electrons) * std::normal_distribution<double>()(random)
-                : electrons > 0 ? double(std::poisson_distribution<std::int64_t>(electrons)(random))
-                                : 0;
+  // For many electrons Poisson's distribution is normal.
+  double read = expected > 1e6 ? expected + std::sqrt(expected) * std::normal_distribution<double>()(random)
+                : expected > 0 ? double(std::poisson_distribution<std::int64_t>(expected)(random))
+                               : 0;
   if (noise.read > 0) read += std::normal_distribution<double>(0, noise.read)(random);
-  return read / noise.full_well;
+  return read;
+}
+
+/// From the relative exposure of a channel to what is recorded.
+class ReadOut {
+ public:
+  ReadOut(const Sensor& sensor, SensorQuantity quantity)
+      : sensor_(sensor), quantity_(quantity), most_(std::exp2(sensor.bits) - 1) {
+    const Photosites& p = sensor.photosites;
+    // Digital numbers without noise do not depend on electrons.
+    if ((sensor.noise || quantity != SensorQuantity::numbers) && sensor.iso < p.base_iso)
+      throw Error(fmt::format("ISO {:g} is below the base speed {:g}: the photosites would overflow before the numbers end",
+                              sensor.iso, p.base_iso));
+    if (sensor.black_level < 0 || sensor.black_level >= most_)
+      throw Error(fmt::format("the black level {} leaves no room: digital numbers end at {:g}", sensor.black_level, most_));
+    saturated_ = p.full_well * p.base_iso / sensor.iso;
+  }
+
+  /// A value, and whether it is clipped. `place` numbers the photosites.
+  double operator()(double exposure, std::uint64_t place, bool& clipped) const {
+    if (!(exposure == exposure)) exposure = 0;
+    if (sensor_.noise) {
+      const double dark = sensor_.noise->dark_current * sensor_.shutter;
+      exposure = with_noise(std::clamp(exposure, 0.0, 1e9) * saturated_ + dark, *sensor_.noise, place) / saturated_;
+    }
+    if (quantity_ == SensorQuantity::numbers) {
+      clipped |= exposure >= 1;
+      const double black = sensor_.black_level;
+      return std::round(std::clamp(black + (most_ - black) * exposure, 0.0, most_));
+    }
+    const Photosites& p = sensor_.photosites;
+    const double electrons = std::min(exposure * saturated_, p.full_well);
+    clipped |= electrons >= p.full_well;
+    if (quantity_ == SensorQuantity::electrons) return electrons;
+    clipped |= exposure >= 1;
+    return std::min(electrons * p.conversion_gain * 1e-6 * sensor_.iso / p.base_iso, p.full_well * p.conversion_gain * 1e-6);
+  }
+
+ private:
+  const Sensor& sensor_;
+  SensorQuantity quantity_;
+  double most_, saturated_ = 1;
+};
+
+void describe(Image& raw, const Sensor& sensor, SensorQuantity quantity) {
+  const Photosites& p = sensor.photosites;
+  raw.metadata["color_space"] = "srgb";
+  raw.metadata["transfer"] = "linear";
+  raw.metadata["sensor"] =
+      fmt::format("ISO {:g} ({}), {:g} s, f/{:g}, {} bits", sensor.iso,
+                  sensor.speed_rule == SpeedRule::saturation ? "saturation based" : "standard output sensitivity",
+                  sensor.shutter, sensor.f_number, sensor.bits);
+  raw.metadata["sensor_quantity"] =
+      quantity == SensorQuantity::numbers
+          ? fmt::format("digital numbers from {} to {:g}", sensor.black_level, std::exp2(sensor.bits) - 1)
+      : quantity == SensorQuantity::electrons ? fmt::format("electrons, {:g} at most", p.full_well)
+                                              : fmt::format("volts, {:g} at most", p.full_well * p.conversion_gain * 1e-6);
+  raw.metadata["noise"] =
+      !sensor.noise ? "none"
+                    : fmt::format(
+                          "of photons, full well {:g} electrons at ISO {:g}; of the read-out, {:g} electrons; dark "
+                          "current {:g} electrons/s; seed {}",
+                          p.full_well, p.base_iso, sensor.noise->read, sensor.noise->dark_current, sensor.noise->seed);
 }
 
 }  // namespace
 
-Image digital_numbers(const Image& spectral, const Sensor& sensor) {
+Image recorded(const Image& spectral, const Sensor& sensor, SensorQuantity quantity) {
   const std::vector<ImageBand> bands = bands_of(spectral);
   if (bands.empty()) throw Error("the picture has no spectrum: none of its channels is named as 'S0.550nm'");
   std::vector<double> edges = band_edges_of(spectral);
   if (edges.empty()) edges = assumed_edges(bands);
   const std::vector<std::array<double, 3>> factor = factors(sensor, edges);
-  const double most = std::exp2(sensor.bits) - 1;
+  const ReadOut read_out(sensor, quantity);
 
   Image raw(spectral.width, spectral.height, {"R", "G", "B"});
   raw.metadata = spectral.metadata;
+  describe(raw, sensor, quantity);
   size_t clipped = 0;
   const size_t stride = spectral.channels.size(), pixels = raw.values.size() / 3;
   for (size_t p = 0; p < pixels; ++p) {
@@ -116,109 +168,18 @@ Image digital_numbers(const Image& spectral, const Sensor& sensor) {
     for (size_t c = 0; c < 3; ++c) {
       double exposure = 0;
       for (size_t b = 0; b < bands.size(); ++b) exposure += factor[b][c] * spectral.values[p * stride + bands[b].channel];
-      if (sensor.noise) exposure = with_noise(std::min(exposure, 1e9), *sensor.noise, 3 * p + c);
-      full |= exposure >= 1;
-      raw.values[3 * p + c] = std::round(std::clamp(exposure, 0.0, 1.0) * most);  // NaN becomes 0
-      if (!(exposure == exposure)) raw.values[3 * p + c] = 0;
+      raw.values[3 * p + c] = read_out(exposure, 3 * p + c, full);
     }
     clipped += full;
   }
-  raw.metadata["color_space"] = "srgb";
-  raw.metadata["transfer"] = "linear";
-  raw.metadata["sensor"] =
-      fmt::format("ISO {:g}, {:g} s, f/{:g}, {} bits", sensor.iso, sensor.shutter, sensor.f_number, sensor.bits);
   raw.metadata["clipped"] = fmt::format("{:.4g}", double(clipped) / double(pixels));
-  if (sensor.noise)
-    raw.metadata["noise"] =
-        fmt::format("photons at {:g} electrons, read-out {:g} electrons", sensor.noise->full_well, sensor.noise->read);
   return raw;
 }
 
-namespace {
-
-using Matrix = std::array<std::array<double, 3>, 3>;
-
-/// Solves A x = b for a symmetric positive definite A, by elimination.
-std::array<double, 3> solve(Matrix a, std::array<double, 3> b) {
-  for (size_t i = 0; i < 3; ++i)
-    for (size_t j = i + 1; j < 3; ++j) {
-      const double f = a[j][i] / a[i][i];
-      for (size_t k = i; k < 3; ++k) a[j][k] -= f * a[i][k];
-      b[j] -= f * b[i];
-    }
-  for (size_t i = 3; i-- > 0;) {
-    for (size_t k = i + 1; k < 3; ++k) b[i] -= a[i][k] * b[k];
-    b[i] /= a[i][i];
-  }
-  return b;
-}
-
-/// The matrix from balanced channels to X, Y, Z under D65 with the least squared error over smooth reflectances (those of a
-/// grid of RGB colours, Jakob & Hanika 2019) in the light `white`; that of a perfect white counts so much that it is exact.
-Matrix color_matrix(const Sensor& sensor, const SpectralFunction& white) {
-  const Color daylight = illuminant_spectrum("D65");
-  constexpr int first = 360, count = 471;
-  std::vector<std::array<double, 3>> channels(count), colors(count);
-  std::array<double, 3> neutral{};
-  double luminous = 0;
-  for (int i = 0; i < count; ++i) {
-    const double l = first + i, light = at(white, l, ColorUse::radiance), day = at(*daylight, l, ColorUse::radiance);
-    const Xyz eye = observer(float(l));
-    colors[size_t(i)] = {day * eye.x, day * eye.y, day * eye.z};
-    luminous += day * eye.y;
-    for (size_t c = 0; c < 3; ++c) neutral[c] += channels[size_t(i)][c] = light * sensitivity(sensor, c, l);
-  }
-  for (const double n : neutral)
-    if (!(n > 0)) throw Error("the white has no light where a channel is sensitive");
-
-  Matrix squares{}, products{};
-  const auto add = [&](const SpectralFunction& reflectance, double weight) {
-    std::array<double, 3> raw{}, xyz{};
-    for (int i = 0; i < count; ++i) {
-      const double r = at(reflectance, first + i, ColorUse::reflectance);
-      for (size_t c = 0; c < 3; ++c) {
-        raw[c] += r * channels[size_t(i)][c] / neutral[c];
-        xyz[c] += r * colors[size_t(i)][c] / luminous;
-      }
-    }
-    for (size_t i = 0; i < 3; ++i)
-      for (size_t j = 0; j < 3; ++j) {
-        squares[i][j] += weight * raw[i] * raw[j];
-        products[i][j] += weight * xyz[i] * raw[j];
-      }
-  };
-  for (const double r : {0.1, 0.35, 0.6, 0.85})
-    for (const double g : {0.1, 0.35, 0.6, 0.85})
-      for (const double b : {0.1, 0.35, 0.6, 0.85}) add(*rgb_color("srgb", r, g, b), 1);
-  add(*flat_spectrum(1), 1e6);
-  Matrix matrix;
-  for (size_t i = 0; i < 3; ++i) matrix[i] = solve(squares, products[i]);
-  return matrix;
-}
-
-}  // namespace
-
-Image developed(const Image& raw, const Sensor& sensor, const SpectralFunction& white) {
-  const Matrix to_xyz = color_matrix(sensor, white);
-  std::array<double, 3> neutral{};
-  for (size_t c = 0; c < 3; ++c)
-    neutral[c] = whole_integral([&](double l) { return at(white, l, ColorUse::radiance) * sensitivity(sensor, c, l); });
-  const double strongest = *std::ranges::max_element(neutral), most = std::exp2(sensor.bits) - 1;
-  const std::array<double, 9>& from_xyz = rgb_space("srgb").from_xyz;
-  Image picture = raw;
-  for (size_t p = 0; p < raw.values.size(); p += 3) {
-    std::array<double, 3> balanced, xyz{};
-    for (size_t c = 0; c < 3; ++c) balanced[c] = raw.values[p + c] / most * strongest / neutral[c];
-    // Beyond the level at which the first channel of a white saturates, the others would tint it.
-    for (double& b : balanced) b = std::min(b, 1.0);
-    for (size_t i = 0; i < 3; ++i)
-      for (size_t c = 0; c < 3; ++c) xyz[i] += to_xyz[i][c] * balanced[c];
-    for (size_t i = 0; i < 3; ++i)
-      picture.values[p + i] = from_xyz[3 * i] * xyz[0] + from_xyz[3 * i + 1] * xyz[1] + from_xyz[3 * i + 2] * xyz[2];
-  }
-  return picture;
-}
-
 double exposure_value(double luminance) { return std::log2(luminance * 100 / 12.5); }
+
+double exposure_value(const Sensor& sensor) {
+  return std::log2(sensor.f_number * sensor.f_number / sensor.shutter) - std::log2(sensor.iso / 100);
+}
 
 }  // namespace etendue

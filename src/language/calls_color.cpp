@@ -7,6 +7,7 @@
 
 #include "calls.h"
 #include "etendue/describe/color.h"
+#include "etendue/describe/sensor_curves.h"
 
 namespace etendue::language {
 
@@ -108,6 +109,20 @@ Value read_as(const Arguments& a) {
   }
 }
 
+Value sensor(const Arguments& a) {
+  if (a.count() != 2) a.wrong_count();
+  const std::string camera = a.string(0), channel = a.string(1);
+  const auto curve_of = [&](const std::string& of, size_t blamed) {
+    try {
+      return sensor_curve(camera, of);
+    } catch (const Error& e) {
+      a.fail(blamed, e.what());
+    }
+  };
+  static_cast<void>(curve_of(sensor_channels[0], 0));
+  return Value(curve_of(channel, 1));
+}
+
 constexpr Function functions[] = {
     {"rgb", "rgb(red, green, blue) or rgb(\"space\", red, green, blue)", rgb},
     {"srgb", "srgb(red, green, blue) or srgb(\"#rrggbb\")", srgb},
@@ -117,6 +132,7 @@ constexpr Function functions[] = {
     {"spectrum", "spectrum(\"file\"), spectrum(\"file\", \"column\") or spectrum([wavelengths in nm], [values])", spectrum},
     {"glass", "glass(\"name\")", [](const Arguments& a) { return named(a, glass_index); }},
     {"metal", "metal(\"name\")", [](const Arguments& a) { return named(a, metal_index); }},
+    {"sensor", "sensor(\"camera\", \"red\")", sensor},
     {"complex", "complex(n, k)", complex},
     {"read_as", "read_as(\"use\", color)", read_as},
 };

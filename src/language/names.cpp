@@ -316,7 +316,8 @@ bool Evaluator::lacks_quotes(const Node& call, const Node& argument, const Bound
   if (argument.type != NodeType::name) return false;
   const std::string& text = argument.text;
   const bool first = &argument == &call.children.front();
-  const bool known_by_name = first && (call.text == "illuminant" || call.text == "glass" || call.text == "metal");
+  const bool known_by_name =
+      first && (call.text == "illuminant" || call.text == "glass" || call.text == "metal" || call.text == "sensor");
   const bool axis = !first && call.text == "rotate" && (text == "x" || text == "y" || text == "z");
   if (!(known_by_name || axis) || find(call.text) || find(text) || local(text) || text == "pi") return false;
   if (moment_ && (text == "frame" || text == "time")) return false;

@@ -2,6 +2,7 @@
 
 #include "etendue/describe/color.h"
 #include "etendue/describe/reflection.h"
+#include "etendue/describe/sensor_curves.h"
 #include "language/calls.h"
 #include "studio.h"
 
@@ -40,6 +41,7 @@ Json vocabulary_json() {
            {{"illuminants", illuminant_names()},
             {"glasses", glass_names()},
             {"metals", metal_names()},
+            {"sensors", sensor_names()},
             {"rgb_spaces", rgb_space_names()}}}};
 }
 

@@ -60,6 +60,29 @@ TEST(SceneWarnings, NothingEmits) {
   EXPECT_TRUE(said("Sphere {}\n", camera, "AmbientOcclusionRenderer {}").empty());
 }
 
+// Bands between the wavelengths of a grid. With 10 nm on both sides each band has one.
+TEST(SceneWarnings, BandsWithoutWavelengths) {
+  const auto of = [](const std::string& wavelengths, const std::string& bands, const std::string& renderer = "PathTracer") {
+    const Ref<Job> job = load_job_text("Job { renderer: " + renderer + " {}\n camera: " + camera +
+                                           "\n wavelengths: " + wavelengths + "\n image: SpectralFilm { width: 8, height: 8, " +
+                                           bands + " }\n scene: BruteForceScene { objects: [" + sky + "] } }",
+                                       "scene.etd");
+    prepare_tree(*job);
+    return scene_warnings(*job);
+  };
+  EXPECT_TRUE(of("GridWavelengths { count: 47 }", "bands: 47").empty());
+  EXPECT_TRUE(of("GridWavelengths { count: 40 }", "bands: 8").empty());
+  EXPECT_TRUE(of("HeroWavelengths {}", "bands: 3000").empty());
+  EXPECT_TRUE(of("GridWavelengths { count: 40 }", "responses: [illuminant(\"A\")]").empty());
+  // 94 bands of 5 nm, 47 wavelengths 10 nm apart at their edges: a band contains its lower one, so every other one is dark.
+  const std::vector<SceneWarning> list = of("GridWavelengths { count: 47 }", "bands: 94");
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].kind, "dark bands");
+  EXPECT_EQ(list[0].at.line, 3);
+  EXPECT_NE(list[0].text.find("47 of the 94 bands, the first from 360 to 365 nm"), std::string::npos) << list[0].text;
+  EXPECT_EQ(of("GridWavelengths { count: 40, low: 400 nm, high: 700 nm }", "bands: 47").size(), 1u);
+}
+
 TEST(SceneWarnings, NoShader) { expect("Sphere {}\n" + sky, "no shader", {"black", "Lambertian"}, "Sphere"); }
 
 TEST(SceneWarnings, ADarkEnvironment) { expect("Environment {}\n" + sky, "dark luminaire", {"no emission"}, "Environment {}"); }

@@ -175,6 +175,37 @@ class Requests(unittest.TestCase):
             y = sum(0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in zip(halfs[::3], halfs[1::3], halfs[2::3]))
             self.assertAlmostEqual(y * one["weighted"]["scale"] / (30 * 21) / one["mean"], 1, delta=5e-3)
 
+    def test_the_spectrum_of_a_pixel_has_its_error(self):
+        """A lamp of radiance 2 at all wavelengths: bands of a mean of 2, whose deviation is that of renders by the program itself."""
+        text = """Job { renderer: PathTracer { samples: 16 }
+    image: SpectralFilm { width: 6, height: 4, edges: [400, 440, 520, 550] nm }
+    outputs: [NpyOutput { file: "bands.npy", spectrum: true }]
+    wavelengths: HeroWavelengths { distribution: uniform }
+    camera: PerspectiveCamera { from: [0, 0, -3], to: [0, 0, 0], fov: 20 deg }
+    scene: BruteForceScene { objects: [ Sphere { emission: DiffuseEmission { radiance: 2 } } ] } }
+"""
+        with self.open(text).page() as page:
+            done = self.task(page, page.good("spectrum", x=3, y=2, samples=3)["task"])
+            self.assertEqual(done["state"], "done", done["text"])
+            found = done["spectrum"]
+            self.assertEqual((found["x"], found["y"], found["renders"], found["samples"]), (3, 2, 16, 3))
+            self.assertEqual(found["channels"], ["S0.420nm", "S0.480nm", "S0.535nm"])
+            renders = []
+            for seed in range(12):
+                subprocess.run([PROGRAM, "render", str(self.file), "--quiet", "--samples", "3", "--seed", str(1000 + seed), "--crop", "3,2,4,3"],
+                               cwd=self.folder.name, check=True)
+                renders.append(values_of(pathlib.Path(self.folder.name, "bands.npy").read_bytes())[0])
+            for band, (value, deviation) in enumerate(zip(found["values"], found["deviations"])):
+                self.assertAlmostEqual(value, 2, delta=6 * deviation / (16 * 3) ** 0.5)
+                mean = sum(r[band] for r in renders) / 12
+                spread = (3 * sum((r[band] - mean) ** 2 for r in renders) / 11) ** 0.5
+                # The ratio of the variances has an F distribution of 15 and 11 degrees of freedom: outside by chance 2 in 10,000 times.
+                self.assertTrue(0.3 < deviation / spread < 3, (deviation, spread))
+            self.assertFalse(page.ask("spectrum", x=6, y=2)["ok"])
+            self.assertFalse(page.ask("spectrum", x=1, y=1, renders=1)["ok"])
+        with self.open().page() as page:
+            self.assertIn("SpectralFilm", page.ask("spectrum", x=1, y=1)["errors"][0]["message"])
+
     def test_checks_in_processes_of_their_own(self):
         with self.open().page() as page:
             page.good("stop")

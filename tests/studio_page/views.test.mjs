@@ -122,6 +122,34 @@ test("states are kept and gone on from; strategies stand apart; a class is check
   await page.locator(".task", { hasText: "conform BvhScene" }).waitFor();
 });
 
+test("the spectrum of a pixel is a plot, with the band of its error once that was measured", whole, async (t) => {
+  const spectral = scene.replace("ImageBuffer {", "SpectralFilm { bands: 31, low: 400 nm, high: 710 nm,").replace("BidirectionalPathTracer { samples: 400000", "PathTracer { samples: 256");
+  const studio = await startStudio(t, spectral, "--threads", "1");
+  const browser = await openBrowser(t);
+  const page = await openPage(t, browser, studio.address);
+  await until("all samples are there", async () => /Samples 256/.test(await page.locator(".facts-row").first().textContent()));
+  const canvas = page.locator(".picture-over");
+  await canvas.hover();
+  await page.locator(".pixel-numbers dd").first().waitFor();
+  await page.click("summary[title='Analyse']");
+  const plot = page.locator(".pixel-spectrum svg");
+  await plot.locator("polyline").waitFor({ state: "attached" });
+  assert.equal((await plot.locator("polyline").getAttribute("points")).trim().split(" ").length, 31);
+  assert.equal(await page.locator(".spectrum-error").count(), 0);
+  assert.match(await page.locator(".pixel-spectrum").textContent(), /not known/);
+  // The numbers of the pixel do not repeat its bands.
+  assert.equal(await page.locator(".pixel-numbers dt", { hasText: "S0." }).count(), 0);
+  await page.locator(".pixel-spectrum button").click();
+  await page.locator(".spectrum-error").waitFor({ state: "attached" });
+  assert.match(await page.locator(".pixel-spectrum").textContent(), /from 16 renders/);
+  const points = (await page.locator(".spectrum-error").getAttribute("points")).trim().split(" ").map((p) => p.split(",").map(Number));
+  assert.equal(points.length, 62);
+  const [first, last] = [points[0], points[61]]; // the first band's upper edge, and its lower one
+  assert.ok(first[0] === last[0] && first[1] < last[1]);
+  await checkAccess(page, "the spectrum of a pixel");
+  if (process.env.ETENDUE_PICTURES) await page.screenshot({ path: join(process.env.ETENDUE_PICTURES, "pixel_spectrum.png") });
+});
+
 test("pictures are viewed without a document", whole, async (t) => {
   const folder = scratch(t);
   const file = join(folder, "scene.etd");

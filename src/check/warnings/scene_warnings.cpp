@@ -25,6 +25,7 @@ std::vector<SceneWarning> scene_warnings(const Job& job) {
                     job.scene->location_of("objects")});
   warn_of_objects(job, list);
   warn_of_view(job, list);
+  warn_of_bands(job, list);
   warn_of_members(job, list);
   return list;
 }

@@ -21,6 +21,8 @@ std::vector<SceneWarning> scene_warnings(const Job&);
 /// camera's view.
 void warn_of_objects(const Job&, std::vector<SceneWarning>&);
 void warn_of_view(const Job&, std::vector<SceneWarning>&);
+/// Bands of the image that stay black, as no path carries a wavelength in them.
+void warn_of_bands(const Job&, std::vector<SceneWarning>&);
 /// Warns of emitters whose emission profile sends part of its power into a side that does not emit.
 class LostLight {
  public:

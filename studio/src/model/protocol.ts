@@ -196,7 +196,7 @@ export interface Hello {
   classes: ClassInfo[];
   units: Unit[];
   functions: { name: string; usage: string }[];
-  names: { illuminants: string[]; glasses: string[]; metals: string[]; rgb_spaces: string[] };
+  names: { illuminants: string[]; glasses: string[]; metals: string[]; sensors: string[]; rgb_spaces: string[] };
   folders: string[];
   document: DocumentState;
   text: TextState;
@@ -218,6 +218,19 @@ export interface Task {
   width?: number;
   height?: number;
   strategies?: Strategy[];
+  spectrum?: MeasuredSpectrum;
+}
+
+/** The spectrum of a pixel from independent renders of it alone. */
+export interface MeasuredSpectrum {
+  x: number;
+  y: number;
+  renders: number;
+  samples: number;
+  channels: string[];
+  values: number[];
+  /** The standard deviations of one sample. */
+  deviations: number[];
 }
 
 /** The program is at something that takes long; `what` null: no longer. */

@@ -11,10 +11,11 @@ export const browser = signal(0);
 export const classes = signal(new Classes([]));
 export const units = signal<Unit[]>([]);
 export const functions = signal<{ name: string; usage: string }[]>([]);
-export const knownNames = signal<{ illuminants: string[]; glasses: string[]; metals: string[]; rgb_spaces: string[] }>({
+export const knownNames = signal<{ illuminants: string[]; glasses: string[]; metals: string[]; sensors: string[]; rgb_spaces: string[] }>({
   illuminants: [],
   glasses: [],
   metals: [],
+  sensors: [],
   rgb_spaces: [],
 });
 export const folders = signal<string[]>([]);

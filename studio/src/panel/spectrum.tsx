@@ -6,15 +6,23 @@ import { texts } from "../texts/texts.ts";
 interface Props {
   wavelengths: number[];
   values: number[];
+  /** Standard errors of the values, for a band around the curve. */
+  errors?: number[];
   small?: boolean;
 }
 
-export function SpectrumPlot({ wavelengths, values, small }: Props): JSX.Element {
+export function SpectrumPlot({ wavelengths, values, errors, small }: Props): JSX.Element {
   const [width, height] = small ? [28, 14] : [260, 84];
   const low = wavelengths[0] ?? 360;
   const high = wavelengths[wavelengths.length - 1] ?? 830;
-  const most = Math.max(1e-30, ...values);
-  const points = wavelengths.map((w, i) => `${(((w - low) / Math.max(1e-9, high - low)) * width).toFixed(1)},${(height - ((values[i] ?? 0) / most) * (height - 3)).toFixed(1)}`);
+  const most = Math.max(1e-30, ...values.map((v, i) => v + (errors?.[i] ?? 0)));
+  const point = (w: number, value: number): string => {
+    const y = height - Math.max(0, value / most) * (height - 3);
+    return `${(((w - low) / Math.max(1e-9, high - low)) * width).toFixed(1)},${y.toFixed(1)}`;
+  };
+  const points = wavelengths.map((w, i) => point(w, values[i] ?? 0));
+  // Forth along the upper edge, and back along the lower one.
+  const edge = (sign: number): string[] => wavelengths.map((w, i) => point(w, (values[i] ?? 0) + sign * (errors?.[i] ?? 0)));
   const label = texts.panel.color.plotSays(low, high, brief(most, 3));
   return (
     <svg class={`spectrum${small ? " small" : ""}`} viewBox={`0 0 ${width} ${height + (small ? 0 : 14)}`} role={small ? "presentation" : "img"} aria-label={small ? undefined : label}>
@@ -35,6 +43,7 @@ export function SpectrumPlot({ wavelengths, values, small }: Props): JSX.Element
           <text x="2" y="9">{brief(most, 3)}</text>
         </>
       )}
+      {errors && <polygon class="spectrum-error" points={[...edge(1), ...edge(-1).reverse()].join(" ")} />}
       <polyline points={points.join(" ")} fill="none" stroke="currentColor" stroke-width="1.4" />
     </svg>
   );

@@ -4,6 +4,7 @@ import type { JSX } from "preact";
 import { brief, percent } from "../model/numbers.ts";
 import { viewing } from "../model/state.ts";
 import { texts } from "../texts/texts.ts";
+import { isBand } from "./bands.ts";
 import { luminance } from "./film.ts";
 import { cursor, probe } from "./probe.ts";
 import { zoom } from "./state.ts";
@@ -35,7 +36,7 @@ export function PixelNumbers(): JSX.Element {
           <Item label="Y" value={number(known && !weighed ? known.xyz[1] : luminance(now.rgb))} width={7} />
           {!viewing.value && <Item label={texts.picture.samples} value={brief(known?.samples ?? samplesShown.value)} width={6} />}
           {!viewing.value && <Item label={texts.picture.error} value={known?.error != null ? percent(known.error) : "–"} width={7} />}
-          {Object.entries(known?.layers ?? {}).map(([name, v]) => (
+          {Object.entries(known?.layers ?? {}).filter(([name]) => !isBand(name)).map(([name, v]) => (
             <Item key={name} label={name} value={(Array.isArray(v) ? v : [v]).map(number).join("  ")} width={6} />
           ))}
         </dl>

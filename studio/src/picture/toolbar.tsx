@@ -16,6 +16,7 @@ import * as store from "./store.ts";
 import { learn, unknownTools } from "./tools.ts";
 import { ViewedPictures } from "./viewed.tsx";
 import { Views } from "./views.tsx";
+import { PixelSpectrum } from "./pixel_spectrum.tsx";
 import { WaveformView } from "./waveform.tsx";
 
 const t = texts.picture;
@@ -129,6 +130,7 @@ function More(): JSX.Element {
     <div class="drop-content">
       <HistogramView />
       <WaveformView />
+      <PixelSpectrum />
       <label class="check">
         <input
           type="checkbox"
