@@ -15,7 +15,7 @@ namespace etendue {
 namespace {
 
 std::atomic<Render*> running{nullptr};
-std::atomic<int> requests{0};  // 1: finish, 2: abort
+std::atomic<int> requests{0};  // 1: finish the pass, 2: end without it
 static_assert(std::atomic<Render*>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
               std::atomic<bool>::is_always_lock_free);
 
@@ -33,12 +33,12 @@ void handle(int signal) {
   const int error = errno;  // of the interrupted call
   int none = 0;
   if (requests.compare_exchange_strong(none, 1)) {
-    say(render->settings().team ? "\nwriting what there is, without this pass; Ctrl-C again aborts\n"
-                                : "\nfinishing this pass and writing what there is; Ctrl-C again aborts\n");
+    say(render->settings().team ? "\nwriting what there is, without this pass; Ctrl-C again ends at once\n"
+                                : "\nfinishing this pass and writing what there is; Ctrl-C again leaves this pass out\n");
     render->stop();
   } else if (signal == SIGINT) {
     requests.store(2);
-    say("\naborting\n");
+    say("\nwriting what there is, without this pass; Ctrl-C again ends at once\n");
     render->abort();
     std::signal(SIGINT, SIG_DFL);
   }

@@ -6,8 +6,8 @@
 namespace etendue {
 
 /// While an object of this class exists, the first SIGINT, SIGTERM, SIGUSR1 or SIGHUP lets the render finish its pass, or drop
-/// it if a team computes it. A second SIGINT aborts the render after the paths that its threads are computing; a third ends the
-/// program. Under nohup SIGHUP stays ignored. At most one object may exist at a time.
+/// it if a team computes it. A second SIGINT drops the pass, in the middle of its paths; a third ends the program. Under nohup
+/// SIGHUP stays ignored. At most one object may exist at a time.
 class Interruption {
  public:
   explicit Interruption(Render&);

@@ -2,10 +2,16 @@
 
 #include "program.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "commands.h"
+#include "etendue/language/language.h"
 #include "program_team.h"
+#include "render/team/message_library.h"
 #include "streams.h"
 
 using namespace etendue;
@@ -36,7 +42,20 @@ Help on one command: etendue render --help
 Exit status: 0 done, 1 failed, 2 bad input or usage, 130 interrupted.
 )";
 
+/// Of the processes that mpirun or srun has started, each would do all of the work of other commands, and write the same files.
+bool is_one_of_many(const char* command) {
+  constexpr std::array<std::string_view, 1> by_teams{"render"};
+  if (processes_started() == 1 || *command == '-' || std::ranges::find(by_teams, command) != by_teams.end()) return false;
+  fmt::print(stderr, "{}\n",
+             show(Error(fmt::format(
+                 "this is one of {} processes that mpirun or srun has started, and each would do all of '{}': start one, or "
+                 "set ETENDUE_MPI=off if that is meant. Several processes share 'render'.",
+                 processes_started(), command))));
+  return true;
+}
+
 int run_program(int argument_count, char** arguments) {
+  if (argument_count > 1 && is_one_of_many(arguments[1])) return exit_status::bad_input;
   CommandLine command_line("etendue", introduction, "etendue " ETENDUE_VERSION);
   Command program = command_line.program();
   program.footer(closing);

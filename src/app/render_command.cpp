@@ -155,7 +155,11 @@ void report_result(const Progress& progress, Ended ended, const Written& written
     fmt::print("{} sample{} per pixel in {}, {:.2f} Msamples/s{}\n{}", progress.samples, progress.samples == 1 ? "" : "s",
                duration_text(progress.seconds), progress.samples_per_second * 1e-6, reason_text(ended), passes_text(render));
     if (!written.choice.empty()) fmt::print("{} chose {}\n", render.job().renderer->class_info().name, written.choice);
-    if (ended == Ended::interrupted && !checkpoint.empty()) fmt::print("to resume: {}\n", options.resume_command());
+    const bool early = ended == Ended::interrupted || ended == Ended::aborted;
+    if (early && render.samples_done().empty())
+      fmt::print("no pass was finished, so nothing was written\n");
+    else if (early && !checkpoint.empty())
+      fmt::print("to resume: {}\n", options.resume_command());
   }
   std::fflush(stdout);
 }
@@ -225,8 +229,8 @@ int render(const RenderOptions& options, Series& series) {
     display.clear();
     picture = render.picture();
     if (const auto choice = picture.metadata.find("choice"); choice != picture.metadata.end()) written.choice = choice->second;
-    const bool unfinished = options.in_series && ended == Ended::interrupted;
-    if (ended != Ended::aborted && !unfinished) {
+    const bool early = ended == Ended::interrupted || ended == Ended::aborted;
+    if (!early || (!options.in_series && !render.samples_done().empty())) {
       written.pictures = write_each(outputs, *job, picture, options.stem(), written.errors);
       written.denoised = write_denoised(*job, outputs, picture, options.stem(), settings.threads, written.errors);
     }
@@ -277,7 +281,7 @@ void add_render_command(Command& program) {
       "  etendue render film.etd --frames 0:120 -o film.####.png  120 pictures of 5 seconds\n"
       "  etendue render film.etd --frames 0:120 --skip-existing   those that are not there yet\n"
       "  etendue render box.etd --passes 0:8 --checkpoint a.part  a part, for 'etendue image merge'\n"
-      "\nThe first Ctrl-C ends the render after the current pass and writes what there is, a second one aborts it.\n"
+      "\nThe first Ctrl-C ends the render after the current pass and writes what there is, a second one leaves this pass out.\n"
       "The picture depends on the file and the seed alone, never on the number of threads.");
   command.runs([options] {
     ProcessTeam* const team = join_others(*options);

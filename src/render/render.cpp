@@ -96,6 +96,7 @@ void Render::Members::empty() {
   const std::lock_guard lock(counts);
   film->clear();
   done.clear();
+  some_done = false;
   loaded_from.clear();
   choice.clear();
   seconds = error = 0;
@@ -103,7 +104,10 @@ void Render::Members::empty() {
 
 void Render::restart(std::optional<std::uint64_t> seed) {
   const BetweenSteps alone(*members_, true);
-  if (seed) members_->job->seed = *seed;
+  if (seed) {
+    members_->job->seed = *seed;
+    members_->assembled = false;
+  }
   members_->empty();
 }
 
@@ -186,6 +190,7 @@ std::optional<Ended> Render::Members::step(Schedule& schedule) {
     const std::lock_guard lock(counts);
     film->end_step();
     insert(done, samples);
+    some_done = true;
     loaded_from.clear();
     seconds += seconds_since(step_began);
     note_choice();
@@ -270,7 +275,10 @@ Ended Render::run() {
       if (keeps && !written) members_->keep();
       throw;
     }
-    if (ended == Ended::aborted) return *ended;
+    if (ended == Ended::aborted) {
+      if (keeps && !written && members_->some_done) members_->keep();
+      return *ended;
+    }
     if (ended) break;
     written = false;
     ended = members_->reason_to_stop();
@@ -285,10 +293,12 @@ Ended Render::run() {
   return *ended;
 }
 
-// A team drops its step: mpirun gives one second between the signal to end and the kill.
+// A team drops its step, as mpirun gives one second between the signal to end and the kill: but not the first one, without
+// which there would be nothing, and not where a page stops it.
 void Render::stop() {
   members_->stop.store(true);
-  if (members_->settings.team) members_->give_up.store(true);
+  const Team* const team = members_->settings.team;
+  if (team && !team->follows_edits() && members_->some_done.load()) members_->give_up.store(true);
 }
 void Render::abort() {
   members_->abort.store(true);

@@ -44,7 +44,8 @@ void Render::edit(const Component& component, const std::string& member, const V
 }
 
 void Render::edit(std::span<const Edit> edits) {
-  if (members_->settings.team) throw Error("a render that several processes compute cannot be edited");
+  const Team* const team = members_->settings.team;
+  if (team && team->leads() && !team->follows_edits()) throw Error("a render that several processes compute cannot be edited");
   const std::lock_guard one_at_a_time(members_->editing);
   if (!members_->holders) members_->holders = std::make_unique<Holders>(*members_->job);
   Consequences consequences;
@@ -60,7 +61,10 @@ void Render::edit(std::span<const Edit> edits) {
   if (consequences.effect() != Effect::retone) alone.emplace(*members_, consequences.effect() >= Effect::rerender);
   const std::unique_lock unseen(members_->look);
   Changes changes(edits);
-  if (alone) members_->park_process();
+  if (alone) {
+    members_->park_process();
+    members_->assembled = false;
+  }
   try {
     consequences.prepare(*members_->job, *members_->holders);
     members_->follow(consequences);

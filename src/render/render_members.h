@@ -40,7 +40,8 @@ struct Render::Members {
   mutable std::optional<Identity> identity;  ///< of the job; computed on demand, since it reads files
   std::uint32_t step_size = 1;               ///< samples per step, until the next edit
   std::string loaded_from;                   ///< the checkpoint file whose state the render still has; empty: none
-  bool assembled = false;                    ///< the processes of the team have met for this render
+  bool assembled = false;                    ///< the processes of the team have met for this render, as it is now
+  bool announced = false;                    ///< the team was told of it, as it is now or was before an edit
   std::string broken;                        ///< why nothing can be rendered: an edit could be neither made nor undone
 
   std::mutex editing;                ///< serializes edits
@@ -48,7 +49,8 @@ struct Render::Members {
 
   // Protected by `counts`.
   std::vector<IndexRange> done;
-  double seconds = 0;  ///< spent on whole steps
+  std::atomic<bool> some_done{false};  ///< whether there is a whole step; for signal handlers
+  double seconds = 0;                  ///< spent on whole steps
   IndexRange at_hand;
   std::chrono::steady_clock::time_point step_began;
   double part_at_hand = 0;  ///< finished fraction of the current step

@@ -78,6 +78,7 @@ void Render::Members::take_over(Checkpoint&& from) {
   before_short_step = std::move(from.before_short_pass);
   const std::lock_guard lock(counts);
   done = std::move(from.done);
+  some_done = !done.empty();
   seconds = from.seconds;
   error = 0;
   note_choice();
@@ -120,6 +121,7 @@ void Render::add(std::istream& stream) {
   const std::lock_guard lock(members_->counts);
   members_->film->add_state(from.state.image);
   members_->done = std::move(all);
+  members_->some_done = !members_->done.empty();
   members_->seconds += from.seconds;
   members_->loaded_from.clear();
   members_->before_short_step.reset();

@@ -13,6 +13,8 @@ std::unique_ptr<Schedule> Render::Members::make_schedule(std::function<void(std:
 /// Meets the other processes, before the first step.
 void Render::Members::assemble() {
   if (!settings.team || assembled) return;
+  if (settings.team->leads()) settings.team->announce(*job, !announced);
+  announced = true;
   const auto command = job->metadata.find("command_line");
   settings.team->assemble({.identity = identity_now(),
                            .seed = job->seed,
@@ -27,6 +29,7 @@ Ended Render::Members::follow_leader() {
   Team& team = *settings.team;
   const std::shared_lock sharing(description);
   const std::unique_ptr<Schedule> schedule = make_schedule({});
+  assembled = false;  // for the leader's last render, which was another one or is edited since
   assemble();
   while (std::optional<Team::Task> task = team.next_step(give_up)) {
     try {

@@ -19,6 +19,8 @@ class Team {
  public:
   virtual ~Team() = default;
   virtual bool leads() const = 0;
+  /// Whether the leader's job may be edited: then `announce` tells the followers of it. Safe in signal handlers.
+  virtual bool follows_edits() const = 0;
 
   /// What a process is about to render, which must be the same in all of them.
   struct Prepared {
@@ -28,6 +30,9 @@ class Team {
     std::string command;  ///< the command line that makes the picture; may be empty
     int threads = 0;      ///< of this process; 0: its share of the machine's cores
   };
+  /// Leader, before `assemble`, if edits are followed: lets the others prepare this job. `fresh`: no earlier state of this
+  /// Render was announced; otherwise it was edited since then.
+  virtual void announce(const Job&, bool fresh) = 0;
   /// Leader: waits until every follower has prepared the render. Throws Error, with the host's name, if one of them could not,
   /// or prepared something else. Follower: says that it is ready.
   virtual void assemble(const Prepared&) = 0;

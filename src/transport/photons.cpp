@@ -45,9 +45,7 @@ bool photon_occluded(const Scene& scene, const Point3& a, const Vector3& normal_
 
 void PhotonMap::build(std::vector<Photon>&& photons) {
   photons_ = std::move(photons);
-  std::vector<Point3> places(photons_.size());
-  for (size_t i = 0; i < photons_.size(); ++i) places[i] = photons_[i].position;
-  std::vector<std::uint32_t> order = tree_.build(places);
+  std::vector<std::uint32_t> order = tree_.build(std::span<const Photon>(photons_), &Photon::position);
   // Sorted in place, cycle by cycle of the permutation, so that no second list is needed.
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     if (order[i] == i) continue;

@@ -304,8 +304,29 @@ TEST_F(ProgramTest, an_interrupted_render_writes_what_there_is) {
   }
 }
 
-TEST_F(ProgramTest, a_second_interrupt_aborts) {
-  // Large enough for a pass to last longer than it takes to send two signals.
+TEST_F(ProgramTest, a_second_interrupt_leaves_out_the_pass_under_way) {
+  // One pass takes about a second.
+  const auto with = [&](const std::string& name, std::vector<std::string> more) {
+    std::vector<std::string> all{"render", scene, "--size", "1200x900", "--threads", "1", "-o", name, "--progress", "json"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  Process process(program, with("some.npy", {"--samples", "1000000", "--continue", "state"}), folder);
+  ASSERT_TRUE(process.says("\"samples\":1,")) << process.err();
+  process.send(SIGINT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  process.send(SIGINT);
+  EXPECT_EQ(process.wait(), 130);
+  EXPECT_TRUE(has(process.out(), R"("ended":"aborted")")) << process.out();
+  EXPECT_TRUE(has(process.err(), "leaves this pass out") && has(process.err(), "ends at once")) << process.err();
+  ASSERT_EQ(run(with("one.npy", {"--samples", "1"})), 0) << err;
+  EXPECT_TRUE(file_text(folder / "some.npy") == file_text(folder / "one.npy"));
+  ASSERT_EQ(run(with("two.npy", {"--samples", "2", "--continue", "state"})), 0) << err;
+  ASSERT_EQ(run(with("two_alone.npy", {"--samples", "2"})), 0) << err;
+  EXPECT_TRUE(file_text(folder / "two.npy") == file_text(folder / "two_alone.npy"));
+}
+
+TEST_F(ProgramTest, a_second_interrupt_within_the_first_pass_writes_nothing) {
   Process process(program,
                   {"render", scene, "-o", "none.npy", "--size", "4000x3000", "--samples", "1000000", "--progress", "json"},
                   folder);

@@ -10,27 +10,32 @@ namespace etendue {
 
 class IrradiancePoints {
  public:
-  /// The photons of an estimate: the `nearest` ones within the distance `farthest` [m].
-  struct Estimate {
-    size_t nearest = 0;
-    float farthest = 0;
-    double walks = 1;  ///< n, the number of light subpaths
-    float time = 0;    ///< [s]
+  struct Point {
+    Point3 position;
+    Vector3 normal;  ///< on the side that the irradiance arrives at
+    Spectrum value;
   };
-  /// Irradiance is computed at every fourth photon, if it is on a surface.
-  static constexpr size_t every = 4;
-  void find(const Scene&, const PhotonMap&, const Estimate&);
+  /// Computes the irradiance at every fourth photon, if it is on a surface: work for Schedule::collect<Point>(work.items(),
+  /// work). An estimate is of the `nearest` photons within the distance `farthest`.
+  struct Work {
+    const Scene& scene;
+    const PhotonMap& map;
+    size_t nearest = 0;
+    float farthest = 0;  ///< [m]
+    double walks = 1;    ///< n, the number of light subpaths
+    float time = 0;      ///< [s]
+
+    static constexpr size_t every = 4;
+    std::uint64_t items() const;
+    void operator()(std::uint64_t item, std::vector<Point>&, Arena&) const;
+  };
+  void build(const Work&, std::vector<Point>&&);
 
   /// The irradiance [W/(m^2 nm)] at the point nearest to a vertex whose normal agrees with that of the vertex on the side of
   /// `out`; null: there is none within `farthest`.
   const Spectrum* at(const PathVertex&) const;
 
  private:
-  struct Point {
-    Point3 position;
-    Vector3 normal;  ///< on the side that the irradiance arrives at
-    Spectrum value;
-  };
   PointTree tree_;
   std::vector<Point> points_;
   float farthest_ = 0;

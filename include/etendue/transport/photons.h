@@ -89,7 +89,7 @@ inline bool photon_occluded(const Scene& scene, const PathVertex& vertex, const 
 /// Photons with a search structure over their positions.
 class PhotonMap {
  public:
-  /// Builds it on all cores. During the build this takes a third of the photons' memory, afterwards a seventh.
+  /// Builds it on all cores. During the build this takes two fifths of the photons' memory, afterwards a seventh.
   void build(std::vector<Photon>&&);
 
   size_t size() const { return photons_.size(); }

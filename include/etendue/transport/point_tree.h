@@ -20,8 +20,15 @@ class PointTree {
  public:
   static constexpr size_t leaf = 8;  ///< maximum number of points in a leaf
   /// Builds the tree on all cores. Returns the order of the points: point i of the tree is points[order[i]]. At most 2^32
-  /// points.
-  std::vector<std::uint32_t> build(std::span<const Point3> points);
+  /// points. During the build each takes 16 bytes more.
+  std::vector<std::uint32_t> build(std::span<const Point3> points) {
+    return build(points.data(), sizeof(Point3), points.size());
+  }
+  /// The same for points that are members of larger structures.
+  template <class Whole>
+  std::vector<std::uint32_t> build(std::span<const Whole> all, Point3 Whole::* point) {
+    return build(all.empty() ? nullptr : &(all.front().*point), sizeof(Whole), all.size());
+  }
 
   size_t size() const { return points_.size(); }
   const Point3& operator[](size_t i) const { return points_[i]; }
@@ -94,7 +101,9 @@ class PointTree {
     float at;
     std::uint32_t axis;
   };
-  void divide(std::span<const Point3>, std::uint32_t* order, size_t begin, size_t end, size_t node);
+  struct Build;
+  /// `stride`: the distance from point to point [bytes].
+  std::vector<std::uint32_t> build(const Point3* first, size_t stride, size_t count);
 
   /// `visit` may reduce `squared`.
   template <class Visit>

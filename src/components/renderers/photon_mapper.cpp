@@ -109,9 +109,11 @@ class PhotonMapperProcess final : public PhotonProcess {
     request.kinds = PhotonKinds::caustics;
     if (targets_.useful()) request.targets = &targets_;
     caustics_ = make_photons(schedule, step, request);
-    if (settings_.irradiance && settings_.final_gather)
-      irradiance_.find(context.scene, global_.map,
-                       {size_t(settings_.nearest), settings_.farthest * pixel_, global_.walks, time(0)});
+    if (settings_.irradiance && settings_.final_gather) {
+      const IrradiancePoints::Work work{context.scene, global_.map, size_t(settings_.nearest), settings_.farthest * pixel_,
+                                        global_.walks, time(0)};
+      irradiance_.build(work, schedule.collect<IrradiancePoints::Point>(work.items(), work));
+    }
   }
 
   std::optional<ShownPhotons> photons(size_t most) const override { return some_of({&global_, &caustics_}, most); }

@@ -9,17 +9,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto sign_interval = 1s;
+constexpr std::chrono::milliseconds sign_interval = 1s, watch_interval = 50ms;
 // The thread looks for messages again after these times, as messages cannot wake it: a look takes some 10 microseconds. While
 // nobody waits, what is needed next is there already.
 constexpr std::chrono::microseconds shortest_rest = 100us, rest_of_waiting = 1ms, rest_of_busy = 4ms;
-
-/// The processor time of this thread [s].
-double own_seconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return double(now.tv_sec) + double(now.tv_nsec) * 1e-9;
-}
 
 /// An empty message is a sign of life.
 const Parcel& sign_of_life() {
@@ -67,7 +60,12 @@ void Post::start(Handlers handlers) {
 
 Post::Traffic Post::traffic() const {
   const std::lock_guard lock(mutex_);
-  return traffic_;
+  Traffic now = traffic_;
+  clockid_t clock{};
+  timespec used{};
+  if (pthread_getcpuclockid(const_cast<std::thread&>(thread_).native_handle(), &clock) == 0 && clock_gettime(clock, &used) == 0)
+    now.seconds = double(used.tv_sec) + double(used.tv_nsec) * 1e-9;
+  return now;
 }
 
 void Post::send(int to, Parcel parcel) {
@@ -118,7 +116,6 @@ bool Post::exchange() {
     outgoing.swap(outgoing_);
     for (const auto& [to, parcel] : outgoing) traffic_.bytes += parcel->size();
     traffic_.messages += outgoing.size();
-    traffic_.seconds = own_seconds();
   }
   bool any = !outgoing.empty();
   for (auto& [to, parcel] : outgoing) messages_->send(to, std::move(parcel));
@@ -133,6 +130,7 @@ bool Post::exchange() {
 /// Gives signs of life, and notices who gives none.
 void Post::watch() {
   const Clock::time_point now = Clock::now();
+  if (now - watched_ < watch_interval) return;
   // After a pause of this process itself (SIGSTOP, a laptop's lid) nobody else is to blame.
   if (now - watched_ > 5 * sign_interval)
     for (Clock::time_point& heard : heard_) heard = now;

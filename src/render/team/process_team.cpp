@@ -291,6 +291,18 @@ void ProcessTeam::begin_render(std::vector<std::byte> what) {
   to_all(Writing(LetterKind::render).add(render_).add(what).parcel());
 }
 
+void ProcessTeam::follow_edits(std::function<std::vector<std::byte>(const Job&, bool fresh)> packs) {
+  packs_ = std::move(packs);
+  follows_edits_ = true;
+}
+
+void ProcessTeam::announce(const Job& job, bool fresh) {
+  if (!follows_edits_) return;
+  std::vector<std::byte> what = packs_(job, fresh);
+  if (render_ > 0) end_render();
+  begin_render(std::move(what));
+}
+
 void ProcessTeam::end_render() noexcept {
   const std::lock_guard lock(mutex_);
   to_all(Writing(LetterKind::rendered).add(render_).parcel());

@@ -50,6 +50,9 @@ class ProcessTeam final : public Team {
   std::vector<Effort> efforts() const;
   /// Leader: lets the others prepare a render, of which `what` tells them.
   void begin_render(std::vector<std::byte> what);
+  /// Leader, before its first render: renders begin, and end, by themselves whenever the leader's job is another one; the
+  /// function packs what the others need to know of it.
+  void follow_edits(std::function<std::vector<std::byte>(const Job&, bool fresh)>);
   void end_render() noexcept;
   /// Follower: waits for the next render; nothing: there is none.
   std::optional<std::vector<std::byte>> next_render();
@@ -74,6 +77,8 @@ class ProcessTeam final : public Team {
   // ---- Team ----------------------------------------------------------------------------------------------------------------
 
   bool leads() const override { return rank() == 0; }
+  bool follows_edits() const override { return follows_edits_; }
+  void announce(const Job&, bool fresh) override;
   void assemble(const Prepared&) override;
   std::unique_ptr<Schedule> schedule(Film&, int threads, const std::atomic<bool>& abort,
                                      std::function<void(std::uint64_t, std::uint64_t)> tick) override;
@@ -129,6 +134,8 @@ class ProcessTeam final : public Team {
   std::optional<std::uint64_t> common_;                 ///< hash of the state that all processes have
   std::vector<Effort> efforts_;
   bool step_at_hand_ = false;
+  std::function<std::vector<std::byte>(const Job&, bool fresh)> packs_;
+  std::atomic<bool> follows_edits_{false};
   std::deque<Reading> scene_letters_;  ///< followers' as well
 
   // Followers'.
