@@ -75,56 +75,82 @@ void ward(Gathering& g, const Component& c) {
 /// A metal's Fresnel reflectance; n and k over the index of the medium in front.
 struct MetalFresnel {
   Spectrum n, k, diffuse_mean;
-  Spectrum at(float cosine) const { return fresnel_conductor(cosine, n, k); }
+
+  /// As fresnel_conductor, for all wavelengths at once.
+  Spectrum at(float cosine) const {
+    const float c = clamp(cosine, 0, 1), c2 = c * c, s2 = 1 - c2;
+    const Spectrum d = n * n - k * k - Spectrum(s2), product = 2 * n * k;
+    const Spectrum sum = sqrt(d * d + product * product);
+    Spectrum a;  // the root of (sum + d) / 2, where that cancels from a b = n k
+    for (int i = 0; i < spectrum_size; ++i) {
+      const float q = std::sqrt(0.5f * (sum[i] + std::abs(d[i])));
+      a.set(i, d[i] > 0 ? q : product[i] / (2 * q + 1e-30f));
+    }
+    const Spectrum ac2 = a * (2 * c), across = sum + Spectrum(c2), along = sum * c2 + Spectrum(s2 * s2);
+    const Spectrum s = (across - ac2) / (across + ac2 + Spectrum(1e-20f));
+    const Spectrum p = (along - ac2 * s2) / (along + ac2 * s2 + Spectrum(1e-20f));
+    return clamp(0.5f * s * (Spectrum(1.0f) + p), 0, 1);
+  }
   const Spectrum& mean() const { return diffuse_mean; }
 };
 
-/// The complex index of a metal whose n and k are given for red, green and blue. Their reflectance r at normal incidence and
-/// the place g of n between its extremes for that r become spectra of reflectances, from which n and k follow per wavelength
-/// (Gulbrandsen 2014, "Artist friendly metallic Fresnel"):
+/// A metal whose n and k are given for red, green and blue, as colours: its reflectance r along the normal, the place g of n
+/// between its extremes for that r, and its mean reflectance under diffuse light.
+struct MetalColors {
+  Triple n{-1}, k{-1}, r, edge, mean;
+
+  MetalColors() = default;
+  MetalColors(const Triple& index, const Triple& extinction) : n(index), k(extinction) {
+    for (int i = 0; i < 3; ++i) {
+      const float k2 = k[i] * k[i];
+      r[i] = clamp((square(n[i] - 1) + k2) / std::max(square(n[i] + 1) + k2, 1e-6f), 0, 0.9999f);
+      const float root = std::sqrt(r[i]), high = (1 + root) / (1 - root), low = (1 - r[i]) / (1 + r[i]);
+      edge[i] = high > low ? clamp((high - n[i]) / (high - low), 0, 1) : 0;
+      mean[i] = clamp(mean_fresnel_conductor(Spectrum(n[i]), Spectrum(k[i]))[0], 0, 1);
+    }
+  }
+};
+
+/// The colours become spectra of reflectances, from which n and k follow per wavelength (Gulbrandsen 2014, "Artist friendly
+/// metallic Fresnel"):
 ///   n = g (1 - r) / (1 + r) + (1 - g) (1 + sqrt r) / (1 - sqrt r),   k^2 = (r (n + 1)^2 - (n - 1)^2) / (1 - r).
-void set_metal(const Gathering& g, const Triple& n, const Triple& k, MetalFresnel& metal) {
-  Triple r, edge;
-  for (int i = 0; i < 3; ++i) {
-    const float k2 = k[i] * k[i];
-    r[i] = clamp((square(n[i] - 1) + k2) / std::max(square(n[i] + 1) + k2, 1e-6f), 0, 0.9999f);
-    const float root = std::sqrt(r[i]), high = (1 + root) / (1 - root), low = (1 - r[i]) / (1 + r[i]);
-    edge[i] = high > low ? clamp((high - n[i]) / (high - low), 0, 1) : 0;
-  }
-  const Spectrum rs = g.color(r, ColorUse::reflectance), es = g.color(edge, ColorUse::reflectance);
-  for (int i = 0; i < spectrum_size; ++i) {
-    const float x = clamp(rs[i], 0, 0.9999f), root = std::sqrt(x), e = clamp(es[i], 0, 1);
-    const float index = e * (1 - x) / (1 + x) + (1 - e) * (1 + root) / (1 - root);
-    metal.n.set(i, index);
-    metal.k.set(i, safe_sqrt((x * square(index + 1) - square(index - 1)) / (1 - x)));
-  }
+MetalFresnel metal_of(const Gathering& g, const MetalColors& colors, const Spectrum& outside) {
+  const Spectrum one(1.0f);
+  const Spectrum r = clamp(g.color(colors.r, ColorUse::reflectance), 0, 0.9999f), root = sqrt(r);
+  const Spectrum e = clamp(g.color(colors.edge, ColorUse::reflectance), 0, 1);
+  const Spectrum n = e * (one - r) / (one + r) + (one - e) * (one + root) / (one - root);
+  const Spectrum above = n + one, below = n - one;
+  MetalFresnel metal{n / outside, sqrt((r * above * above - below * below) / (one - r)) / outside, {}};
+  metal.diffuse_mean = (outside - one).black() ? clamp(g.color(colors.mean, ColorUse::reflectance), 0, 1)
+                                               : mean_fresnel_conductor(metal.n, metal.k);
+  return metal;
 }
 
-/// The same, and the mean reflectance, which take longer than all else of a metal. A path that meets a metal mostly meets it
-/// again, with the same wavelengths: so the last few of this thread are kept.
+/// The metal for the path's wavelengths. The colours of the last few metals of this thread are kept, and for a path's
+/// wavelengths the spectra: a path that meets a metal mostly meets it again.
 const MetalFresnel& recent_metal(const Gathering& g, const Triple& n, const Triple& k, const Spectrum& outside) {
   struct Entry {
-    Triple n{-1}, k{-1};
-    float wavelengths[spectrum_size] = {};
-    Spectrum outside;
+    MetalColors colors;
+    Spectrum wavelengths, outside;
     MetalFresnel metal;
   };
-  constexpr int size = 4;
+  constexpr int size = 8;
   thread_local Entry entries[size];
   thread_local int next = 0;
-  float w[spectrum_size];
-  for (int i = 0; i < spectrum_size; ++i) w[i] = g.wavelengths()[i];
-  for (const Entry& e : entries)
-    if (e.n == n && e.k == k && std::equal(w, w + spectrum_size, e.wavelengths) && (e.outside - outside).black())
-      return e.metal;
-  Entry& e = entries[next++ % size];
-  e.n = n, e.k = k, e.outside = outside;
-  std::copy(w, w + spectrum_size, e.wavelengths);
-  set_metal(g, n, k, e.metal);
-  e.metal.n = e.metal.n / outside;
-  e.metal.k = e.metal.k / outside;
-  e.metal.diffuse_mean = mean_fresnel_conductor(e.metal.n, e.metal.k);
-  return e.metal;
+  Spectrum w;
+  for (int i = 0; i < spectrum_size; ++i) w.set(i, g.wavelengths()[i]);
+  Entry* found = nullptr;
+  for (Entry& e : entries)
+    if (e.colors.n == n && e.colors.k == k) found = &e;
+  if (found && (found->wavelengths - w).black() && (found->outside - outside).black()) return found->metal;
+  if (!found) {
+    found = &entries[next++ % size];
+    found->colors = MetalColors(n, k);
+  }
+  found->wavelengths = w;
+  found->outside = outside;
+  found->metal = metal_of(g, found->colors, outside);
+  return found->metal;
 }
 
 void conductor_bsdf(Gathering& g, const Component& c) {

@@ -169,7 +169,7 @@ void Gathering::add_layers(const ClosureNode* top, const ClosureNode* base) {
 }
 
 Spectrum Gathering::weight_bound() const {
-  const Triple w = weight_ * Triple(1);
+  const Triple& w = weight_;
   const float scale = std::max({w.x, w.y, w.z, 1.0f});
   if (w.x == w.y && w.y == w.z) return clamp(spectral_weight_ * w.x, 0, 1);
   return clamp(
@@ -182,26 +182,29 @@ Spectrum Gathering::add_closure(const ClosureNode* root) {
   const Triple weight = weight_;
   const Spectrum spectral = spectral_weight_;
   Spectrum bound;
-  OpenClosures open;
-  open.push({root, weight, spectral});
-  while (!open.empty()) {
-    const WeightedClosure w = open.pop();
-    switch (w.node->kind) {
+  OpenClosures open;  // besides `next`
+  WeightedClosure next{root, weight, spectral};
+  while (next.node) {
+    switch (next.node->kind) {
       case ClosureNode::Kind::component:
-        weight_ = w.weight, spectral_weight_ = w.spectral;
-        bound += add_component(*static_cast<const ClosureComponent*>(w.node));
+        weight_ = next.weight, spectral_weight_ = next.spectral;
+        bound += add_component(*static_cast<const ClosureComponent*>(next.node));
+        next.node = nullptr;
+        if (!open.empty()) next = open.pop();
         break;
       case ClosureNode::Kind::sum:
-        open.push({static_cast<const ClosureSum*>(w.node)->b, w.weight, w.spectral});
-        open.push({static_cast<const ClosureSum*>(w.node)->a, w.weight, w.spectral});
+        open.push({static_cast<const ClosureSum*>(next.node)->b, next.weight, next.spectral});
+        next.node = static_cast<const ClosureSum*>(next.node)->a;
         break;
       case ClosureNode::Kind::product: {
         // Weights without colour stay factors of the spectra: then spectra of weights that sum to 1 sum to at most 1.
-        const auto& p = *static_cast<const ClosureProduct*>(w.node);
-        const bool grey = p.weight.x == p.weight.y && p.weight.y == p.weight.z;
-        Spectrum s = grey ? w.spectral * p.weight.x : w.spectral;
-        if (p.spectrum) s *= *p.spectrum;
-        open.push({p.closure, grey ? w.weight : w.weight * p.weight, s});
+        const auto& p = *static_cast<const ClosureProduct*>(next.node);
+        if (p.weight.x == p.weight.y && p.weight.y == p.weight.z)
+          next.spectral *= p.weight.x;
+        else
+          next.weight = next.weight * p.weight;
+        if (p.spectrum) next.spectral *= *p.spectrum;
+        next.node = p.closure;
         break;
       }
     }

@@ -19,6 +19,7 @@ class RenderServices final : public Services {
       : point_(p), wavelengths_(w), memory_(memory), class_name_(class_name), scene_file_(scene_file), maps_(maps) {}
 
   bool to_common(const String* space, Matrix& out) override;
+  bool from_common(const String* space, Matrix& out) override;
   bool attribute(const String* object, const String* name, int index, const Type&, bool derivatives, void* out) override;
   std::string_view texture(const String* file, const Dual<float>& s, const Dual<float>& t, const TextureOptions&,
                            TextureLookup&) override;
