@@ -5,6 +5,7 @@
 #include <cstring>
 #include <thread>
 
+#include "etendue/language/language.h"
 #include "render/team/process_team.h"
 #include "render/team/thread_messages.h"
 #include "support/checkpoint_test_support.h"
@@ -141,6 +142,56 @@ TEST_F(TeamTest, goes_on_after_a_step_that_was_aborted) {
   EXPECT_EQ(render.run(), Ended::aborted);
   EXPECT_EQ(render.run(), Ended::samples);
   EXPECT_TRUE(film(render) == film(*alone));
+}
+
+// A studio's render (studio_team.h): the others are told of the job anew when it was edited, and before a step alone.
+TEST_F(TeamTest, follows_the_edits_of_its_leader) {
+  const auto bytes_of = [](const std::string& text) {
+    const auto all = std::as_bytes(std::span(text));
+    return std::vector<std::byte>(all.begin(), all.end());
+  };
+  const auto text_in = [](const std::vector<std::byte>& bytes) {
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  auto messages = thread_messages(3);
+  std::vector<std::thread> followers;
+  for (int rank = 1; rank < 3; ++rank)
+    followers.emplace_back([&, own = std::move(messages[size_t(rank)])]() mutable {
+      ProcessTeam team(std::move(own), {"test", 25});
+      while (const auto what = team.next_render()) {
+        const Ref<Job> job = ref_cast<Job>(parse_component(text_in(*what), "text", folder.path()));
+        Render(job, {.threads = 1, .team = &team}).run();
+      }
+    });
+  {
+    ProcessTeam team(std::move(messages[0]), {"test", 25});
+    std::vector<bool> told;
+    team.follow_edits([&](const Job& job, bool fresh) {
+      told.push_back(fresh);
+      return bytes_of(write_description(job, false, folder.path()));
+    });
+    const auto described = [] { return job_of(text_of("GuidedPathTracer {}"), 24); };
+    const Ref<Job> job = described();
+    Render render(job, {.threads = 1, .team = &team});
+    EXPECT_FALSE(render.step());
+    EXPECT_FALSE(render.step());
+    EXPECT_EQ(told, (std::vector{true}));
+    const auto edited = [&](Render& of) { of.edit(*of.job().renderer, "max_depth", Value(Number{3})); };
+    edited(render);
+    EXPECT_EQ(render.run(), Ended::samples);
+    EXPECT_EQ(told, (std::vector{true, false}));
+    Render alone(described(), two_threads);
+    edited(alone);
+    alone.run();
+    EXPECT_TRUE(film(render) == film(alone));
+    render.restart(7);
+    alone.restart(7);
+    alone.run();
+    EXPECT_EQ(render.run(), Ended::samples);
+    EXPECT_EQ(told.size(), 3u);
+    EXPECT_TRUE(film(render) == film(alone));
+  }
+  for (std::thread& follower : followers) follower.join();
 }
 
 TEST_F(TeamTest, names_who_sees_another_scene_and_renders_the_next) {

@@ -223,17 +223,19 @@ class TeamSchedule::Call {
   }
 
   /// How many items that are not begun should be here: as many as are computed while more are asked for, which takes the time
-  /// of some looks for messages.
+  /// of some looks for messages, and longer on slow networks.
   std::uint64_t stock() const {
-    constexpr std::chrono::duration<double> enough = std::chrono::milliseconds(10);
+    constexpr std::chrono::duration<double> looks = std::chrono::milliseconds(10);
+    const auto enough = std::max(looks, 1.5 * schedule_.answer_time_);
     const auto own = std::uint64_t(threads_[size_t(team_.rank())]);
     if (computed_ == 0) return own;
     const double each = std::max(busy_.count() / double(computed_), 1e-6);
-    return own * std::uint64_t(std::clamp(enough.count() / each, 1.0, 32.0));
+    return own * std::uint64_t(std::clamp(enough.count() / each, 1.0, 64.0));
   }
 
   void ask() {
     asked_ = true;
+    asked_at_ = std::chrono::steady_clock::now();
     if (team_.leads())
       deal({0, stock()});
     else
@@ -249,6 +251,10 @@ class TeamSchedule::Call {
 
   void dealt_to_me(std::uint64_t first, std::uint64_t count) {
     asked_ = false;
+    if (!team_.leads() && count > 0) {
+      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - asked_at_;
+      schedule_.answer_time_ += 0.25 * (took - schedule_.answer_time_);
+    }
     all_dealt_ = count == 0;
     add(first, count);
     changed_.notify_all();
@@ -289,6 +295,7 @@ class TeamSchedule::Call {
   std::deque<std::uint64_t> own_, own_end_;
   std::uint64_t unstarted_ = 0;
   bool asked_ = false, all_dealt_ = false;
+  std::chrono::steady_clock::time_point asked_at_;
   std::chrono::duration<double> busy_{0};  ///< the time that items took, and their number
   std::uint64_t computed_ = 0;
 

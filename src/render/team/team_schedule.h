@@ -7,6 +7,7 @@
 // are computed while those of the last one are still on their way. The leader deals no items that are far from the first one
 // that is missing, because what comes after that is kept in memory.
 
+#include <chrono>
 #include <deque>
 #include <map>
 
@@ -38,6 +39,8 @@ class TeamSchedule final : public Schedule {
   ParallelSchedule local_;
   const std::function<void(std::uint64_t, std::uint64_t)> tick_;
   Number last_{0, 0};  ///< the last call that was begun
+  std::chrono::duration<double> answer_time_{
+      0};  ///< from asking for items until they are there, on average; for the call alone
 
   std::mutex mutex_;
   Call* call_ = nullptr;
