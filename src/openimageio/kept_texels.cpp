@@ -67,7 +67,7 @@ bool KeptTexels::code(const float* values, size_t count) {
 }
 
 void KeptTexels::become_floats() {
-  std::vector<float> floats;
+  HugeVector<float> floats;
   floats.reserve(count_);
   for (const std::uint8_t code : codes_) floats.push_back(values_[code]);
   values_ = std::move(floats);

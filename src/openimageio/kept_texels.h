@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/huge_pages.h"
+
 namespace etendue {
 
 /// The decoded values of an image in rows. An image of at most 256 different values, such as one of 8 bits per channel, takes a
@@ -42,8 +44,8 @@ class KeptTexels {
   void account();
 
   size_t count_, accounted_ = 0;
-  std::vector<std::uint8_t> codes_;   // empty: values_ holds the values themselves
-  std::vector<float> values_;         // value of each code
+  HugeVector<std::uint8_t> codes_;    // empty: values_ holds the values themselves
+  HugeVector<float> values_;          // value of each code
   std::vector<std::int16_t> places_;  // hash table of values_ by their bits, used while codes are made; -1: free
 };
 

@@ -27,7 +27,9 @@ constexpr int rays_of_tile = 8;
 constexpr int places_of_region = 16;
 constexpr int longest = 8;  // segments of a path
 constexpr int rays_of_turn = 64;
-constexpr int rays_of_luminaire = 64;
+constexpr int rays_of_luminaire = 64;     // of each, and of all together
+constexpr int rays_for_light = 256;       // at least: a region without light is one that these have not met
+constexpr double worth_it = 0.25;         // the part of the places at which shadow rays are spared, from which on it pays
 constexpr float by_others = 0.25f;        // d
 constexpr float greatest_square = 1e36f;  // sums of a table's entries, and their roots, stay finite
 constexpr std::uint32_t paths_at_once = 64;
@@ -159,7 +161,8 @@ EnvironmentGuide::Squares smoothed(const EnvironmentGuide::Squares& squares) {
 AdaptiveLights::AdaptiveLights(const LightSampler& lights, const Scene& scene)
     : lights_(lights),
       luminaires_(scene.luminaires()),
-      chooses_(luminaires_.size() > 1 && luminaires_.size() <= most_luminaires) {
+      few_(!luminaires_.empty() && luminaires_.size() <= most_luminaires),
+      chooses_(few_ && luminaires_.size() > 1) {
   for (const SceneObject* luminaire : luminaires_)
     if (luminaire->extent() == Extent::environment && !environment_)
       if (const auto* one = dynamic_cast<const InfiniteObject*>(luminaire); one && one->most_visible_places() > 0)
@@ -198,29 +201,37 @@ void AdaptiveLights::learn(Schedule& schedule, const RenderProcess& process) {
         if (there[region].empty()) return;
         Lookout lookout(process, viewpoints, there[region], std::uint32_t(region), arena);
         if (environment_) seen.tiles = smoothed(look_at_tiles(lookout, *environment_));
-        for (size_t k = 0; chooses_ && k < luminaires_.size(); ++k) {
+        const int rays = std::max(rays_of_luminaire, rays_for_light / int(std::max<size_t>(luminaires_.size(), 1)));
+        for (size_t k = 0; few_ && k < luminaires_.size(); ++k) {
           double sum = 0;
           if (luminaires_[k] == environment_) {
             for (const float s : seen.tiles) sum += std::sqrt(double(s));
             seen.roots[k] = float(sum / EnvironmentGuide::tiles);
           } else {
-            for (int i = 0; i < rays_of_luminaire; ++i) {
-              lookout.stand(i, rays_of_luminaire);
-              sum += double(lookout.square_of(*luminaires_[k], lookout.pair())) / rays_of_luminaire;
+            for (int i = 0; i < rays; ++i) {
+              lookout.stand(i, rays);
+              sum += double(lookout.square_of(*luminaires_[k], lookout.pair())) / rays;
             }
             seen.roots[k] = float(std::sqrt(sum));
           }
         }
       });
   if (schedule.aborted()) return;
+  std::vector<bool> dark;
+  size_t places_in_the_dark = 0;
   for (const Seen& seen : all) {
-    if (environment_) guide.learn(std::uint32_t(&seen - all.data()), seen.tiles);
+    const auto region = size_t(&seen - all.data());
+    const auto zero = [](float x) { return x == 0; };
+    dark.push_back(few_ && !there[region].empty() && std::ranges::all_of(seen.roots, zero));
+    if (dark.back()) places_in_the_dark += there[region].size();
+    if (environment_) guide.learn(std::uint32_t(region), seen.tiles);
     if (!chooses_) continue;
     double whole = 0, below = 0;
     for (const float root : seen.roots) whole += double(root);
     for (size_t k = 0; k < luminaires_.size(); ++k)
       chances_.push_back(whole > 0 ? k + 1 == luminaires_.size() ? 1 : float((below += double(seen.roots[k])) / whole) : 0);
   }
+  if (double(places_in_the_dark) >= worth_it * double(viewpoints.size())) dark_ = std::move(dark);
   guide_ = std::move(guide);
 }
 
@@ -257,21 +268,34 @@ float AdaptiveLights::mixed(float others, const float* here, const SceneObject& 
 
 SurfaceSample AdaptiveLights::sample(const SceneObject& luminaire, const Point3& from, const Normal3& normal, Point2 u,
                                      float time) const {
-  if (&luminaire != environment_ || guide_.regions() == 0) return lights_.sample(luminaire, from, normal, u, time);
+  const bool guided = &luminaire == environment_ && guide_.regions() > 0;
+  if (!guided && dark_.empty()) return lights_.sample(luminaire, from, normal, u, time);
   const std::uint32_t region = guide_.region(from, normal);
-  const EnvironmentGuide::Guided guided = guide_.sample(region, u);
-  SurfaceSample sampled = environment_->sample_visible(from, guided.place, time);
-  if (one_place_)
-    sampled.pdf *= guided.ratio;
-  else if (sampled.pdf > 0)
-    sampled.pdf = guided_pdf(region, sampled.direction, time);
+  const float a = asked(region);
+  if (u.x >= a) return {};
+  u.x = std::min(u.x / a, one_minus_epsilon);
+  SurfaceSample sampled;
+  if (!guided) {
+    sampled = lights_.sample(luminaire, from, normal, u, time);
+  } else {
+    const EnvironmentGuide::Guided place = guide_.sample(region, u);
+    sampled = environment_->sample_visible(from, place.place, time);
+    if (one_place_)
+      sampled.pdf *= place.ratio;
+    else if (sampled.pdf > 0)
+      sampled.pdf = guided_pdf(region, sampled.direction, time);
+  }
+  sampled.pdf *= a;
   return sampled;
 }
 
 float AdaptiveLights::pdf(const SceneObject& luminaire, const Point3& from, const Normal3& normal, const Vector3& direction,
                           const SurfacePoint& point) const {
-  if (&luminaire != environment_ || guide_.regions() == 0) return lights_.pdf(luminaire, from, normal, direction, point);
-  return guided_pdf(guide_.region(from, normal), direction, point.time);
+  const bool guided = &luminaire == environment_ && guide_.regions() > 0;
+  if (!guided && dark_.empty()) return lights_.pdf(luminaire, from, normal, direction, point);
+  const std::uint32_t region = guide_.region(from, normal);
+  return asked(region) *
+         (guided ? guided_pdf(region, direction, point.time) : lights_.pdf(luminaire, from, normal, direction, point));
 }
 
 float AdaptiveLights::guided_pdf(std::uint32_t region, const Vector3& direction, float time) const {

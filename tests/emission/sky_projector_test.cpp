@@ -390,5 +390,55 @@ TEST(EnvironmentEmission, RowsMayReachThePoles) {
   EXPECT_NEAR(total, 1, 0.01);
 }
 
+// A smooth sky is sampled in cells of some texels, one with a sun in single texels; either way samples have the pdf that is
+// told of them, which integrates to one, and lead back to the numbers they came from.
+TEST(EnvironmentEmission, CellsAreAsLargeAsCostsLittleVariance) {
+  constexpr int width = 512, height = 256;
+  std::vector<float> values(size_t(width * height));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) values[size_t(y * width + x)] = 2 + std::sin(2 * float(M_PI) * float(x) / width);
+  const ImageFile smooth("smooth.exr", width, height, grey(values));
+  for (int y = 60; y < 62; ++y)
+    for (int x = 100; x < 102; ++x) values[size_t(y * width + x)] = 1e5f;
+  const ImageFile sunny("sunny.exr", width, height, grey(values));
+  const auto emission = [](const ImageFile& file) {
+    return create<EmissionShader>("EnvironmentEmission", {{"file", file.path}});
+  };
+  /// The directions of one row, half a texel apart, at which the pdf differs from that before.
+  const auto steps = [](const EmissionShader& e) {
+    int found = 0;
+    float last = 0;
+    for (int i = 0; i < 2 * width; ++i) {
+      const float pdf = e.incident_pdf(towards(100.2, 360.0 * (i + 0.5) / (2 * width)));
+      found += i > 0 && pdf != last;
+      last = pdf;
+    }
+    return found;
+  };
+  const auto wide = emission(smooth), single = emission(sunny);
+  EXPECT_LE(steps(*wide), 128);
+  EXPECT_GE(steps(*single), 400);
+  for (const EmissionShader* e : {wide.get(), single.get()}) {
+    test::Random random(17);
+    double total = 0;
+    constexpr int n = 20000;
+    for (int i = 0; i < n; ++i) {
+      const Point2 u = random.pair();
+      const DirectionSample s = e->sample_incident(u);
+      ASSERT_GT(s.pdf, 0);
+      const IncidentPlaces places = e->incident_places(s.direction);
+      ASSERT_EQ(places.count, 1);
+      // A direction at a border may be rounded into the neighbour, whose pdf is not far from its own.
+      EXPECT_NEAR(e->incident_pdf(s.direction), s.pdf, 0.05f * s.pdf);
+      EXPECT_NEAR(places.at[0].x, u.x, 2e-3f);
+      EXPECT_NEAR(places.at[0].y, u.y, 2e-3f);
+      if (e == wide.get())
+        total += double(e->incident_pdf(towards(std::acos(1 - 2 * double(random())) / degree, 360 * double(random())))) * 4 *
+                 M_PI / n;
+    }
+    if (e == wide.get()) EXPECT_NEAR(total, 1, 0.02);
+  }
+}
+
 }  // namespace
 }  // namespace etendue

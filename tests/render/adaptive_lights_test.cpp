@@ -134,6 +134,50 @@ TEST(AdaptiveLights, NothingIsTooBright) {
   EXPECT_NEAR(bright.mean.y / 1e25, usual.mean.y, 5 * std::hypot(bright.error / 1e25, usual.error));
 }
 
+/// Shows whether the lamp is sampled at the first surface of a camera path: 1, or 0; and checks the pdf.
+class AskedLamps final : public Renderer {
+ public:
+  static void describe(Description<AskedLamps>& d) { d.summary("For tests: whether a lamp is sampled."); }
+  Expectation expectation() const override { return Expectation::biased; }
+  PathClasses finds() const override { return no_paths; }
+
+ private:
+  std::unique_ptr<RenderProcess> begin(const RenderContext& context) const override {
+    return adaptive_process(
+        *this, context, [&scene = context.scene](const LightSampler& lights, const Ray& ray, SampleContext& sample) {
+          Hit hit;
+          SurfacePoint p;
+          if (!scene.nearest(ray, hit)) return Spectrum();
+          scene.locate(ray, hit, p);
+          const LightChoice lamp = lights.choose(p.position, p.normal, sample.numbers.next());
+          const SurfaceSample s = lights.sample(*lamp.luminaire, p.position, p.normal, sample.numbers.next_pair(), 0);
+          if (!(s.pdf > 0)) return Spectrum();
+          EXPECT_NEAR(lights.pdf(*lamp.luminaire, p.position, p.normal, s.direction, s.point), s.pdf, 1e-3f * s.pdf);
+          return Spectrum(1.0f);
+        });
+  }
+};
+
+// A wall in the middle of a room hides a lamp on one side of it from the other.
+TEST(AdaptiveLights, WhereNoLightIsSeenAFourthOfTheSamplesIsTaken) {
+  static const Register<AskedLamps> registered;  // only once this test runs: other tests go through all renderers
+  const auto share = [](const std::string& x, const std::string& more) {
+    const std::string camera =
+        "PerspectiveCamera { from: [" + x + ", 0, 0.5] m, to: [" + x + ", 0, 0] m, up: [0, 1, 0], fov: 80 deg }";
+    return test::measure(
+        test::job_text("AskedLamps { samples: 64 }", camera, 32,
+                       "Disc { radius: 2 m, shader: Lambertian { color: 0.5 } }, Box { centre: [0, 0, 1] m, "
+                       "size: [0.1, 4, 2] m, shader: Lambertian { color: 0 } }, Sphere { centre: [1, 0, 0.8] m, "
+                       "radius: 0.05 m, emission: DiffuseEmission { radiance: 1 } }" +
+                           more));
+  };
+  const test::Measured dark = share("-1", ""), lit = share("1", "");
+  EXPECT_NEAR(dark.mean.y, 0.25, 5 * dark.error + 1e-4);
+  EXPECT_NEAR(lit.mean.y, 1, 1e-4);
+  // A sky that is seen from both sides.
+  EXPECT_NEAR(share("-1", ", Environment { emission: EnvironmentEmission { radiance: 1 } }").mean.y, 1, 1e-4);
+}
+
 TEST(AdaptiveLights, TheSameBitsForAnyThreads) {
   const auto picture = [](int threads) {
     const Ref<Job> job = load_job_text(room("PathTracer { samples: 2 }"), "test.etd");

@@ -9,6 +9,10 @@
 //     makes the variance of the sum least. For the environment this is the mean over its tiles of the roots of their squares:
 //     that of samples with the learned probabilities.
 //
+//   - In a region from which no ray has met any light, a part of the samples is not taken at all (Russian roulette on next
+//     event estimation): with the probability 1 - a no point is sampled, and the pdf of a point is a times what it is else.
+//     So the weights of multiple importance sampling know of it, too, and emitter hits count for more.
+//
 // It learns before the first step, from a few thousand camera paths and some thousand shadow rays for each region. What it
 // learns depends on the scene, the camera and the picture's size alone: not on the seed, so that the samples of every seed are
 // independent of it, and not on a crop. All probabilities are positive wherever those of the other light sampler are, so
@@ -28,7 +32,7 @@ class AdaptiveLights final : public LightSampler {
   AdaptiveLights(const LightSampler& lights, const Scene&);
 
   /// Whether anything can be learned of the scene's luminaires.
-  bool applies() const { return environment_ || chooses_; }
+  bool applies() const { return environment_ || few_; }
   /// Learns; does nothing if it has learned already, or nothing can be learned. An aborted schedule leaves nothing.
   void learn(Schedule&, const RenderProcess&);
 
@@ -44,9 +48,13 @@ class AdaptiveLights final : public LightSampler {
 
  private:
   static constexpr size_t most_luminaires = 64;  ///< with more, those of a region are too many to learn
+  static constexpr float asked_in_the_dark = 0.25f;
 
   /// The learned CDF of the luminaires at a place; null: nothing is learned there.
   const float* chances(const Point3&, const Normal3&) const;
+
+  /// The probability a with which a luminaire is sampled in a region.
+  float asked(std::uint32_t region) const { return dark_.empty() || !dark_[region] ? 1 : asked_in_the_dark; }
 
   /// P of a luminaire, from P_tree and the CDF of the region.
   float mixed(float others, const float* chances, const SceneObject&) const;
@@ -56,10 +64,11 @@ class AdaptiveLights final : public LightSampler {
 
   const LightSampler& lights_;
   const std::span<const SceneObject* const> luminaires_;
-  const bool chooses_;                           ///< whether there are luminaires to choose among
+  const bool few_, chooses_;                     ///< whether there are few luminaires, and more than one to choose among
   const InfiniteObject* environment_ = nullptr;  ///< null: none that is known well enough
   bool one_place_ = false;                       ///< whether each of its directions has one place in the unit square
   EnvironmentGuide guide_;                       ///< without regions: nothing is learned yet
+  std::vector<bool> dark_;                       ///< the regions without light; empty: none, or too few to be worth it
   std::vector<float> chances_;                   ///< for each region the CDF of its luminaires; all 0: none was seen
 };
 

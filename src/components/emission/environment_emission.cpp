@@ -1,6 +1,7 @@
 // EnvironmentEmission: light from all directions at infinity, given by an image or a map.
 
 #include "at_infinity.h"
+#include "core/huge_pages.h"
 #include "equal_area.h"
 #include "etendue/core/warp.h"
 #include "etendue/describe/color.h"
@@ -19,12 +20,19 @@ namespace {
 // their centres (constant beyond the centres of the first and last row). With `rows: poles` the centre of the first row lies at
 // the top and that of the last row at the bottom: row j of h lies at v = j / (h - 1).
 //
-// Importance sampling: a pdf that is constant over each texel's solid angle
-//   Omega_row = (2 pi / width) (cos(theta_top) - cos(theta_bottom)),
-// in proportion to the mean of the bilinear radiance's importance over the texel. The mean of a hat function over its own
-// texel is 3/4, over each neighbour 1/8, in both dimensions, so the mean is a 3 x 3 filter, and it is positive wherever the
-// radiance is. A texel is chosen with probability importance * Omega / sum, a point in it uniformly in longitude and in
-// cos(theta), hence pdf = importance / sum [1/sr].
+// Importance sampling: a pdf that is constant over each cell's solid angle. A cell is a texel, or b x b texels:
+//   Omega_row = (2 pi / columns) (cos(theta_top) - cos(theta_bottom)),
+// in proportion to the mean of the bilinear radiance's importance f over the cell. The mean of a hat function over its own
+// texel is 3/4, over each neighbour 1/8, in both dimensions, so the mean over a texel is a 3 x 3 filter, and it is positive
+// wherever the radiance is. A cell is chosen with probability importance * Omega / sum, a point in it uniformly in longitude
+// and in cos(theta), hence pdf = importance / sum [1/sr].
+//
+// Most of what a sample costs is that a large table is not in the cache: so cells are as large as costs nearly no variance.
+// An estimate of the integral F of f by f / p has the second moment E = integral of f^2 / p. With texels as cells it is F^2,
+// the least; with larger ones, over which p is constant,
+//   E / F^2 = sum over cells of Omega (integral of f^2) / (integral of f), over F.
+// The side b is the largest power of two for which this is at most 1.02: 8 or so for a sky with clouds, 1 where the sun is
+// seen.
 class EnvironmentEmission final : public EmissionShader {
  public:
   static void describe(Description<EnvironmentEmission>& d) {
@@ -68,7 +76,8 @@ class EnvironmentEmission final : public EmissionShader {
 
   void prepare() override {
     image_ = {};
-    texels_.clear();
+    texels_ = {};
+    cells_.clear();
     if (!map && file.empty()) fail("radiance", "a map or a colour is needed");
     constant_map_ = map && map->constant();
     factor_ = scale;
@@ -91,11 +100,13 @@ class EnvironmentEmission final : public EmissionShader {
     if (lux > 0 && !illuminant)
       fail("illuminance", "is known only of an image in its colour space's white; use a scale, or leave `illuminant` on");
     if (lux > 0) ask_for(image_illuminance());
+    texels_.assign(image_.rgb.begin(), image_.rgb.end());
+    image_.rgb = {};
   }
 
   Spectrum radiance(const SurfacePoint& p, const Vector3&, const Wavelengths& w) const override {
     const Vector3 towards = p.object_position - Point3{};
-    if (!image_.rgb.empty()) {
+    if (!texels_.empty()) {
       const Point2 at = place(towards);
       prefetch_pdf(at);  // a path whose BSDF sample escaped to infinity evaluates incident_pdf next, for its MIS weight
       const std::array<float, 3> rgb = look_up(at);
@@ -112,7 +123,7 @@ class EnvironmentEmission final : public EmissionShader {
   /// radiance is that of the mean RGB.
   Spectrum power(const SceneObject& object, const Wavelengths& w) const override {
     const float sphere_times_disc = pi * object.area();
-    if (!image_.rgb.empty())
+    if (!texels_.empty())
       return rgb_spectrum(*space_, factor_ * mean_[0], factor_ * mean_[1], factor_ * mean_[2], image_use(), w) *
              sphere_times_disc;
     if (constant_map_) return map->color({}, w, ColorUse::radiance) * (factor_ * sphere_times_disc);
@@ -129,31 +140,33 @@ class EnvironmentEmission final : public EmissionShader {
   }
 
   bool only_at_infinity() const override { return true; }
-  bool knows_incident() const override { return texels_.total() > 0; }
+  bool knows_incident() const override { return cells_.total() > 0; }
 
   DirectionSample sample_incident(Point2 u) const override {
-    if (!(texels_.total() > 0)) return {};
-    const auto [x, y, within, pdf] = texels_.choose(u);
-    prefetch_texels(int(x), int(y), within);
-    const float phi = 2 * pi * (float(x) + within.x) / float(image_.width);
+    if (!(cells_.total() > 0)) return {};
+    const auto [x, y, within, pdf] = cells_.choose(u);
+    const float side = float(size_t(1) << cell_bits_), column = side * (float(x) + within.x),
+                row = side * (float(y) + within.y);
+    prefetch_texels(column, row);
+    const float phi = 2 * pi * column / float(image_.width);
     const float cosine = float(lerp(double(within.y), row_cosines_[y], row_cosines_[y + 1]));
     const float sine = safe_sqrt((1 - cosine) * (1 + cosine));
     return {{sine * std::sin(phi), cosine, -sine * std::cos(phi)}, pdf};
   }
   float incident_pdf(const Vector3& towards) const override {
-    if (!(texels_.total() > 0)) return 0;
-    const auto [x, y] = texel_at(place(towards));
-    return texels_.pdf(x, y);
+    if (!(cells_.total() > 0)) return 0;
+    const auto [x, y] = cell_at(place(towards));
+    return cells_.pdf(x, y);
   }
-  int most_incident_places() const override { return texels_.total() > 0; }
+  int most_incident_places() const override { return cells_.total() > 0; }
   IncidentPlaces incident_places(const Vector3& towards) const override {
     IncidentPlaces places;
-    if (!(texels_.total() > 0)) return places;
+    if (!(cells_.total() > 0)) return places;
     const Point2 at = place(towards);
-    const auto [x, y] = texel_at(at);
+    const auto [x, y] = cell_at(at);
     const double down = (double(towards.y) - row_cosines_[y]) / (row_cosines_[y + 1] - row_cosines_[y]);
-    const Point2 within{clamp(at.x * float(image_.width) - float(x), 0, 1), clamp(float(down), 0, 1)};
-    places.add(texels_.place(x, y, within), texels_.pdf(x, y));
+    const Point2 within{clamp(at.x * float(image_.width >> cell_bits_) - float(x), 0, 1), clamp(float(down), 0, 1)};
+    places.add(cells_.place(x, y, within), cells_.pdf(x, y));
     return places;
   }
 
@@ -180,6 +193,9 @@ class EnvironmentEmission final : public EmissionShader {
     if (!rows_at_poles()) return double(y) / double(h);
     return std::clamp((double(y) - 0.5) / double(h - 1), 0.0, 1.0);
   }
+
+  /// cos(theta) of the upper border of row y.
+  double row_cosine(size_t y) const { return std::cos(3.14159265358979323846 * border(y, size_t(image_.height))); }
 
   static double lerp(double t, double a, double b) { return (1 - t) * a + t * b; }
 
@@ -217,26 +233,26 @@ class EnvironmentEmission final : public EmissionShader {
     for (size_t i = 0; i < 3; ++i) rgb[i] = etendue::lerp(fy, etendue::lerp(fx, a[i], b[i]), etendue::lerp(fx, c[i], d[i]));
     return rgb;
   }
-  /// Column and row of the texel that contains (u, v).
-  std::pair<size_t, size_t> texel_at(Point2 p) const {
-    return {size_t(std::min(int(p.x * float(image_.width)), image_.width - 1)), size_t(clamp_row(int(row_at(p.y) + 0.5f)))};
+  /// Column and row of the cell that contains (u, v).
+  std::pair<size_t, size_t> cell_at(Point2 p) const {
+    return {size_t(std::min(int(p.x * float(image_.width)), image_.width - 1)) >> cell_bits_,
+            size_t(clamp_row(int(row_at(p.y) + 0.5f))) >> cell_bits_};
   }
 
   // The image is rarely in the cache, and the addresses of a lookup are known well before the values are needed: after a
   // direction is sampled the BSDF is evaluated first.
   void prefetch_pdf(Point2 at) const {
-    const auto [x, y] = texel_at(at);
-    texels_.prefetch(x, y);
+    const auto [x, y] = cell_at(at);
+    cells_.prefetch(x, y);
   }
-  /// Prefetches the texels that `look_up` will read for a direction in a texel.
-  void prefetch_texels(int x, int y, Point2 within) const {
-    const int left = within.x < 0.5f ? std::max(x - 1, 0) : x;
-    const int above = within.y < 0.5f ? std::max(y - 1, 0) : y;
+  /// Prefetches the texels that `look_up` will read at a place, given in texels from the upper left corner.
+  void prefetch_texels(float column, float row) const {
+    const int left = std::clamp(int(column - 0.5f), 0, image_.width - 1), above = clamp_row(int(row - 0.5f));
     __builtin_prefetch(texel(left, above));
     __builtin_prefetch(texel(left, clamp_row(above + 1)));
   }
 
-  const float* texel(int x, int y) const { return image_.rgb.data() + (size_t(y) * size_t(image_.width) + size_t(x)) * 3; }
+  const float* texel(int x, int y) const { return texels_.data() + (size_t(y) * size_t(image_.width) + size_t(x)) * 3; }
 
   /// Sets the factor for the requested illuminance. `given`: the illuminance with a factor of 1 [lx].
   void ask_for(double given) {
@@ -248,8 +264,8 @@ class EnvironmentEmission final : public EmissionShader {
   double image_illuminance() const {
     const size_t width = size_t(image_.width);
     double sum = 0;
-    for (size_t y = 0; y + 1 < row_cosines_.size(); ++y) {
-      const double top = std::max(row_cosines_[y], 0.0), bottom = std::max(row_cosines_[y + 1], 0.0);
+    for (size_t y = 0; y < size_t(image_.height); ++y) {
+      const double top = std::max(row_cosine(y), 0.0), bottom = std::max(row_cosine(y + 1), 0.0);
       const double projected = 3.14159265358979323846 / double(width) * (top * top - bottom * bottom);  // integral of cos dw
       for (size_t x = 0; x < width && projected > 0; ++x) {
         const float* rgb = &image_.rgb[(y * width + x) * 3];
@@ -314,26 +330,70 @@ class EnvironmentEmission final : public EmissionShader {
             0.75f * column(x) + 0.125f * (column(x == 0 ? w - 1 : x - 1) + column(x + 1 == w ? 0 : x + 1));
     }
 
-    row_cosines_.resize(h + 1);
-    for (size_t y = 0; y <= h; ++y) row_cosines_[y] = std::cos(3.14159265358979323846 * border(y, h));
-    std::vector<double> solid_angles(h);
+    std::vector<double> cosines(h + 1), solid_angles(h);
+    for (size_t y = 0; y <= h; ++y) cosines[y] = row_cosine(y);
     std::array<double, 3> sums{};
     for (size_t y = 0; y < h; ++y) {
-      solid_angles[y] = 2 * 3.14159265358979323846 / double(w) * (row_cosines_[y] - row_cosines_[y + 1]);
+      solid_angles[y] = 2 * 3.14159265358979323846 / double(w) * (cosines[y] - cosines[y + 1]);
       for (size_t x = 0; x < w; ++x)
         for (size_t c = 0; c < 3; ++c) sums[c] += double(image_.rgb[(y * w + x) * 3 + c]) * solid_angles[y];
     }
-    texels_.build(importance, w, solid_angles);
+    cell_bits_ = 0;
+    while (Cells(importance, solid_angles, cell_bits_ + 1).good()) ++cell_bits_;
+    const Cells cells(importance, solid_angles, cell_bits_);
+    cells_.build(cells.importance, cells.columns, cells.solid_angles);
+    row_cosines_.clear();
+    for (size_t y = 0; y < h; y += size_t(1) << cell_bits_) row_cosines_.push_back(cosines[y]);
+    row_cosines_.push_back(cosines[h]);
     for (size_t c = 0; c < 3; ++c) mean_[c] = float(sums[c] / (4 * 3.14159265358979323846));
   }
 
+  /// Texels put together to cells of 2^bits in each dimension, and what they do to the variance.
+  struct Cells {
+    size_t columns = 0;
+    std::vector<float> importance;     ///< means over the cells
+    std::vector<double> solid_angles;  ///< of the cells of each row [sr]
+    double second_moment = infinity;   ///< E / F^2
+
+    Cells(const std::vector<float>& texels, const std::vector<double>& rows, int bits) {
+      const size_t side = size_t(1) << bits, width = texels.size() / rows.size();
+      if (bits > 0 && (width % side != 0 || width / side < fewest)) return;
+      columns = width / side;
+      double whole = 0, sum = 0;
+      for (size_t top = 0; top < rows.size(); top += side) {
+        const size_t bottom = std::min(top + side, rows.size());
+        double angle = 0;
+        for (size_t y = top; y < bottom; ++y) angle += rows[y] * double(side);
+        solid_angles.push_back(angle);
+        for (size_t left = 0; left < width; left += side) {
+          double f = 0, f2 = 0;
+          for (size_t y = top; y < bottom; ++y)
+            for (size_t x = left; x < left + side; ++x) {
+              const double value = double(texels[y * width + x]);
+              f += value * rows[y];
+              f2 += value * value * rows[y];
+            }
+          importance.push_back(float(f / angle));
+          whole += f;
+          if (f > 0) sum += angle * f2 / f;
+        }
+      }
+      second_moment = whole > 0 ? sum / whole : infinity;
+    }
+    bool good() const { return second_moment <= 1.02; }
+
+    static constexpr size_t fewest = 128;  ///< columns: such a table is in the nearest cache
+  };
+
   const RgbSpace* space_ = nullptr;
   bool constant_map_ = true;
-  float factor_ = 1;  // multiplies all radiance
-  LinearImage image_;
+  float factor_ = 1;                 // multiplies all radiance
+  LinearImage image_;                // once it is read, its size only
+  HugeVector<float> texels_;         // its RGB; empty: there is no image
   std::array<float, 3> mean_{};      // mean RGB over the sphere
-  TexelDistribution texels_;         // by importance times solid angle
-  std::vector<double> row_cosines_;  // cos(theta) at the rows' borders
+  int cell_bits_ = 0;                // a cell has 2^bits texels in each dimension
+  TexelDistribution cells_;          // by importance times solid angle
+  std::vector<double> row_cosines_;  // cos(theta) at the borders of rows of cells
 };
 
 const Register<EnvironmentEmission> registered;

@@ -179,7 +179,7 @@ class BvhScene final : public Scene {
 
   Primitives primitives_;
   WideBvh bvh_;
-  std::vector<Block> blocks_;
+  HugeVector<Block> blocks_;
   std::vector<const SceneObject*> objects_;
 };
 

@@ -271,7 +271,7 @@ class Builder {
 
   /// Copies the nodes in depth-first order, each followed by its first child, independent of the order in which threads made
   /// them.
-  std::uint32_t copy(std::uint32_t number, std::vector<WideNode>& to) const {
+  std::uint32_t copy(std::uint32_t number, HugeVector<WideNode>& to) const {
     const std::uint32_t place = std::uint32_t(to.size());
     to.push_back(nodes_[number]);
     for (int i = 0; i < lanes; ++i) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/huge_pages.h"
 #include "etendue/core/ray.h"
 #include "geometry/finite_ray.h"
 #include "geometry/lanes.h"
@@ -22,7 +23,7 @@ struct alignas(64) WideNode {
 /// A hierarchy over primitives: the nodes, root first (none: there are no primitives), and the primitives' indices in the order
 /// of the leaves. A leaf's child and count give its range in `order`.
 struct WideBvh {
-  std::vector<WideNode> nodes;
+  HugeVector<WideNode> nodes;
   std::vector<std::uint32_t> order;
 };
 

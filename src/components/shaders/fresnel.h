@@ -56,10 +56,26 @@ inline float fresnel_conductor(float cosine, float eta, float k) {
   const float p = (sum * c2 + s2 * s2 - ac2 * s2) / std::max(sum * c2 + s2 * s2 + ac2 * s2, 1e-20f);
   return clamp(0.5f * s * (1 + p), 0, 1);
 }
+/// The same of all wavelengths at once.
 inline Spectrum fresnel_conductor(float cosine, Spectrum eta, Spectrum k) {
-  Spectrum r;
-  for (int i = 0; i < spectrum_size; ++i) r.set(i, fresnel_conductor(cosine, eta[i], k[i]));
-  return r;
+  using Lanes = detail::Lanes;
+  const auto root = [](Lanes x) {
+    Lanes r;
+    for (int i = 0; i < spectrum_size; ++i) r[i] = std::sqrt(x[i]);
+    return r;
+  };
+  const Lanes n = eta.lanes(), kappa = k.lanes(), zero{}, one = zero + 1.0f, least = zero + 1e-20f;
+  const float c = clamp(cosine, 0, 1), c2 = c * c, s2 = 1 - c2;
+  const Lanes d = n * n - kappa * kappa - s2, product = 2 * n * kappa;
+  const Lanes sum = root(d * d + product * product);
+  const Lanes larger = root(0.5f * (sum + (d > zero ? d : -d))), smaller = product / (2 * larger);
+  const Lanes a = d > zero ? larger : product > zero ? smaller : zero;
+  const Lanes ac2 = 2 * a * c;
+  const auto over = [&](Lanes x, Lanes y) { return x / (y > least ? y : least); };
+  const Lanes s = over(sum + c2 - ac2, sum + c2 + ac2);
+  const Lanes p = over(sum * c2 + s2 * s2 - ac2 * s2, sum * c2 + s2 * s2 + ac2 * s2);
+  const Lanes r = 0.5f * s * (1 + p), low = r > zero ? r : zero;
+  return Spectrum(low < one ? low : one);
 }
 
 /// The mean of fresnel_dielectric over diffuse illumination, the integral of 2 F(c) c dc over the cosine c. From the side of
