@@ -87,6 +87,8 @@ class Scene : public SceneObject, public ObjectContainer {
   bool has_interiors() const { return has_interiors_; }
   /// Whether any surface has null scattering, so that shadow rays may have to continue through surfaces.
   bool has_null_surfaces() const { return has_null_surfaces_; }
+  /// Whether any surface or medium fluoresces, so that the wavelengths of a path may change.
+  bool has_fluorescence() const { return has_fluorescence_; }
   /// Whether a point may lie inside an object that paths can enter: a quick conservative test by bounding boxes.
   bool maybe_inside(const Point3& position) const {
     for (const Bounds3& box : interiors_)
@@ -165,7 +167,7 @@ class Scene : public SceneObject, public ObjectContainer {
   std::shared_ptr<const NestedLuminaires> nested_;  // null: none, or this scene is nested in another one
   std::vector<Bounds3> interiors_;  // bounds of the objects that paths can enter, and of scenes with such objects; if there are
                                     // many, only their union, and interior_tree_
-  bool has_interiors_ = false, has_null_surfaces_ = false, has_unseen_ = false, unbounded_ = false;
+  bool has_interiors_ = false, has_null_surfaces_ = false, has_unseen_ = false, unbounded_ = false, has_fluorescence_ = false;
   struct Node {
     Bounds3 box;
     std::uint32_t next = 0;  // index of the node after all descendants; 0 for a leaf

@@ -25,6 +25,7 @@ Spectrum bidirectional_radiance(const RenderContext& context, const LightSampler
     }
     return true;
   });
+  if (context.scene.has_fluorescence() && !photons) paths.follow_fluorescence(k - 1, !settings.weighted);
   if (use.from_camera()) paths.from_camera(ray, {k, settings.roulette_depth, directions ? &*directions : nullptr});
   if (use.emitter_hits) sum.add(paths.segment_emission());
   if (use.connecting()) paths.from_luminaire(ray.time, {k - 1, settings.roulette_depth});

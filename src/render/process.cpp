@@ -45,7 +45,13 @@ CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& sour
   PathRecord* const record = sink.record;
   if (record) [[unlikely]]
     record_camera(*record, context.camera, from.ray);
+  // Fluorescence changes the wavelengths of the path; its value still belongs to those at which it left the film.
+  std::optional<Wavelengths> film;
+  if (context.scene.has_fluorescence()) [[unlikely]]
+    film = s.wavelengths;
   s.value = from.weight * radiance(from.ray, sample);
+  if (film) [[unlikely]]
+    s.wavelengths = *film;
   if (Features* const features = sink.features; features && features->depth > 0) [[unlikely]]
     features->depth += context.camera.reach(from.ray).nearest;
   weigh_parts(from.weight, sink);

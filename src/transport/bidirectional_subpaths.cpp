@@ -31,11 +31,18 @@ BidirectionalSubpaths::BidirectionalSubpaths(const RenderContext& context, const
       light_wavelengths_(sample.wavelengths),
       front_(context.scene) {}
 
+void BidirectionalSubpaths::follow_fluorescence(int most, bool dyes) {
+  levels_.emplace(sample_.wavelengths, most, sample_.numbers.fork("fluorescence"), sample_.arena);
+  light_wavelengths_ = (*levels_)[levels_->count()];
+  dyes_ = dyes;
+}
+
 void BidirectionalSubpaths::from_camera(const Ray& ray, const SubpathLimits& limits) {
   struct Emission final : SegmentEvents {
     BidirectionalSubpaths& paths;
     explicit Emission(BidirectionalSubpaths& p) : paths(p) {}
     void emitted(int length, const Spectrum& light) override {
+      if (!paths.at_last_level(paths.camera_.back())) return;
       PathContribution found{0, length + 1, false, light};
       if (PathStates* const states = PathStates::current())
         found.matches = states->ended(paths.camera_.back().path, nullptr, paths.emitting_.object);
@@ -47,14 +54,20 @@ void BidirectionalSubpaths::from_camera(const Ray& ray, const SubpathLimits& lim
   directions_ = limits.directions;
   SubpathLimits own = limits;
   own.reverse_pdfs = weights_.weighted;
+  own.levels = levels_ ? &*levels_ : nullptr;
+  own.dyes = dyes_;
   generate_camera_subpath(context_, ray, own, sample_, camera_, emission);
 }
 
 void BidirectionalSubpaths::from_luminaire(float time, const SubpathLimits& limits) {
   SampleContext light{light_wavelengths_, sample_.numbers.fork("light"), sample_.arena, {.abort = sample_.sink.abort}};
   EmittedLight emitted;
-  generate_light_subpath(context_.scene, lights_, time, {limits.longest, limits.roulette_depth, directions_, weights_.weighted},
-                         light, light_, emitted);
+  SubpathLimits own = limits;
+  own.directions = directions_;
+  own.reverse_pdfs = weights_.weighted;
+  own.levels = levels_ ? &*levels_ : nullptr;
+  own.dyes = dyes_;
+  generate_light_subpath(context_.scene, lights_, time, own, light, light_, emitted);
   if (weights_.weighted && light_.size() > 1)
     y0_next_event_point_pdf_ = next_event_point_pdf(lights_, light_[1], light_[0], light_[1].out);
 }
@@ -81,6 +94,7 @@ std::span<const PathContribution> BidirectionalSubpaths::emitter_hits(int t) con
 
 void BidirectionalSubpaths::add_emitter_hits(int t, std::vector<PathContribution>& hits) const {
   const SubpathVertex& z = camera_vertex(t);
+  if (!at_last_level(camera_vertex(t - 1))) return;
   if (z.kind == PathVertex::Kind::escape) {
     SurfacePoint point;
     Ray ray;
@@ -99,8 +113,9 @@ void BidirectionalSubpaths::add_emitter_hits(int t, std::vector<PathContribution
 
 void BidirectionalSubpaths::add_emitter_hit(const SubpathVertex& z, const SurfacePoint& point, int t,
                                             std::vector<PathContribution>& hits) const {
-  PathContribution found{0, t, false, z.throughput * point.object->emission->radiance(point, z.out, sample_.wavelengths),
-                         point.object};
+  PathContribution found{
+      0, t, false, z.throughput * point.object->emission->radiance(point, z.out, wavelengths_beyond(camera_vertex(t - 1))),
+      point.object};
   if (found.light.black()) return;
   if (t > 2 && weights_.weighted) {
     const SubpathVertex& x1 = camera_vertex(t - 1);
@@ -120,8 +135,9 @@ void BidirectionalSubpaths::add_emitter_hit(const SubpathVertex& z, const Surfac
 
 std::optional<PathContribution> BidirectionalSubpaths::next_event(int t) const {
   const SubpathVertex& z = camera_vertex(t);
+  if (!at_last_level(z)) return {};
   NumberStream numbers = sample_.numbers.fork("luminaire", std::uint32_t(t));
-  const auto c = connect_to_luminaire(context_.scene, lights_, z, sample_.wavelengths, numbers, sample_.arena);
+  const auto c = connect_to_luminaire(context_.scene, lights_, z, wavelengths_beyond(z), numbers, sample_.arena);
   if (!c) return {};
   PathContribution found{1, t, false, c->light, c->luminaire.point.object};
   if (PathStates* const states = PathStates::current()) [[unlikely]]
@@ -142,8 +158,9 @@ std::optional<PathContribution> BidirectionalSubpaths::next_event(int t) const {
 
 std::optional<PathContribution> BidirectionalSubpaths::connect(int s, int t) const {
   const SubpathVertex &y = light_vertex(s), &z = camera_vertex(t);
+  if (y.level != z.level) return {};
   NumberStream numbers = sample_.numbers.fork("connection", std::uint32_t(s * 0x10000 + t));
-  const auto c = etendue::connect(context_.scene, y, z, sample_.wavelengths, numbers, sample_.arena);
+  const auto c = etendue::connect(context_.scene, y, z, wavelengths_beyond(z), numbers, sample_.arena);
   if (!c) return {};
   PathContribution found{s, t, false, c->light, light_[0].point.object};
   if (PathStates* const states = PathStates::current()) [[unlikely]]
@@ -173,8 +190,9 @@ std::optional<PathContribution> BidirectionalSubpaths::connect(int s, int t) con
 
 std::optional<PathContribution> BidirectionalSubpaths::connect_to_lens(int s) const {
   const SubpathVertex& y = light_vertex(s);
+  if (y.level != 0) return {};
   NumberStream numbers = sample_.numbers.fork("lens", std::uint32_t(s));
-  const auto c = etendue::connect_to_lens(context_, y, light_wavelengths_, numbers, sample_.arena);
+  const auto c = etendue::connect_to_lens(context_, y, light_wavelengths(), numbers, sample_.arena);
   if (!c) return {};
   PathContribution found{s, 1, false, c->light, light_[0].point.object, 1, c->lens.film};
   if (PathStates* const states = PathStates::current()) [[unlikely]]
@@ -255,7 +273,7 @@ void add_contribution(SampleContext& sample, const Wavelengths& of_light, const 
     report_light(sample.sink, found.length(), light, found.luminaire, found.matches);
   }
   if (sample.sink.records) [[unlikely]] {
-    const double y = to_xyz(found.light, splat ? of_light : sample.wavelengths).y;
+    const double y = to_xyz(found.light, of_light).y;
     sample.sink.records.add(PathTracingExcess{found.weight * y * y * (found.path_tracing_moment - found.weight),
                                               splat ? std::optional(found.film) : std::nullopt});
   }

@@ -38,7 +38,7 @@ std::string caustics(const Names& luminaires, const SceneTraits& t) {
          some_of(onto) + " (caustics)";
 }
 
-constexpr std::array<PathClassInfo, 16> classes{{
+constexpr std::array<PathClassInfo, 18> classes{{
     {seen_luminaires, "seen_luminaires", "luminaires that the camera sees directly",
      [](const SceneTraits& t) { return told("", t.seen_areas, " where the camera sees it directly"); }},
     {seen_environments, "seen_environments", "environments behind the scene",
@@ -85,6 +85,10 @@ constexpr std::array<PathClassInfo, 16> classes{{
        return "caustics of " + some_of(lamps) + " that " + some_of(t.null_scattering) + verb(t.null_scattering, "reflect") +
               " or" + verb(t.null_scattering, "let") + " pass";
      }},
+    {fluorescent_surfaces, "fluorescent_surfaces", "fluorescence of surfaces",
+     [](const SceneTraits& t) { return told("the fluorescence of ", t.fluorescent); }},
+    {fluorescent_media, "fluorescent_media", "fluorescence of dyes in media",
+     [](const SceneTraits& t) { return told("the fluorescence in ", t.dyed_media); }},
 }};
 
 }  // namespace

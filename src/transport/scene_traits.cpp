@@ -4,6 +4,8 @@
 
 #include <set>
 
+#include "etendue/reradiation.h"
+
 namespace etendue {
 namespace {
 
@@ -47,12 +49,14 @@ class Look {
       if (lobes & diffuse_lobes) note(t.diffuse);
       if (lobes & glossy_lobes) note(t.glossy);
       if (lobes & null_scattering) note(t.null_scattering);
+      if (fluorescent(shader)) note(t.fluorescent);
       if (shader->has_subsurface_exit()) note(t.subsurface_exits);
     }
     if (object.interior) {
       note(t.media);
       if (object.interior->emits()) note(t.emissive_media);
       if (!object.interior->homogeneous()) note(t.heterogeneous_media);
+      if (dyed(object.interior.get())) note(t.dyed_media);
     }
     if (object.luminaire()) {
       if (object.delta())

@@ -54,10 +54,15 @@ void grow(Growing& walk, float pdf, const SubpathLimits& limits, std::vector<Sub
   float more = 1;  // product of p / p_scatter: without a guide the throughput would be larger by this factor, and that decides
                    // the roulette
   walk.stores_subpath = walk.observed = true;
+  walk.levels = limits.levels;
+  walk.reradiates = limits.levels != nullptr;
+  walk.reradiates_in_media = walk.reradiates && limits.dyes;
+  walk.level = subpath.front().level;
   const StoringEvents at{{}, walk, front, subpath, events, pdf};
   while (walk.length < walk.longest && walk.next_vertex(at)) {
     if (subpath.size() % 64 == 0 && walk.sample.aborted()) return;
     if (walk.vertex.kind == PathVertex::Kind::escape && walk.transport == Transport::importance) return;
+    walk.choose_reradiation();
     SubpathVertex& v = add(walk, pdf, front, subpath);
     if (v.kind == PathVertex::Kind::escape) return;
     const bool chooses = chosen || (v.scatter && v.scatter->has_choice());
@@ -91,6 +96,7 @@ void store_vertex(const Walk<false>& walk, const SubpathVertex& before, float pd
   static_cast<PathVertex&>(v) = walk.vertex;
   v.infinite = v.kind == PathVertex::Kind::escape;
   v.hero_only = walk.sample.wavelengths.single();
+  v.level = walk.level;
   v.throughput = walk.throughput;
   v.mean_transmittance = walk.segment_transmittance.average();
   if (v.in_medium())
@@ -145,6 +151,7 @@ bool generate_light_subpath(const Scene& scene, const LightSampler& lights, floa
   SubpathVertex& first = subpath.emplace_back();
   first.kind = PathVertex::Kind::luminaire;
   first.infinite = light.infinite;
+  first.level = limits.levels ? limits.levels->count() : 0;
   first.point = light.point;
   first.pdf_forward = light.probability * (light.infinite ? light.pdf_direction : light.pdf_position);
   if (const PathStates* const states = PathStates::current()) [[unlikely]]

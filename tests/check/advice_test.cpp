@@ -22,7 +22,7 @@ TEST(AdviceText, every_kind_of_light_has_its_words) {
   for (std::vector<std::string>* list :
        {&all.specular, &all.refracting, &all.smooth, &all.diffuse, &all.glossy, &all.points, &all.distant, &all.areas,
         &all.environments, &all.media, &all.emissive_media, &all.heterogeneous_media, &all.subsurface_exits,
-        &all.null_scattering, &all.seen_areas, &all.seen_environments})
+        &all.null_scattering, &all.fluorescent, &all.dyed_media, &all.seen_areas, &all.seen_environments})
     list->push_back("'it'");
   EXPECT_EQ(paths_in(all), all_paths);
   EXPECT_EQ(paths_in({}), no_paths);

@@ -48,6 +48,16 @@ TEST(VerifyGuide, DensitiesStandInAllWeights) {
   EXPECT_EQ(process.wait(), 0) << process.out();
 }
 
+// BidirectionalPathTracer says that it loses the fluorescence of dyes in media.
+TEST(VerifyFluorescence, DyesInMediaAreFoundFromBothEnds) {
+  TemporaryFolder folder;
+  Process process(ETENDUE_BINARY_DIR "/etendue",
+                  {"verify", ETENDUE_SOURCE_DIR "/scenes/verify/fluorescent_water.etd", "--size", "32x24", "--samples", "1024",
+                   "--renderers", "PathTracer,GuidedPathTracer,LightTracer"},
+                  folder);
+  EXPECT_EQ(process.wait(), 0) << process.out();
+}
+
 // Even so, a quarter of the light too much is found in every scene.
 TEST_P(VerifyScenes, AnErrorIsNoticed) {
   EXPECT_EQ(verify({"--inject", "1.25", "--renderers", "PathTracer,BidirectionalPathTracer", "--quiet"}), 1);
@@ -64,8 +74,10 @@ INSTANTIATE_TEST_SUITE_P(
     Scenes, VerifyScenes,
     ::testing::Values(
         VerifyScene{"cornell_box", 256, light + guided + distribution + photons + chains + virtual_lights},
-        VerifyScene{"glossy_box", 192, light + guided + distribution}, VerifyScene{"caustic_through_glass", 512, photons},
-        VerifyScene{"door_ajar", 256, light}, VerifyScene{"mis_plates", 256, light + distribution},
+        VerifyScene{"glossy_box", 192, light + guided + distribution},
+        VerifyScene{"fluorescent_box", 256, light + guided + ",SimplePathTracer,BidirectionalPathTracer{guided: true}"},
+        VerifyScene{"caustic_through_glass", 512, photons}, VerifyScene{"door_ajar", 256, light},
+        VerifyScene{"mis_plates", 256, light + distribution},
         VerifyScene{"fog_with_spot", 512, light + guided + ",MultiplexedMetropolis{mutations_per_sample: 1}"},
         VerifyScene{"nested_dielectrics", 512, guided_both_ways}, VerifyScene{"sphere_and_environment", 256, guided},
         VerifyScene{"every_rough_shader", 256, guided}, VerifyScene{"every_mirror_shader", 512, guided},

@@ -28,7 +28,7 @@ class FaultyGuidedTracer final : public Renderer {
     lobes.set({}, 1, {{0.6f, 0, -0.8f}, 0, 1, 0.2f});
     guide_ = SeenLobes(lobes, {});
   }
-  PathClasses finds() const override { return all_paths & ~(delta_caustics | delta_caustics_in_mirrors); }
+  PathClasses finds() const override { return all_paths & ~(delta_caustics | delta_caustics_in_mirrors | fluorescence); }
 
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
     CameraWalk<false> walk(context.scene, sample, ray, max_depth);

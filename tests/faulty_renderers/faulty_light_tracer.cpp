@@ -21,7 +21,8 @@ class FaultyLightTracer final : public Renderer {
   }
   bool splats() const override { return true; }
   PathClasses finds() const override {
-    return all_paths & ~(specular_views | seen_environments | delta_caustics_in_mirrors | emitting_media | subsurface_light);
+    return all_paths &
+           ~(specular_views | seen_environments | delta_caustics_in_mirrors | emitting_media | subsurface_light | fluorescence);
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {

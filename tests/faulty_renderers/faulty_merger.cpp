@@ -20,7 +20,7 @@ class FaultyMerger final : public Renderer, public ShrinkingBias {
     describe_fault<&FaultyMerger::fault>(d);
   }
   bool splats() const override { return true; }
-  PathClasses finds() const override { return all_paths & ~subsurface_light; }
+  PathClasses finds() const override { return all_paths & ~(subsurface_light | fluorescence); }
   Expectation expectation() const override { return Expectation::consistent; }
   double bias_width(std::uint32_t step) const override { return std::sqrt(shrunk_area(step, alpha)); }
   Estimator estimator() const override { return Estimator::correlated; }

@@ -22,7 +22,7 @@ class FaultyPathTracer final : public Renderer {
     describe_roulette_depth<&FaultyPathTracer::roulette_depth>(d);
   }
   PathClasses finds() const override {
-    return all_paths & ~(delta_caustics | delta_caustics_in_mirrors | emitting_media | subsurface_light);
+    return all_paths & ~(delta_caustics | delta_caustics_in_mirrors | emitting_media | subsurface_light | fluorescence);
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {

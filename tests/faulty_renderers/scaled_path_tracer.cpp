@@ -17,7 +17,7 @@ class ScaledPathTracer final : public Renderer {
         .member<&ScaledPathTracer::factor>("factor", "1", "what all light is multiplied by", range(0, 100));
     describe_max_depth<&ScaledPathTracer::max_depth>(d);
   }
-  PathClasses finds() const override { return all_paths & ~(delta_caustics | delta_caustics_in_mirrors); }
+  PathClasses finds() const override { return all_paths & ~(delta_caustics | delta_caustics_in_mirrors | fluorescence); }
 
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {
     CameraWalk walk(context.scene, sample, ray, max_depth);

@@ -29,7 +29,8 @@ class SmallPhotonMapper final : public Renderer, public ShrinkingBias {
     describe_max_depth<&SmallPhotonMapper::max_depth>(d);
   }
   PathClasses finds() const override {
-    return all_paths & ~(scattering_media | emitting_media | heterogeneous_media | subsurface_light | light_through_surfaces);
+    return all_paths & ~(scattering_media | emitting_media | heterogeneous_media | subsurface_light | light_through_surfaces |
+                         fluorescence);
   }
   Expectation expectation() const override { return Expectation::consistent; }
   std::uint32_t samples_per_step(std::uint32_t) const override { return 1; }

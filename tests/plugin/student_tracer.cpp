@@ -14,7 +14,7 @@ class StudentTracer final : public Renderer {
     describe_max_depth<&StudentTracer::max_depth>(d);
   }
 
-  PathClasses finds() const override { return all_paths & ~(delta_caustics | delta_caustics_in_mirrors); }
+  PathClasses finds() const override { return all_paths & ~(delta_caustics | delta_caustics_in_mirrors | fluorescence); }
 
   // L = sum over the vertices x_k of a random walk of T_k (L_e(x_k) + direct light scattered at x_k).
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {

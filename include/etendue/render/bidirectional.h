@@ -44,6 +44,9 @@ struct BidirectionalSettings {
   }
 };
 
+/// Fluorescence of surfaces is followed, unless there are photons: these have no level (transport/fluorescence.h). Dyes in
+/// media are found by strategies without weights alone, since the vertices where they emit have no pdfs.
+///
 /// One sample of the radiance along a camera ray [W m^-2 sr^-1 nm^-1], with splats in the sample's PathSink. `photons`: merging
 /// is a strategy too; null: it is not. `guide`: the camera subpath samples directions from it, and trains it; null: there is
 /// none.

@@ -59,7 +59,7 @@ class Renderer : public Component {
   /// A text for the user with the sources of bias: what `expectation` returns, and `map_filter`. Empty: there is no bias.
   std::string bias() const;
   /// The kinds of light it finds, with its present members.
-  virtual PathClasses finds() const { return all_paths; }
+  virtual PathClasses finds() const { return all_paths & ~fluorescence; }
   /// The kinds of light that it finds in no scene, as a text for the user; empty: it finds all.
   std::string limits() const;
   /// The kinds of light that it misses in a given scene; empty: none. Renderers for which this is empty must converge to the

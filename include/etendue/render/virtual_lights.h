@@ -161,7 +161,7 @@ void describe_virtual_lights(Description<R>& d) {
 
 /// The path classes they find. Virtual lights do not carry the light of subsurface scattering and of emissive media.
 inline constexpr PathClasses compensated_virtual_lights_find =
-    all_paths & ~(subsurface_light | emitting_media | delta_caustics | delta_caustics_in_mirrors);
+    all_paths & ~(fluorescence | subsurface_light | emitting_media | delta_caustics | delta_caustics_in_mirrors);
 inline constexpr PathClasses bounded_virtual_lights_find = compensated_virtual_lights_find & ~area_caustics;
 
 }  // namespace etendue

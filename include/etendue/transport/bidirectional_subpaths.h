@@ -24,6 +24,7 @@
 
 #include "etendue/transport/bidirectional_weight.h"
 #include "etendue/transport/connection.h"
+#include "etendue/transport/fluorescence.h"
 
 namespace etendue {
 
@@ -56,6 +57,10 @@ class BidirectionalSubpaths {
  public:
   BidirectionalSubpaths(const RenderContext&, const LightSampler&, SampleContext&, const StrategyWeights&);
 
+  /// For scenes with fluorescence, before the subpaths are traced: draws their wavelengths for paths of at most so many
+  /// reradiations (fluorescence.h). Without, paths are elastic. `dyes`: also of dyes in media, which weights do not know.
+  void follow_fluorescence(int most, bool dyes);
+
   /// Traces the camera subpath. The distribution that chooses its directions (SubpathLimits) is part of all weights after this.
   void from_camera(const Ray&, const SubpathLimits&);
   /// Traces the light subpath with its own stream of primary samples ("light"); call it after `from_camera`. It has no vertices
@@ -70,7 +75,10 @@ class BidirectionalSubpaths {
   const std::vector<SubpathVertex>& camera_subpath() const { return camera_; }
   /// Whether all vertices between the lens and z_{t-1} scatter specularly.
   bool has_specular_prefix(int t) const;
-  const Wavelengths& light_wavelengths() const { return light_wavelengths_; }
+  /// The wavelengths of light that the light subpath sends to the lens.
+  const Wavelengths& light_wavelengths() const { return levels_ ? (*levels_)[0] : light_wavelengths_; }
+  /// What contributions must be multiplied by: 1 / P(k) of the number of reradiations.
+  float level_weight() const { return levels_ ? levels_->weight() : 1; }
 
   /// s = 0, along the segments of the camera subpath: emission of media, and emitters whose surface has null scattering only.
   std::span<const PathContribution> segment_emission() const { return segment_emission_; }
@@ -89,6 +97,13 @@ class BidirectionalSubpaths {
   void record() const;
 
  private:
+  /// The wavelengths of the segment beyond a vertex of the camera subpath.
+  const Wavelengths& wavelengths_beyond(const SubpathVertex& z) const {
+    return levels_ ? (*levels_)[z.level] : sample_.wavelengths;
+  }
+  /// Whether light that comes to a vertex of the camera subpath straight from a luminaire is of the luminaire's level.
+  bool at_last_level(const SubpathVertex& z) const { return !levels_ || z.level == levels_->count(); }
+
   /// The state of the camera subpath with its scattering at z_{t-1} from a direction, and of the light subpath at y_{s-1}.
   PathState path_from_camera(int t, const Vector3& in) const;
   PathState path_from_luminaire(int s, const Vector3& on) const;
@@ -109,6 +124,8 @@ class BidirectionalSubpaths {
   std::vector<SubpathVertex>&camera_, &light_;
   std::vector<PathContribution>&segment_emission_, &hits_;
   Wavelengths light_wavelengths_;
+  std::optional<WavelengthLevels> levels_;  ///< of a sample that follows fluorescence
+  bool dyes_ = false;
   Medium emitting_;  ///< while the camera subpath is traced: the medium of its segment
   const EmissionPlane front_;
   CameraDirections* directions_ = nullptr;
@@ -127,6 +144,7 @@ class ContributionSum {
       : sample_(sample), paths_(paths), accept_(accept) {}
 
   void add(PathContribution contribution) {
+    contribution.light *= paths_.level_weight();
     if (accept_(contribution)) add_contribution(sample_, paths_.light_wavelengths(), contribution, radiance);
   }
   void add(const std::optional<PathContribution>& contribution) {

@@ -59,7 +59,8 @@ class CameraWalk : public Walk<unattenuated> {
 
   /// Moves to the next vertex and adds emitter hits, each with the weight `weight(point on the emitter)`. A member
   /// `weight.through(medium, reach)`, if present, is called for media (NoEvents::through). False: the walk has ended, and all
-  /// its light is added (the direct light of a vertex is added on the way to the next).
+  /// its light is added (the direct light of a vertex is added on the way to the next). If `reradiates` is set, the scattering
+  /// of a fluorescent vertex is then chosen (Walk::choose_reradiation).
   template <class Weight>
   [[gnu::always_inline]] bool next_vertex(const Weight& weight) {
     if (!goes_on_ || exits_subsurface_) {
@@ -85,6 +86,7 @@ class CameraWalk : public Walk<unattenuated> {
         sample.sink.first_surface(scene, vertex.point, this->hit, vertex.scatter, vertex.out, sample.wavelengths,
                                   this->null_crossed_distance);
       if (vertex.point.object->luminaire()) add_luminaire(weight);
+      if (length < longest) this->choose_reradiation();
     } else {
       for (const SceneObject* far : scene.infinite_luminaires(ray)) {
         far->surface_point(ray, this->hit, vertex.point);

@@ -29,10 +29,14 @@ enum PathClass : std::uint32_t {
   subsurface_light = 1u << 13,          ///< subsurface scattering with separate entry and exit points
   light_through_surfaces = 1u << 14,    ///< null scattering at surfaces
   delta_caustics_of_panes = 1u << 15,   ///< caustics of delta lights where thin panes or masks reflect light or let it pass
+  fluorescent_surfaces = 1u << 16,      ///< fluorescence of surfaces
+  fluorescent_media = 1u << 17,         ///< fluorescence of dyes in media
 };
 using PathClasses = std::uint32_t;
 inline constexpr PathClasses no_paths = 0;
-inline constexpr PathClasses all_paths = (1u << 16) - 1;
+inline constexpr PathClasses all_paths = (1u << 18) - 1;
+/// Paths whose wavelength changes: only algorithms that follow this find them (transport/fluorescence.h).
+inline constexpr PathClasses fluorescence = fluorescent_surfaces | fluorescent_media;
 /// All caustics of delta lights.
 inline constexpr PathClasses delta_caustics = delta_caustics_of_bodies | delta_caustics_of_panes;
 

@@ -28,6 +28,8 @@ struct SceneTraits {
   std::vector<std::string> heterogeneous_media;            ///< objects with a heterogeneous medium
   std::vector<std::string> subsurface_exits;  ///< surfaces with subsurface scattering that has separate exit points
   std::vector<std::string> null_scattering;   ///< surfaces with null scattering
+  std::vector<std::string> fluorescent;       ///< surfaces that fluoresce
+  std::vector<std::string> dyed_media;        ///< objects with a medium that fluoresces
   bool pinhole = true;                        ///< the camera's lens is a point (or its rays are parallel): no path hits it
 
   bool delta_luminaires() const { return !points.empty() || !distant.empty(); }

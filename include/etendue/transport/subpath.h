@@ -39,6 +39,7 @@ struct SubpathVertex : PathVertex {
   float pdf_reverse = 0;  ///< the same, sampled from the vertex after
   PathState path;  ///< with light path expressions: of the subpath up to here, its scattering here included (path_layers.h); a
                    ///< forward state from the camera, a backward one from a luminaire
+  int level = 0;   ///< of the wavelengths beyond the vertex, seen from the subpath's beginning (fluorescence.h)
 
   /// Whether the vertex can be connected to a vertex of another subpath: it has a lobe that is not specular, whichever lobe the
   /// subpath sampled.
@@ -47,6 +48,7 @@ struct SubpathVertex : PathVertex {
 
 template <bool unattenuated>
 class Walk;
+class WavelengthLevels;
 
 /// A distribution that samples the directions of camera subpaths in place of scattering alone: a path guide.
 class CameraDirections {
@@ -64,11 +66,13 @@ class CameraDirections {
 
 /// Limits of a subpath's length, and how its directions are sampled.
 struct SubpathLimits {
-  int longest = 64;                        ///< maximum length in segments
-  int roulette_depth = 5;                  ///< segments before Russian roulette may end the subpath
-  CameraDirections* directions = nullptr;  ///< for camera subpaths, and for the pdfs of other vertices as sampled from the
-                                           ///< camera; null: directions are sampled by scattering alone
-  bool reverse_pdfs = true;                ///< whether SubpathVertex::pdf_reverse is computed, which weights alone need
+  int longest = 64;                          ///< maximum length in segments
+  int roulette_depth = 5;                    ///< segments before Russian roulette may end the subpath
+  CameraDirections* directions = nullptr;    ///< for camera subpaths, and for the pdfs of other vertices as sampled from the
+                                             ///< camera; null: directions are sampled by scattering alone
+  bool reverse_pdfs = true;                  ///< whether SubpathVertex::pdf_reverse is computed, which weights alone need
+  const WavelengthLevels* levels = nullptr;  ///< the subpath follows fluorescence through these wavelengths; null: it does not
+  bool dyes = false;                         ///< whether that includes dyes in media, whose vertices have no pdfs for weights
 };
 
 /// The pdf [1/sr] with which a camera subpath that came from `out` samples `in`; `scatter` is the pdf of scattering alone.

@@ -10,6 +10,7 @@
 //     f |cos| / p                in `leave`, on a surface: ScatterSample::weight; 1 in a medium, where p is the phase function
 //     s_s Tr / p(t)  or  Tr / P  in `come_to_vertex`, where a medium scatters at the distance t, or lets the walk through with
 //                                probability P (transport/medium.h); s_s is the scattering coefficient, Tr the transmittance
+//     Phi / (q p) or 1 / (1 - q)  at fluorescent surfaces, as a part of f, and at dyes in media (fluorescence.h)
 //     n / q  or  1 / (1 - q)     in `passes`, at a null-scattering surface that lets the fraction n through
 //     1 / q                      in Roulette, for a walk that survives with probability q (transport/roulette.h)
 // So T_k times the radiance that x_k emits towards x_{k-1} is an estimate of radiance along the camera ray, and from a
@@ -23,6 +24,7 @@
 // 1 or more and light is scattered as well), and both outcomes are weighted by the inverse of their probability.
 
 #include "etendue/transport/boundaries.h"
+#include "etendue/transport/fluorescence.h"
 #include "etendue/transport/path_vertex.h"
 #include "etendue/transport/sample_context.h"
 
@@ -115,6 +117,15 @@ class Walk {
         if (const Medium medium = medium_in(media)) {
           const float reach = found ? hit.distance : std::min(ray.maximum, within_object(medium, ray));
           events.through(medium, reach);
+          if (reradiates_in_media && (length < longest || stores_subpath)) [[unlikely]] {
+            const DyeFlight flight = sample_dye(medium, ray, reach, throughput, sample, step());
+            throughput *= flight.weight;
+            if (throughput.black()) return false;
+            if (flight.absorbed) {
+              level = step().next();
+              return scattered_in(emitting_dye(medium), ray(flight.distance));
+            }
+          }
           if (attenuates_only) {
             throughput *= transmittance(medium, ray, reach, sample.wavelengths, numbers);
             if (throughput.black()) return false;
@@ -165,6 +176,17 @@ class Walk {
   template <class Events = NoEvents>
   bool next_vertex(const Events& events = {}) {
     return come_to_vertex(scene.nearest(ray, hit), events);
+  }
+
+  /// At a fluorescent surface chooses elastic scattering or reradiation, which changes the wavelengths of the sample. Call it
+  /// once at each vertex, after its own emission was added and before its scattering is used.
+  [[gnu::always_inline]] void choose_reradiation() {
+    if (unattenuated || !reradiates) return;
+    if (!vertex.on_surface() || vertex.subsurface_exit) return;
+    const ChosenScatter chosen =
+        etendue::choose_reradiation(vertex.point, vertex.out, vertex.scatter, throughput, sample, step());
+    vertex.scatter = chosen.scatter;
+    if (chosen.reradiates) level = step().next();
   }
 
   /// Samples the direction in which the walk leaves its last vertex: `choice` selects the lobe, `u` the direction within it.
@@ -242,6 +264,13 @@ class Walk {
   /// Whether media only attenuate the walk, which then scatters at surfaces alone: the algorithm gathers the light that media
   /// scatter along the segments (Events::through). Emission of media is ignored.
   bool attenuates_only = false;
+  /// Whether the walk follows fluorescence: of surfaces (`choose_reradiation`), and of dyes in media. Without, it is elastic
+  /// alone. A walk from a luminaire must have `levels`.
+  bool reradiates = false, reradiates_in_media = false;
+  /// The wavelengths that were drawn for all walks of a sample, and the level at which this one stands (fluorescence.h). Null:
+  /// new wavelengths are sampled at each reradiation.
+  const WavelengthLevels* levels = nullptr;
+  int level = 0;
   /// Whether the end of the last segment is needed even if it is not an emitter, for features or the record of a path.
   bool observed = false;
 
@@ -262,6 +291,10 @@ class Walk {
         stores_subpath(walk.stores_subpath),
         collects_light(walk.collects_light),
         attenuates_only(walk.attenuates_only),
+        reradiates(walk.reradiates),
+        reradiates_in_media(walk.reradiates_in_media),
+        levels(walk.levels),
+        level(walk.level),
         observed(walk.observed),
         initial_throughput(walk.initial_throughput),
         eta_squared_(walk.eta_squared_),
@@ -272,6 +305,8 @@ class Walk {
   float mean_roulette_weight() const { return throughput.average() * eta_squared_ * branches; }
 
  private:
+  WavelengthStep step() const { return {levels, level, transport}; }
+
   bool scattered_in(const Medium& medium, const Point3& at) {
     vertex.kind = PathVertex::Kind::medium;
     vertex.subsurface_exit = false;

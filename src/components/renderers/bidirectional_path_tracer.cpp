@@ -58,7 +58,7 @@ class BidirectionalPathTracer final : public Renderer {
   bool splats() const override { return true; }
   PathClasses finds() const override {
     const bool all = light_vertices < 0 && camera_vertices < 0 && weighted;
-    return all ? all_paths & ~(delta_caustics_in_mirrors | subsurface_light) : no_paths;
+    return all ? all_paths & ~(delta_caustics_in_mirrors | subsurface_light | fluorescent_media) : no_paths;
   }
 
  private:

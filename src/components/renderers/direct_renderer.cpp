@@ -61,7 +61,7 @@ class DirectRenderer final : public Renderer {
 
   PathClasses finds() const override {
     PathClasses lost = diffuse_light | glossy_light | area_caustics | delta_caustics | delta_caustics_in_mirrors |
-                       scattering_media | emitting_media | heterogeneous_media | subsurface_light;
+                       scattering_media | emitting_media | heterogeneous_media | subsurface_light | fluorescence;
     if (strategy == Strategy::shader) lost |= delta_light;
     if (mirrors == Shown::luminaires) lost |= specular_views;
     return all_paths & ~lost;

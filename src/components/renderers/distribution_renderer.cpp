@@ -58,8 +58,8 @@ class DistributionRenderer final : public Renderer {
   }
 
   PathClasses finds() const override {
-    PathClasses lost =
-        delta_caustics | delta_caustics_in_mirrors | scattering_media | emitting_media | heterogeneous_media | subsurface_light;
+    PathClasses lost = delta_caustics | delta_caustics_in_mirrors | scattering_media | emitting_media | heterogeneous_media |
+                       subsurface_light | fluorescence;
     if (diffuse_samples == 0) lost |= diffuse_light | area_caustics;
     if (glossy_samples == 0) lost |= glossy_light | area_caustics;
     return all_paths & ~lost;

@@ -134,7 +134,7 @@ class GuidedPathProcess final : public GuidedProcess<ShownProcess> {
       : GuidedProcess(r, c, guide_settings(r), r.memory, Trail::longest),
         settings_(r),
         lights_(*r.light_sampler, c.scene),
-        clear_(!c.scene.has_interiors() && !c.scene.has_null_surfaces()) {}
+        clear_(!c.scene.has_interiors() && !c.scene.has_null_surfaces() && !c.scene.has_fluorescence()) {}
 
   void prepare_step(Schedule& schedule, const Step&) override { lights_.learn(schedule, *this); }
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
@@ -161,6 +161,7 @@ class GuidedPathProcess final : public GuidedProcess<ShownProcess> {
   template <class Walk>
   [[gnu::always_inline]] Spectrum follow(Walk&& walk, Trail* trail) const {
     const LightSampler& lights = lights_;
+    walk.reradiates = walk.reradiates_in_media = context.scene.has_fluorescence();
     const Roulette roulette{settings_.roulette_depth};
     float more = 1;  // the product of p / p_scatter; T times this is the throughput without a guide
     const auto met = [&](const SurfacePoint& luminaire) {

@@ -54,7 +54,8 @@ class ManifoldPathTracer final : public Renderer {
   /// Nothing meets a delta light by chance, so that only chains that are followed find it.
   PathClasses finds() const override {
     const bool whole = chain_depth >= std::min(max_depth - 2, ChainLobes::longest);
-    return all_paths & ~(whole ? PathClasses(delta_caustics_of_panes) : delta_caustics | delta_caustics_in_mirrors);
+    return all_paths &
+           ~(fluorescence | (whole ? PathClasses(delta_caustics_of_panes) : delta_caustics | delta_caustics_in_mirrors));
   }
   Expectation expectation() const override { return unbiased ? Expectation::unbiased : Expectation::biased; }
 

@@ -43,7 +43,7 @@ class MultiplexedMetropolis final : public Renderer {
   }
 
   bool splats() const override { return true; }
-  PathClasses finds() const override { return all_paths & ~(delta_caustics_in_mirrors | subsurface_light); }
+  PathClasses finds() const override { return all_paths & ~(delta_caustics_in_mirrors | subsurface_light | fluorescence); }
   Estimator estimator() const override { return Estimator::correlated; }
 
  private:

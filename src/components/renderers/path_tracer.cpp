@@ -10,6 +10,8 @@
 // At perfectly smooth glass the integral over directions is a sum of reflection and refraction, and with dispersion refraction
 // is a sum over the wavelengths: there a walk can be split into branches (transport/camera_walk.h, Splitting).
 //
+// Where a surface or the dye of a medium fluoresces, the walk may go on at other wavelengths (transport/fluorescence.h).
+//
 // In a medium the phase function takes the place of f |cos|. The weights compare the pdfs [1/sr] of directions alone, without
 // transmittances. Both strategies compute the same weights for a path, so the weights add up to one.
 
@@ -62,7 +64,7 @@ class PathTracer final : public Renderer {
   }
 
   Spectrum radiance(const Scene& scene, const LightSampler& lights, const Ray& ray, SampleContext& sample) const {
-    const bool unattenuated = !scene.has_interiors() && !scene.has_null_surfaces();
+    const bool unattenuated = !scene.has_interiors() && !scene.has_null_surfaces() && !scene.has_fluorescence();
     return unattenuated ? follow(CameraWalk<true>(scene, sample, ray, max_depth), lights)
                         : follow(CameraWalk<false>(scene, sample, ray, max_depth), lights);
   }
@@ -73,6 +75,7 @@ class PathTracer final : public Renderer {
 
   template <class Walk>
   [[gnu::always_inline]] Spectrum follow(Walk&& walk, const LightSampler& lights) const {
+    walk.reradiates = walk.reradiates_in_media = walk.scene.has_fluorescence();
     const Roulette roulette{roulette_depth};
     const Splitting splitting{split_depth, split_wavelengths};
     // The weight of an emitter hit against next event estimation.

@@ -84,7 +84,7 @@ class PhotonMapper final : public Renderer {
             when("final_gather"));
   }
 
-  PathClasses finds() const override { return all_paths & ~(subsurface_light | emitting_media); }
+  PathClasses finds() const override { return all_paths & ~(subsurface_light | emitting_media | fluorescence); }
   Expectation expectation() const override { return Expectation::biased; }
   Estimator estimator() const override { return Estimator::correlated; }
   std::uint32_t samples_per_step(std::uint32_t) const override { return std::uint32_t(samples_per_map); }

@@ -78,7 +78,7 @@ class ProgressivePhotonMapper final : public Renderer, public ShrinkingBias {
     describe_splitting<&ProgressivePhotonMapper::split_depth, &ProgressivePhotonMapper::split_wavelengths>(d);
   }
 
-  PathClasses finds() const override { return all_paths & ~(subsurface_light | emitting_media); }
+  PathClasses finds() const override { return all_paths & ~(subsurface_light | emitting_media | fluorescence); }
   Expectation expectation() const override { return Expectation::consistent; }
   double bias_width(std::uint32_t step) const override { return std::sqrt(shrunk_area(step, double(alpha))); }
   Estimator estimator() const override { return Estimator::correlated; }

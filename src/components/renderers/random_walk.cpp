@@ -13,6 +13,7 @@
 
 #include "etendue/core/warp.h"
 #include "etendue/render/renderer.h"
+#include "etendue/transport/fluorescence.h"
 #include "etendue/transport/light_groups.h"
 #include "etendue/transport/renderer_members.h"
 #include "etendue/transport/scattering.h"
@@ -31,8 +32,9 @@ class RandomWalk final : public Renderer {
   }
 
   PathClasses finds() const override {
-    return all_paths & ~(specular_views | delta_light | area_caustics | delta_caustics | delta_caustics_in_mirrors |
-                         scattering_media | emitting_media | heterogeneous_media | subsurface_light | light_through_surfaces);
+    return all_paths &
+           ~(specular_views | delta_light | area_caustics | delta_caustics | delta_caustics_in_mirrors | scattering_media |
+             emitting_media | heterogeneous_media | subsurface_light | light_through_surfaces | fluorescent_media);
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
@@ -62,6 +64,8 @@ class RandomWalk final : public Renderer {
 
       const Scatter* scatter = scattering_at(x, out, wavelengths, sample.arena);
       if (length == 1) sample.sink.first_surface(scene, x, hit, scatter, out, wavelengths);
+      // A fluorescent surface scatters light of the same wavelengths or emits light of others: from here the path follows one.
+      if (scene.has_fluorescence()) scatter = choose_reradiation(x, out, scatter, T, sample).scatter;
       if (!scatter) break;
       const Vector3 in = warp::sphere(sample.numbers.next_pair());
       const float p = warp::sphere_pdf;

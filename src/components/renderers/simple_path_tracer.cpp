@@ -12,6 +12,7 @@
 // path_tracer.cpp takes both wherever both are possible, and weights them (multiple importance sampling).
 
 #include "etendue/render/renderer.h"
+#include "etendue/transport/fluorescence.h"
 #include "etendue/transport/light_groups.h"
 #include "etendue/transport/ray_tree.h"
 #include "etendue/transport/renderer_members.h"
@@ -31,7 +32,7 @@ class SimplePathTracer final : public Renderer {
 
   PathClasses finds() const override {
     return all_paths & ~(delta_caustics | delta_caustics_in_mirrors | scattering_media | emitting_media | heterogeneous_media |
-                         subsurface_light | light_through_surfaces);
+                         subsurface_light | light_through_surfaces | fluorescent_media);
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& camera_ray, SampleContext& sample) const override {
@@ -62,6 +63,8 @@ class SimplePathTracer final : public Renderer {
 
       const Scatter* scatter = scattering_at(x, out, sample.wavelengths, sample.arena);
       if (length == 1) sample.sink.first_surface(scene, x, hit, scatter, out, sample.wavelengths);
+      // A fluorescent surface scatters light of the same wavelengths or emits light of others: from here the path follows one.
+      if (scene.has_fluorescence()) scatter = choose_reradiation(x, out, scatter, T, sample).scatter;
       if (!scatter || length == max_depth) break;
 
       const SceneObject* luminaire = nullptr;

@@ -65,8 +65,8 @@ class VertexConnectionMerging final : public Renderer, public ShrinkingBias {
   bool splats() const override { return connecting; }
   PathClasses finds() const override {
     if (!connecting && !merging) return no_paths;
-    PathClasses lost = subsurface_light;
-    if (!merging) lost |= delta_caustics_in_mirrors;
+    PathClasses lost = subsurface_light | fluorescent_media;
+    lost |= merging ? fluorescent_surfaces : delta_caustics_in_mirrors;
     if (!connecting) lost |= emitting_media;  // walks from the camera end at the first place that photons are looked for
     return all_paths & ~lost;
   }

@@ -33,7 +33,7 @@ class WhittedRenderer final : public Renderer {
   PathClasses finds() const override {
     return all_paths &
            ~(area_light | diffuse_light | glossy_light | area_caustics | delta_caustics | delta_caustics_in_mirrors |
-             scattering_media | emitting_media | heterogeneous_media | subsurface_light);
+             scattering_media | emitting_media | heterogeneous_media | subsurface_light | fluorescence);
   }
 
   Spectrum radiance(const RenderContext& context, const Ray& ray, SampleContext& sample) const override {

@@ -7,9 +7,11 @@
 #include <unordered_set>
 
 #include "coincident_luminaires.h"
+#include "etendue/reradiation.h"
 #include "etendue/shader.h"
 #include "etendue/transport/medium_stack.h"
 #include "geometry/scene_record.h"
+#include "hidden_fluorescence.h"
 #include "nested_luminaires.h"
 
 namespace etendue {
@@ -25,6 +27,14 @@ void for_nested(const Scene& scene, std::unordered_set<const Scene*>& seen, cons
     call(*inner);
     for_nested(*inner, seen, call);
   }
+}
+
+/// Whether the surface or the interior of an object fluoresces, or any in a scene within. An instance's shader replaces all
+/// shaders of its scene, but not their interiors.
+bool fluoresces(const SceneObject& object) {
+  const Scene* inner = scene_within(object);
+  if (inner && inner->has_fluorescence()) return true;
+  return inner != &object && (fluorescent(object.shader.get()) || dyed(object.interior.get()));
 }
 
 /// Finds objects that are too small for the precision of floats at their position, for a single warning.
@@ -256,7 +266,7 @@ Scene::Finite Scene::survey() {
   surroundings_ = nullptr;
   static std::atomic<std::uint64_t> versions{0};
   version_ = ++versions;
-  has_interiors_ = has_null_surfaces_ = has_unseen_ = unbounded_ = false;
+  has_interiors_ = has_null_surfaces_ = has_fluorescence_ = has_unseen_ = unbounded_ = false;
   // Luminaires of nested scenes are represented by PlacedLuminaires. The indices that they got when the nested scenes were
   // prepared are reset.
   std::unordered_set<const Scene*> visited;
@@ -278,6 +288,7 @@ Scene::Finite Scene::survey() {
 
   Finite finite;
   Coarse coarse;
+  HiddenFluorescence hidden_fluorescence;
   for (const Ref<SceneObject>& object : objects) {
     const Scene* inner = scene_within(*object);
     scene_record(*object).luminaire_index = -1;
@@ -289,6 +300,8 @@ Scene::Finite Scene::survey() {
       if (object->infinite() && !object->delta()) infinite_.push_back(object.get());
     }
     const bool unseen = note_unseen(*object);
+    has_fluorescence_ |= fluoresces(*object);
+    if (object->shader) hidden_fluorescence.refuse(*object->shader);
     if (object->surrounds()) {
       if (surroundings_) object->fail("", "there are surroundings already: a scene stands in one thing alone");
       surroundings_ = dynamic_cast<const SurroundingObject*>(object.get());

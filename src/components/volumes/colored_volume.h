@@ -3,16 +3,20 @@
 // vary.
 
 #include "etendue/core/spectral_function.h"
+#include "etendue/dye.h"
 #include "phased_volume.h"
 
 namespace etendue {
 
-class ColoredVolume : public PhasedVolume {
+class ColoredVolume : public PhasedVolume, public DyedVolume {
  public:
   bool emits() const final { return emits_; }
+  const Dye* dye() const final { return dissolved.get(); }
 
   Color absorption = flat_spectrum(0), scattering = flat_spectrum(0), extinction, albedo = flat_spectrum(0.75f),
         emission = flat_spectrum(0);
+  Ref<Dye> dissolved;
+  float dye_absorption = 1;
 
  protected:
   /// `where`: " where the density is 1", or nothing.
@@ -32,12 +36,22 @@ class ColoredVolume : public PhasedVolume {
         .template member<&T::emission>("emission", "W m^-3 sr^-1 nm^-1",
                                        "radiance the medium adds per distance" + where + ", whatever it absorbs",
                                        Meaning::radiance, soft(0.001, 1000), logarithmic);
+    d.group("Fluorescence")
+        .template member<&T::dissolved>("dye", "", "a fluorescent dye in the medium; none: nothing fluoresces")
+        .template member<&T::dye_absorption>("dye_absorption", "1/m",
+                                             "absorption coefficient of the dye at the wavelength where it absorbs most" +
+                                                 where + ", in addition to `absorption`",
+                                             at_least(0), soft(0.001, 1000), logarithmic, when("dye"));
     describe_phase(d);
   }
 
   /// Checks all of these members.
   void prepare_colors();
 
+  /// The absorption of the dye at density 1, which is part of `colors`.
+  Spectrum dye_coefficient(const Wavelengths& w) const {
+    return dissolved ? dye_absorption * dissolved->absorption_at(w) : Spectrum();
+  }
   /// The coefficients at density 1.
   VolumeCoefficients colors(const Wavelengths& w) const {
     VolumeCoefficients c;
@@ -49,6 +63,7 @@ class ColoredVolume : public PhasedVolume {
       c.absorption = absorption->evaluate(w, ColorUse::coefficient);
       c.scattering = scattering->evaluate(w, ColorUse::coefficient);
     }
+    if (dissolved) c.absorption += dye_coefficient(w);
     if (emits_) c.emission = emission->evaluate(w, ColorUse::radiance);
     return c;
   }

@@ -75,6 +75,10 @@ class GridVolume final : public ColoredVolume {
     largest_ = grid_.largest() * (grid_.channels == 3 ? 2 : 1);
     const Color sums[] = {extinction ? extinction : absorption, extinction ? flat_spectrum(0) : scattering};
     float most = 0;
+    if (dissolved) {
+      if (grid_.channels == 3) fail("dye", "needs densities of one channel: those of RGB have no single amount of dye");
+      most += largest_ * dye_absorption;
+    }
     for (const Color& color : sums) most += largest_ * range_of(*color, ColorUse::coefficient).most;
     if (!(most <= most_extinction)) fail(file.empty() ? "density" : "file", fmt::format(too_dense, most));
     if (!placement.valid()) fail("placement", "must be finite, and have an inverse");
@@ -86,15 +90,21 @@ class GridVolume final : public ColoredVolume {
     if (d.black()) return {};
     VolumeCoefficients c = colors(w);
     if (!albedo_grid_.values.empty()) {
-      const Spectrum whole = c.extinction();
+      const Spectrum dyed = dye_coefficient(w), whole = c.extinction() - dyed;
       c.scattering = whole * albedo_at(unit, w);
-      c.absorption = max(whole - c.scattering, 0);
+      c.absorption = max(whole - c.scattering, 0) + dyed;
     }
     c.absorption *= d;
     c.scattering *= d;
     c.emission *= d;
     return c;
   }
+  float dye_amount(const Point3& p, float time) const override {
+    float v[3];
+    grid_.look_up(in_grid(p, time), filter, outside, v);
+    return v[0] * dye_absorption;
+  }
+  float most_dye() const override { return largest_ * dye_absorption; }
   bool homogeneous() const override { return false; }
   Spectrum majorant(const Wavelengths& w) const override { return colors(w).extinction() * (largest_ * 1.00001f); }
 

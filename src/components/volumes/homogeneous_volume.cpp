@@ -15,6 +15,8 @@ class HomogeneousVolume final : public ColoredVolume {
   void prepare() override { prepare_colors(); }
   VolumeCoefficients coefficients(const Point3&, float, const Wavelengths& w) const override { return colors(w); }
   bool homogeneous() const override { return true; }
+  float dye_amount(const Point3&, float) const override { return dye_absorption; }
+  float most_dye() const override { return dye_absorption; }
   Spectrum majorant(const Wavelengths& w) const override { return colors(w).extinction(); }
 };
 
