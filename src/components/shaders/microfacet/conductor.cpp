@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "components/shaders/polarized_fresnel.h"
 #include "components/shaders/reflectance.h"
 #include "components/shaders/tangent_frame.h"
 #include "etendue/core/warp.h"
@@ -25,13 +26,23 @@ struct BoundaryReflectance {
   Spectrum at(float cosine) const {
     return rgb && in_vacuum ? rgb->reflectance(cosine, wavelengths) : seen(fresnel_conductor(cosine, n, k));
   }
+  /// What reflection does to polarization. Where n and k are given for red, green and blue, each wavelength takes those of the
+  /// colour it belongs to.
+  Polarization polarization(const Vector3& out, const Vector3& in) const {
+    const Spectrum& real = rgb && in_vacuum ? rgb->n() : n;
+    const Spectrum& imaginary = rgb && in_vacuum ? rgb->k() : k;
+    return polarized::reflection(out, in, [&](int lane, float cosine) {
+      const int at = !rgb ? lane : wavelengths[lane] > 580 ? 0 : wavelengths[lane] > 490 ? 1 : 2;
+      return polarized::reflected(cosine, {real[at], imaginary[at]});
+    });
+  }
   Spectrum mean() const { return rgb && in_vacuum ? rgb->mean_reflectance(wavelengths) : seen(mean_fresnel_conductor(n, k)); }
 
  private:
   Spectrum seen(const Spectrum& reflected) const { return rgb ? rgb->spectrum_of(reflected).evaluate(wavelengths) : reflected; }
 };
 
-class PolishedConductor final : public ScatterModel<PolishedConductor> {
+class PolishedConductor final : public ScatterModel<PolishedConductor>, public PolarizingScatter {
  public:
   static constexpr bool uses_choice = false;
 
@@ -50,6 +61,10 @@ class PolishedConductor final : public ScatterModel<PolishedConductor> {
   Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     return (lobes & specular_reflection) ? tint_ * boundary_.at(std::abs(out.z)) : Spectrum();
   }
+  bool polarization(const Vector3& out, const Vector3& in, Lobes, Polarization& event) const override {
+    event = boundary_.polarization(out, in);
+    return true;
+  }
 
  private:
   BoundaryReflectance boundary_;
@@ -62,7 +77,7 @@ class PolishedConductor final : public ScatterModel<PolishedConductor> {
 // f1 is sampled by visible normals, f2 with the pdf cos / pi. f2 is chosen with a probability q that is its share of the
 // reflected light, computed with the mean of F. Samples of f1 that lead below the surface are absorbed, so the pdf integrates
 // to less than 1.
-class RoughConductor final : public ScatterModel<RoughConductor> {
+class RoughConductor final : public ScatterModel<RoughConductor>, public PolarizingScatter {
  public:
   RoughConductor(const SurfacePoint& p, const Frame& frame, const MicrofacetDistribution& distribution,
                  const BoundaryReflectance& boundary, Spectrum tint, bool multiple)
@@ -114,6 +129,18 @@ class RoughConductor final : public ScatterModel<RoughConductor> {
     if (!(lobes & glossy_reflection)) return {};
     const float missing = multiple_reflection_.missing(out);
     return tint_ * (boundary_.at(distribution_.typical_cosine(out)) * (1 - missing) + multiple_ * missing);
+  }
+
+  /// Light that was scattered more than once is taken for unpolarized.
+  bool polarization(const Vector3& out, const Vector3& in, Lobes, Polarization& event) const override {
+    event = boundary_.polarization(out, in);
+    if (!has_choice_) return true;
+    const Vector3 o = frame_.to_local(out), i = frame_.to_local(in), m = reflection_half_vector(o, i);
+    PolarizationMean mean(out, in);
+    mean.add(boundary_.at(std::abs(dot(o, m))) * (distribution_.D(m) * distribution_.visibility(o, i)), event);
+    mean.add_unpolarized(multiple_ *
+                         multiple_reflection_.value(multiple_reflection_.missing(o), multiple_reflection_.missing(i)));
+    return mean.mean(event);
   }
 
  private:
