@@ -54,9 +54,12 @@ std::string retarder(double z, double angle, double waves) {
 const std::string sky = "Environment { emission: DiffuseEmission { radiance: 1 } }\n";
 constexpr double noise = 4e-3;  // of S0 itself, for the wavelengths of these samples; ratios have none
 
-void expect_stokes(const Means& m, double s0, double s1, double s2, double s3, const std::string& what) {
+constexpr double lobe_noise = 4e-2;  // where reflection or refraction is chosen at random
+
+void expect_stokes(const Means& m, double s0, double s1, double s2, double s3, const std::string& what,
+                   double s0_noise = noise) {
   const double y = m.at("Y");
-  EXPECT_NEAR(y, s0, noise * std::max(s0, 0.1)) << what;
+  EXPECT_NEAR(y, s0, s0_noise * std::max(s0, 0.1)) << what;
   if (s0 < 1e-6) return;
   EXPECT_NEAR(m.at("S1.Y") / y, s1 / s0, 2e-5) << what;
   EXPECT_NEAR(m.at("S2.Y") / y, s2 / s0, 2e-5) << what;
@@ -136,7 +139,7 @@ TEST(Polarization, ReflectionOfDielectrics) {
           "MixShader { first: Dielectric { ior: 1.5 }, second: Dielectric { ior: 1.5 }, amount: 0.3 }",
           "TwoSidedShader { front: Plastic { color: 0, ior: 1.5, roughness: 0 }, back: Lambertian {} }"})
       expect_stokes(render(job_text(at_angle(angle), plate(0, shader) + plate(-0.1, "Lambertian { color: 0 }") + sky, 256)),
-                    (r.s + r.p) / 2, (r.s - r.p) / 2, 0, 0, fmt::format("{} {}", shader, angle));
+                    (r.s + r.p) / 2, (r.s - r.p) / 2, 0, 0, fmt::format("{} {}", shader, angle), lobe_noise);
   }
   const Means m = render(job_text(at_angle(brewster), plate(0, "Plastic { color: 0, ior: 1.5, roughness: 0 }") + sky, 64));
   EXPECT_NEAR(m.at("polarization.linear"), 1, 1e-5);
@@ -149,7 +152,7 @@ TEST(Polarization, OfPanes) {
     const Fresnel r = fresnel(angle, 1.5);
     const double s = 2 * r.s / (1 + r.s), p = 2 * r.p / (1 + r.p);
     expect_stokes(render(job_text(at_angle(angle), pane + black + sky, 256)), (s + p) / 2, (s - p) / 2, 0, 0,
-                  fmt::format("reflected {}", angle));
+                  fmt::format("reflected {}", angle), lobe_noise);
     // What passes the pane is polarized the other way, so that all light together is not: in the mean over both.
     const Means all = render(job_text(at_angle(angle), pane + sky, 4096));
     EXPECT_NEAR(all.at("Y"), 1, noise);
