@@ -179,6 +179,20 @@ class Image:
             _fail("the picture has no spectrum: its image is no SpectralFilm")
         return self._taken([place for _, place in bands])
 
+    @property
+    def stokes(self) -> Doubles:
+        """The Stokes vectors: shape (height, width, 4, 3), S0 to S3 in the three colours of the picture, which is S0.
+
+        Raises Error if the picture has none: render it by PolarizedPathTracer, with the layer "stokes" of the image.
+        """
+        colors, places = self.channels[:3], [0, 1, 2]
+        for part in ("S1", "S2", "S3"):
+            for color in colors:
+                if f"{part}.{color}" not in self.channels:
+                    _fail('the picture has no Stokes vectors: the layer "stokes" of its image is needed')
+                places.append(self.channels.index(f"{part}.{color}"))
+        return self._taken(places).reshape(self.height, self.width, 4, 3)
+
     def _bands(self) -> list[tuple[float, int]]:
         """The wavelength [nm] and the channel of each band, by wavelength."""
         found = ((_BAND.fullmatch(name), place) for place, name in enumerate(self.channels))

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <cmath>
 
 #include "film_values.h"
@@ -45,8 +46,22 @@ std::vector<Layer> add_layers(const PictureFormat& format, std::vector<std::stri
     for (const char* part : {".X", ".Y", ".Z"}) channels.push_back(PictureFormat::light_prefix + group + part);
   for (const PictureFormat::PathLayer& layer : format.path_layers)
     for (const char* part : {".X", ".Y", ".Z"}) channels.push_back(PictureFormat::path_prefix + layer.name + part);
+  if (format.stokes)
+    for (const char* name : {"S1", "S2", "S3"})
+      for (const char* part : {".X", ".Y", ".Z"}) channels.push_back(std::string(name) + part);
   if (format.bands) channels.insert(channels.end(), format.bands->channels().begin(), format.bands->channels().end());
+  if (format.stokes) channels.insert(channels.end(), {"polarization.linear", "polarization.circular", "polarization.angle"});
   return layers;
+}
+
+/// The state of polarization, of a Stokes vector of luminances: the degree of linear polarization, that of circular
+/// polarization (right positive), and the angle of linear polarization from horizontal, counter-clockwise in the picture
+/// [degrees, 0 to 180).
+std::array<double, 3> polarization_state(double s0, double s1, double s2, double s3) {
+  if (!(s0 > 0)) return {};
+  double angle = std::atan2(s2, s1) * 90 / double(pi);
+  if (angle < 0) angle += 180;
+  return {std::hypot(s1, s2) / s0, s3 / s0, angle < 180 ? angle : 0};
 }
 
 Image blank(const PictureFormat& format, std::vector<std::string> channels) {
@@ -127,6 +142,14 @@ Image FilmSnapshot::develop() const {
         }
       }
       for (size_t i = 0; i < all_parts; ++i) *out++ = sum(parts, part_splats, stride * pixel + i);
+      if (format.stokes) {
+        const auto luminance = [&](size_t i) {
+          return sum(parts, part_splats, stride * pixel + 3 * (format.first_stokes() + i) + 1);
+        };
+        for (const double part :
+             polarization_state(sum(light, splats, 4 * pixel + 1), luminance(0), luminance(1), luminance(2)))
+          *out++ = part;
+      }
     }
   return image;
 }

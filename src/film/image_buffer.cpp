@@ -15,7 +15,8 @@ namespace etendue {
 namespace {
 
 const std::vector<std::string>& known_layers() {
-  static const std::vector<std::string> names = {"albedo", "normal", "depth", "object", "variance", "samples"};
+  static const std::vector<std::string> names = {
+      "albedo", "normal", "depth", "object", "variance", "samples", PictureFormat::stokes_layer};
   return names;
 }
 
@@ -65,7 +66,9 @@ void ImageBuffer::describe(Description<ImageBuffer>& d) {
                                   "excluded]; empty: the whole picture")
       .member<&ImageBuffer::layers>("layers", "",
                                     "further channels: of albedo, normal, depth, object (what camera paths meet first), "
-                                    "variance (of the mean of Y), samples (per pixel); light.NAME for the light of the "
+                                    "variance (of the mean of Y), samples (per pixel), stokes (the polarization: S1, S2 and "
+                                    "S3 of the Stokes vector, of which the picture is S0, with the degrees of linear and "
+                                    "circular polarization and the angle); light.NAME for the light of the "
                                     "luminaires of which the object or the emission has this name, light.NAME+NAME for that "
                                     "of several together, and then light.rest for all other light; 'path.NAME = EXPRESSION' "
                                     "for the light whose paths match a light path expression, as in 'path.caustics = "
@@ -160,6 +163,7 @@ void ImageBuffer::prepare() {
   format.path_lengths = path_lengths;
   format.light_groups = std::move(light_groups);
   format.path_layers = std::move(path_layers);
+  format.stokes = wants(PictureFormat::stokes_layer);
   if (const auto* spectral = dynamic_cast<const HasBands*>(this)) format.bands = spectral->make_bands();
   format.set_filter(std::move(table), radius);
   format.sampled_area = intersection(widened(area, format.reach()), {0, 0, width, height});

@@ -108,6 +108,16 @@ void require_groups(const PictureFormat& format, const Xyz& color, std::span<con
   if (apart > rounding * (color.x + color.y + color.z)) refuse_groups();
 }
 
+/// The same for a part of a Stokes vector, which may be negative. False if it is bad.
+bool to_signed_color(const Spectrum& value, const Wavelengths& wavelengths, Xyz& color) {
+  Spectrum used = value;
+  if (wavelengths.single())
+    for (int i = 1; i < spectrum_size; ++i) used.set(i, 0);
+  if (!used.finite()) return false;
+  color = to_xyz(used, wavelengths);
+  return std::isfinite(color.x + color.y + color.z);
+}
+
 /// Whether a film point is finite and of ordinary size; false for NaN.
 bool ordinary(Point2 film) { return std::abs(film.x) < 1e7f && std::abs(film.y) < 1e7f; }
 
@@ -248,7 +258,9 @@ void ImageTile::add_parts(Point2 film, int px, int py, const Wavelengths& wavele
     if (parts[part].black()) continue;
     Xyz color;
     BadKind kind;
-    if (!to_color(parts[part], wavelengths, color, kind)) continue;
+    const bool good = part < format_->first_stokes() ? to_color(parts[part], wavelengths, color, kind)
+                                                     : to_signed_color(parts[part], wavelengths, color);
+    if (!good) continue;
     each_reached(*format_, extent_, film, px, py, weight, [&](int x, int y, double factor) {
       double* sum = &parts_[place_of_parts(*format_, extent_, x, y) + 3 * part];
       sum[0] += factor * color.x;

@@ -72,6 +72,7 @@ std::uint64_t PictureFormat::hash() const {
     add_text(PictureFormat::path_prefix + layer.name);
     add_text(layer.expression);
   }
+  if (stokes) add_text(stokes_layer);
   if (bands)
     for (const char c : bands->key()) add(std::uint32_t(static_cast<unsigned char>(c)));
   return h;
@@ -79,7 +80,7 @@ std::uint64_t PictureFormat::hash() const {
 
 bool PictureFormat::collects_as(const PictureFormat& other) const {
   return width == other.width && height == other.height && area == other.area && path_lengths == other.path_lengths &&
-         light_groups == other.light_groups && path_layers == other.path_layers &&
+         light_groups == other.light_groups && path_layers == other.path_layers && stokes == other.stokes &&
          (bands ? other.bands && *bands == *other.bands : !other.bands) && wants_features == other.wants_features &&
          radius == other.radius && table == other.table;
 }

@@ -36,6 +36,10 @@ struct PictureFormat {
   };
   std::vector<PathLayer> path_layers;
   static constexpr const char* path_prefix = "path.";
+  /// Whether S1, S2 and S3 of the Stokes vector are stored: the layer of this name in ImageBuffer::layers. S0 is the picture.
+  bool stokes = false;
+  static constexpr const char* stokes_layer = "stokes";
+  static constexpr size_t stokes_parts = 3;
   /// The bands of a spectral film. Null: it has none.
   std::shared_ptr<const SpectralBands> bands;
 
@@ -55,8 +59,10 @@ struct PictureFormat {
   std::vector<Integral> shares;  ///< over the pixels around its own, one quadrant of (filter_reach + 1)^2 pixels
   Integral whole;                ///< over all pixels
 
-  /// Parts of the light that are stored besides the whole: by path length, then by group, then by expression.
-  size_t parts() const { return size_t(path_lengths) + light_groups.size() + path_layers.size(); }
+  /// Parts of the light that are stored besides the whole: by path length, then by group, then by expression, then those of the
+  /// Stokes vector, which have values of both signs.
+  size_t parts() const { return first_stokes() + (stokes ? stokes_parts : 0); }
+  size_t first_stokes() const { return size_t(path_lengths) + light_groups.size() + path_layers.size(); }
   /// Values that are stored besides the whole, in groups of three: X, Y, Z of each part, then the bands, filled up with zeros.
   size_t triples() const { return parts() + (bands ? (bands->count() + 2) / 3 : 0); }
   size_t pixels() const { return size_t(area.width()) * size_t(area.height()); }
@@ -76,8 +82,8 @@ struct PictureFormat {
     });
     return sum;
   }
-  /// FNV-1a hash of the filter, the names of light groups, the expressions and the bands: sums with different hashes must not
-  /// be added.
+  /// FNV-1a hash of the filter, the names of light groups, the expressions, whether there are Stokes vectors, and the bands:
+  /// sums with different hashes must not be added.
   std::uint64_t hash() const;
   /// Whether sums collected with one format are valid for the other.
   bool collects_as(const PictureFormat&) const;

@@ -62,7 +62,8 @@ class GuideProcess final : public RenderProcess {
 /// denoised picture.
 bool tells_of_noise(const std::string& channel) {
   return channel.starts_with("variance.") || channel.starts_with("length_") || channel.starts_with("light.") ||
-         channel.starts_with("path.") || measures_spectrum(channel);
+         channel.starts_with("path.") || channel.starts_with("polarization.") || channel.starts_with("S1.") ||
+         channel.starts_with("S2.") || channel.starts_with("S3.") || measures_spectrum(channel);
 }
 
 }  // namespace

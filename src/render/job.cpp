@@ -1,5 +1,6 @@
 #include "etendue/render/job.h"
 
+#include "etendue/render/follows_polarization.h"
 #include "etendue/transport/light_groups.h"
 #include "film/picture_format.h"
 #include "geometry/rendering_space.h"
@@ -41,6 +42,14 @@ Ref<T> created(const char* name) {
 void require_light(const Renderer& renderer, const ImageBuffer& image) {
   if (image.format()->bands && renderer.finds() == no_paths)
     renderer.fail({}, "shows no light, so that there is no spectrum for a SpectralFilm");
+  if (image.format()->stokes && !keeps_stokes(renderer)) {
+    std::string others;
+    for (const std::string& name : polarization_followers()) others += (others.empty() ? "" : ", ") + name;
+    image.fail("layers", renderer.class_info().name +
+                             " does not tell the polarization of its light, so that the layer 'stokes' "
+                             "cannot be kept; these do: " +
+                             others);
+  }
 }
 
 }  // namespace

@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <unordered_set>
 
 #include "describe/guard.h"
+#include "etendue/polarizing_scatter.h"
+#include "etendue/render/follows_polarization.h"
 
 namespace etendue {
 
@@ -95,6 +98,53 @@ std::string Renderer::bias() const {
 
 Spectrum Renderer::radiance(const RenderContext&, const Ray&, SampleContext&) const {
   fail({}, "has neither a process of its own nor follows single rays");
+}
+
+// ---- polarization
+// ------------------------------------------------------------------------------------------------------------
+
+bool follows_polarization(const Renderer& renderer) {
+  const auto* following = dynamic_cast<const FollowsPolarization*>(&renderer);
+  return following && following->follows_polarization();
+}
+
+bool keeps_stokes(const Renderer& renderer) {
+  const auto* following = dynamic_cast<const FollowsPolarization*>(&renderer);
+  return following && following->keeps_stokes();
+}
+
+std::vector<std::string> polarization_followers() {
+  std::vector<std::string> names;
+  for (const ClassInfo* info : Registry::instance().subclasses(*Registry::instance().find("Renderer")))
+    if (const auto renderer = ref_cast<Renderer>(create(*info)); keeps_stokes(*renderer) && follows_polarization(*renderer))
+      names.push_back(info->name);
+  return names;
+}
+
+std::vector<std::string> polarizing_plates(const Scene& scene) {
+  std::vector<std::string> plates;
+  std::unordered_set<const Component*> seen;
+  std::vector<const Component*> left = {&scene};
+  const auto look_at = [&](const Value& value) {
+    if (const auto* part = value.as<Ref<Component>>(); part && *part) left.push_back(part->get());
+  };
+  while (!left.empty()) {
+    const Component* next = left.back();
+    left.pop_back();
+    if (!seen.insert(next).second) continue;
+    if (const auto* plate = dynamic_cast<const PolarizingPlate*>(next)) {
+      const bool named = next->origin && !next->origin->name.empty();
+      plates.push_back((named ? "'" + next->origin->name + "'" : "a " + next->class_info().name) + " " + plate->deed());
+    }
+    for (const Member& m : next->class_info().members) {
+      if (m.kind != Kind::component) continue;
+      const Value value = m.get(*next, m);
+      look_at(value);
+      if (const auto* list = value.as<Value::List>())
+        for (const Value& item : *list) look_at(item);
+    }
+  }
+  return plates;
 }
 
 }  // namespace etendue

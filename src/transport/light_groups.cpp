@@ -50,7 +50,7 @@ std::vector<std::string> names_in(const std::string& group, const std::set<std::
 }  // namespace
 
 LightGroups::LightGroups(const Scene& scene, const ImageBuffer& image)
-    : paths_(std::make_shared<const PathLayers>(scene, image)) {
+    : stokes_(image.format()->stokes), paths_(std::make_shared<const PathLayers>(scene, image)) {
   const std::vector<std::string>& wanted = image.format()->light_groups;
   if (wanted.empty()) return;
   count_ = int(wanted.size());
@@ -75,10 +75,10 @@ thread_local constinit LightParts* LightParts::collecting_ = nullptr;
 
 LightParts::LightParts(const ImageBuffer& image, const LightGroups& groups)
     : groups_(groups), lengths_(size_t(image.path_lengths)), states_(&groups.paths()), before_(collecting_) {
-  // report_light only calls LightParts::add if lengths are stored, so groups and expressions need at least one length.
+  // report_light only calls LightParts::add if lengths are stored, so all other parts need at least one length.
   first_group_ = groups.any() ? std::max<size_t>(lengths_, 1) : lengths_;
   first_expression_ = first_group_ + size_t(groups.count());
-  parts_.resize(first_expression_ + groups.paths().count());
+  parts_.resize(first_expression_ + groups.paths().count() + (groups.stokes() ? PictureFormat::stokes_parts : 0));
   collecting_ = groups.any() ? this : nullptr;
 }
 
@@ -107,6 +107,14 @@ void LightParts::add(int length, const SceneObject* luminaire, const Spectrum& l
   if (!collecting_) return;
   each_label(length, luminaire, light, matches,
              [](const SplatLabel& label, const Spectrum& part) { collecting_->take(label, part); });
+}
+
+void LightParts::add_stokes(const Spectrum& s1, const Spectrum& s2, const Spectrum& s3) {
+  if (!collecting_ || !collecting_->groups_.stokes()) return;
+  Spectrum* const sums = collecting_->parts_.data() + (collecting_->parts_.size() - PictureFormat::stokes_parts);
+  sums[0] += s1;
+  sums[1] += s2;
+  sums[2] += s3;
 }
 
 void LightParts::add(const Labelled& part) {

@@ -6,9 +6,11 @@
 
 namespace etendue {
 
-Spectrum shadow_transmittance_slowly(const Scene& scene, const Ray& shadow, const MediumStack* around,
+namespace {
+
+Spectrum transmittance_of_shadow_ray(const Scene& scene, const Ray& shadow, const MediumStack* around,
                                      const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena, Transport transport,
-                                     Spectrum* likely) {
+                                     Spectrum* likely, NullCrossings* crossed) {
   // Most rays meet no surface at all, or an opaque one.
   if ((!around || around->empty()) && !scene.any(shadow)) return Spectrum(1.0f);
   MediumStack media;
@@ -48,6 +50,7 @@ Spectrum shadow_transmittance_slowly(const Scene& scene, const Ray& shadow, cons
       // Requested alone, the lobe has probability 1, and its weight is the fraction that is let through.
       fraction *= straight->weight;
       if (likely) *likely *= straight->weight;
+      if (crossed) crossed->crossed(*scatter, -ray.direction);
     }
     if (around) cross_boundary(media, object, point.normal, ray.direction);
     ray.origin = point.exit(ray.direction);
@@ -60,6 +63,21 @@ Spectrum shadow_transmittance_slowly(const Scene& scene, const Ray& shadow, cons
     }
   }
   return {};
+}
+
+}  // namespace
+
+Spectrum shadow_transmittance_slowly(const Scene& scene, const Ray& shadow, const MediumStack* around,
+                                     const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena, Transport transport,
+                                     Spectrum* likely) {
+  return transmittance_of_shadow_ray(scene, shadow, around, wavelengths, numbers, arena, transport, likely, nullptr);
+}
+
+Spectrum shadow_transmittance_slowly(const Scene& scene, const Ray& shadow, const MediumStack* around,
+                                     const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena,
+                                     NullCrossings& crossings) {
+  return transmittance_of_shadow_ray(scene, shadow, around, wavelengths, numbers, arena, Transport::radiance, nullptr,
+                                     &crossings);
 }
 
 }  // namespace etendue

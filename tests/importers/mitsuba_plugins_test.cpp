@@ -155,11 +155,22 @@ TEST(MitsubaLight, TheSunStandsWhereItDoesAtAPlaceAndTime) {
 }
 
 TEST(MitsubaSurface, WhatFiltersPolarizationLetsHalfThrough) {
-  for (const auto& [bsdf, expected] : {std::pair("<bsdf type=\"polarizer\"><float name=\"theta\" value=\"30\"/></bsdf>", 0.5),
-                                       {"<bsdf type=\"circular\"><float name=\"transmittance\" value=\"0.6\"/></bsdf>", 0.3},
-                                       {"<bsdf type=\"retarder\"/>", 1.0}})
-    EXPECT_NEAR(brightness(import_text(scene(sensor() + integrator(4) + before_sky(bsdf))), "polarization"), expected, 0.02)
-        << bsdf;
+  struct Case {
+    const char* bsdf;
+    double expected;
+    const char *told, *description;
+  };
+  for (const Case& c :
+       {Case{"<bsdf type=\"polarizer\"><float name=\"theta\" value=\"30\"/></bsdf>", 0.5, "", "LinearPolarizer { angle: -30"},
+        Case{"<bsdf type=\"retarder\"><float name=\"theta\" value=\"20\"/><float name=\"delta\" value=\"180\"/></bsdf>", 1, "",
+             "Retarder { angle: 20 deg, retardance: 0.5"},
+        Case{"<bsdf type=\"circular\"><float name=\"transmittance\" value=\"0.6\"/></bsdf>", 0.3, "without polarization",
+             "MaskShader"}}) {
+    const Imported read = import_text(scene(sensor() + integrator(4) + before_sky(c.bsdf)));
+    EXPECT_NEAR(brightness(read, c.told), c.expected, 0.02) << c.bsdf;
+    ASSERT_TRUE(read.job);
+    EXPECT_NE(write_description(*read.job).find(c.description), std::string::npos) << write_description(*read.job);
+  }
 }
 
 TEST(MitsubaSurface, OwnTablesOfMetalsAreExact) {

@@ -370,3 +370,22 @@ def test_other_pictures_have_none():
     assert len(image.wavelengths) == len(image.band_edges) == 0
     with pytest.raises(etendue.Error, match="no spectrum"):
         image.spectrum
+
+
+def test_stokes_vectors_of_a_filter_are_those_of_linear_light():
+    job = etendue.loads(
+        """Job { renderer: PolarizedPathTracer { samples: 4 }
+        camera: OrthographicCamera { from: [0, 0, 5], to: [0, 0, 0], up: [0, 1, 0], width: 1 }
+        image: ImageBuffer { width: 3, height: 2, layers: ["stokes"] }
+        scene: BruteForceScene { objects: [
+            Rectangle { corner: [-2, -2, 0], edge_u: [4, 0, 0], edge_v: [0, 4, 0], shader: LinearPolarizer { angle: 30 deg } }
+            Environment { emission: DiffuseEmission { radiance: 1 } } ] } }"""
+    )
+    image = etendue.render(job, progress=False)
+    stokes = image.stokes
+    assert stokes.shape == (2, 3, 4, 3)
+    assert (stokes[:, :, 0] == image.pixels[:, :, :3]).all() and (stokes[:, :, 1] == image["S1"]).all()
+    assert np.allclose(stokes[:, :, 1], stokes[:, :, 0] * 0.5, atol=1e-4)
+    assert np.allclose(stokes[:, :, 2], stokes[:, :, 0] * np.sqrt(0.75), atol=1e-4)
+    with pytest.raises(etendue.Error, match="no Stokes vectors"):
+        etendue.Image.from_array(np.zeros((2, 3, 3))).stokes

@@ -10,6 +10,8 @@
 //
 // Layers by light path expressions (path_layers.h) are stored the same way: `report_light` and `splat_light` are also given the
 // expressions that the path matches.
+//
+// The polarization of light, for the layer "stokes", is collected in the same way (add_stokes).
 
 #include <cstdint>
 #include <span>
@@ -30,8 +32,10 @@ class LightGroups {
 
   /// The light path expressions of the image.
   const PathLayers& paths() const { return *paths_; }
-  /// Whether any of both is wanted.
-  bool any() const { return count_ > 0 || paths_->count() > 0; }
+  /// Whether the Stokes vectors of light are wanted.
+  bool stokes() const { return stokes_; }
+  /// Whether any of these is wanted.
+  bool any() const { return count_ > 0 || paths_->count() > 0 || stokes_; }
   /// The number of groups; 0: the image has none.
   int count() const { return count_; }
   /// The group of a luminaire; null: light without a luminaire, such as that of a medium.
@@ -42,11 +46,13 @@ class LightGroups {
 
  private:
   int count_ = 0;
+  bool stokes_ = false;
   std::vector<std::uint8_t> group_;  ///< of each luminaire
   std::shared_ptr<const PathLayers> paths_;
 };
 
-/// The light of a sample in the parts that a film stores: by path length, by group and by light path expression. As long as it
+/// The light of a sample in the parts that a film stores: by path length, by group, by light path expression, and the rest of
+/// its Stokes vector. As long as it
 /// exists it collects the arguments of `report_light` on its thread; if there are several, the newest does.
 class LightParts {
  public:
@@ -78,6 +84,8 @@ class LightParts {
   static void add(int length, const SceneObject* luminaire, const Spectrum&, PathState matches);
   static void add(const Labelled&);
   static void weigh(const Spectrum&);  ///< multiplies all light
+  /// S1, S2 and S3 of light of which S0 is given to report_light, relative to the camera's reference direction.
+  static void add_stokes(const Spectrum& s1, const Spectrum& s2, const Spectrum& s3);
   /// Calls `visit(label, light)` for each part of the light that has a label of its own.
   template <class Visit>
   static void each_label(int length, const SceneObject* luminaire, const Spectrum& light, PathState matches,

@@ -17,6 +17,18 @@ namespace etendue {
 Spectrum shadow_transmittance_slowly(const Scene&, const Ray&, const MediumStack* media, const Wavelengths&, NumberStream&,
                                      Arena&, Transport, Spectrum* likely);
 
+/// Receives the surfaces that a shadow ray passes by null scattering, in the order of the ray. `out` is opposite to the ray.
+class NullCrossings {
+ public:
+  virtual void crossed(const Scatter&, const Vector3& out) = 0;
+
+ protected:
+  ~NullCrossings() = default;
+};
+/// The same, and tells of the surfaces that the ray passes, until one is opaque.
+Spectrum shadow_transmittance_slowly(const Scene&, const Ray&, const MediumStack* media, const Wavelengths&, NumberStream&,
+                                     Arena&, NullCrossings&);
+
 inline Spectrum shadow_transmittance(const Scene& scene, const Ray& ray, const MediumStack* media,
                                      const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena,
                                      Transport transport = Transport::radiance, Spectrum* likely = nullptr) {

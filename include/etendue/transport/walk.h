@@ -37,6 +37,8 @@ struct NoEvents {
   void emitted(const Spectrum&) const {}
   /// The walk passes an emitter whose surface only scatters null: the vertex lies on it during the call.
   void crossed_luminaire() const {}
+  /// The walk passes a surface by null scattering: the vertex lies on it during the call. Called after crossed_luminaire.
+  void passed() const {}
   /// The walk enters a medium, along its ray from the origin and up to this distance [m] unless it is scattered before.
   void through(const Medium&, float) const {}
 };
@@ -346,6 +348,7 @@ class Walk {
     if (alone && vertex.point.object->luminaire()) events.crossed_luminaire();
     throughput *= fraction / q;
     segment_transmittance *= fraction;
+    events.passed();
     cross();
     return true;
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "app/scene_options.h"
@@ -9,6 +10,7 @@
 #include "check/warnings/scene_warnings.h"
 #include "core/number_text.h"
 #include "etendue/mesh_facts.h"
+#include "etendue/render/follows_polarization.h"
 
 namespace etendue {
 
@@ -70,7 +72,9 @@ void report_light(const Job& job, const SceneTraits& traits) {
   show_warnings(scene_warnings(job));
   if (job.scene->luminaires().empty() && traits.emissive_media.empty()) return;
   advise(job);
-  const std::vector<std::string> renderers = renderers_that_find_all(traits);
+  std::vector<std::string> renderers = renderers_that_find_all(traits);
+  if (!polarizing_plates(*job.scene).empty())
+    std::erase_if(renderers, [](const std::string& name) { return !std::ranges::count(polarization_followers(), name); });
   if (renderers.empty())
     fmt::print("No known renderer finds all light of this scene.\n");
   else

@@ -7,6 +7,7 @@
 #include "describe/guard.h"
 #include "etendue/describe/declared_class.h"
 #include "etendue/language/language.h"
+#include "etendue/render/follows_polarization.h"
 #include "etendue/render/shrinking_bias.h"
 #include "limit.h"
 
@@ -128,6 +129,7 @@ Choice choose_renderers(const Job& job, const std::vector<NamedRenderer>& given,
   const bool named = !given.empty();
   require_different(given);
   const SceneTraits traits = scene_traits(*job.scene, *job.camera);
+  const bool polarized = !polarizing_plates(*job.scene).empty();
   Choice choice;
   for (const NamedRenderer& one : named ? given : all_renderers(job)) {
     Candidate candidate{one.name, one.renderer, {}};
@@ -142,7 +144,14 @@ Choice choose_renderers(const Job& job, const std::vector<NamedRenderer>& given,
       prepare_tree(*candidate.renderer);
     }
     candidate.misses = missed_light(*candidate.renderer, traits);
-    if (!candidate.misses.empty() && !(force && named))
+    const bool follows = follows_polarization(*candidate.renderer);
+    if (follows && !named && candidate.renderer != job.renderer)
+      choice.left_out.push_back({candidate.name,
+                                 "follows the polarization of light, on which the picture may depend; "
+                                 "--renderers compares it nevertheless"});
+    else if (polarized && !follows && !(force && named))
+      choice.left_out.push_back({candidate.name, "does not follow the polarization of light, on which the picture depends"});
+    else if (!candidate.misses.empty() && !(force && named))
       choice.left_out.push_back({candidate.name, "misses " + joined(candidate.misses)});
     else if (const std::string bias = candidate.renderer->bias(); !bias.empty() && !named)
       choice.left_out.push_back({candidate.name, "is biased: " + bias + "; --renderers compares it nevertheless"});

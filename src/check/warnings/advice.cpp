@@ -9,6 +9,8 @@
 #include "core/number_text.h"
 #include "describe/guard.h"
 #include "etendue/describe/registry.h"
+#include "etendue/render/follows_polarization.h"
+#include "scene_warnings.h"
 
 namespace etendue {
 
@@ -37,6 +39,12 @@ std::vector<std::string> advice_lines(const Job& job) {
     lines.push_back(job.renderer->class_info().name + " is biased: " + bias);
   for (const Advice& advice : job.renderer->misses(scene_traits(*job.scene, *job.camera)))
     lines.push_back(advice_text(job.renderer->class_info().name, advice));
+  if (const std::vector<std::string> plates = polarizing_plates(*job.scene);
+      !plates.empty() && shows_light(*job.renderer) && !follows_polarization(*job.renderer))
+    lines.push_back(fmt::format("{} takes all light for unpolarized, but {}{}; {} can", job.renderer->class_info().name,
+                                plates[0],
+                                plates.size() > 1 ? fmt::format(", and there are {} more such plates", plates.size() - 1) : "",
+                                listed(polarization_followers())));
   return lines;
 }
 

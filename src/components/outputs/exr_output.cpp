@@ -19,7 +19,8 @@ class ExrOutput final : public Output {
   static void describe(Description<ExrOutput>& d) {
     d.summary(
          "OpenEXR: linear values without bounds, the film's layers (light groups as light.NAME.R, .G, .B, light path "
-         "expressions as path.NAME.R; the bands of a SpectralFilm as S0.405nm, …), and what is known "
+         "expressions as path.NAME.R, Stokes vectors as S1.R, …; the bands of a SpectralFilm as S0.405nm, …), and what is "
+         "known "
          "of the picture as attributes. The "
          "encoding of a tone map is undone, as the format holds linear values by definition.",
          "Kainz, Bogart & Hess 2004, The OpenEXR image file format; Fichet, Pacanowski & Wilkie 2021, An OpenEXR layout for "
@@ -86,13 +87,14 @@ class ExrOutput final : public Output {
     header.texts["spectralLayoutVersion"] = "1.0";
     header.texts["emissiveUnits"] = "W.m^-2.sr^-1";
   }
-  /// Converts light groups and layers by light path expression to the RGB space of the image, so that other programs can add
-  /// them up.
+  /// Converts light groups, layers by light path expression and Stokes vectors to the RGB space of the image, so that other
+  /// programs can add them up.
   static void convert_parts(Image& image, const RgbSpace& space) {
     if (space.name == "xyz") return;
     const auto is = [&](size_t c, const char* end) {
       const std::string& name = image.channels[c];
-      return (name.starts_with("light.") || name.starts_with("path.")) && image.channels[c].ends_with(end);
+      const bool stokes = name.size() == 4 && name[0] == 'S' && name[1] >= '1' && name[1] <= '3';
+      return (name.starts_with("light.") || name.starts_with("path.") || stokes) && image.channels[c].ends_with(end);
     };
     for (size_t c = 0; c + 2 < image.channels.size(); ++c) {
       if (!is(c, ".X") || !is(c + 1, ".Y") || !is(c + 2, ".Z")) continue;

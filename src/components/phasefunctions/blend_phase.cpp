@@ -3,14 +3,14 @@
 #include <algorithm>
 
 #include "etendue/core/math.h"
-#include "etendue/phase_function.h"
+#include "etendue/polarizing_scatter.h"
 
 namespace etendue {
 namespace {
 
 // p = (1 - w) p_1 + w p_2. One random number chooses the function and samples it: numbers below w are rescaled to [0, 1) for
 // the second function, the others for the first.
-class BlendPhase final : public PhaseFunction {
+class BlendPhase final : public PhaseFunction, public PolarizingPhase {
  public:
   static void describe(Description<BlendPhase>& d) {
     d.summary(
@@ -26,6 +26,18 @@ class BlendPhase final : public PhaseFunction {
     constexpr float below_one = 0x1.fffffep-1f;
     if (u < amount) return second->sample(std::min(u / amount, below_one));
     return first->sample(std::min((u - amount) / (1 - amount), below_one));
+  }
+
+  bool polarization(float h, Mueller& m) const override {
+    const float all = value(h), parts[2] = {(1 - amount) * first->value(h), amount * second->value(h)};
+    m = Mueller();
+    for (int k = 0; k < 2; ++k) {
+      Mueller part;
+      if (!polarization_of(*(k == 0 ? first : second), h, part)) part = Mueller::depolarizer();
+      part *= Spectrum(all > 0 ? parts[k] / all : 0.5f);
+      m += part;
+    }
+    return true;
   }
 
   Ref<PhaseFunction> first, second;

@@ -24,14 +24,14 @@
 
 #include "etendue/core/math.h"
 #include "etendue/describe/registry.h"
-#include "etendue/render/renderer.h"
+#include "etendue/render/follows_polarization.h"
 #include "etendue/transport/light_groups.h"
 #include "film/pixel_area.h"
 
 namespace etendue {
 namespace {
 
-class AdaptiveSampling final : public Renderer {
+class AdaptiveSampling final : public Renderer, public FollowsPolarization {
  public:
   Ref<Renderer> inner = ref_cast<Renderer>(Registry::instance().create("PathTracer"));
   int most = 8;
@@ -66,6 +66,8 @@ class AdaptiveSampling final : public Renderer {
   void prepare() override { map_filter = inner ? inner->map_filter : 0; }
   Expectation expectation() const override { return inner ? inner->expectation() : Expectation::unbiased; }
   PathClasses finds() const override { return inner ? inner->finds() : no_paths; }
+  bool follows_polarization() const override { return inner && etendue::follows_polarization(*inner); }
+  bool keeps_stokes() const override { return inner && etendue::keeps_stokes(*inner); }
 
   /// Mean samples per pixel in a whole step: enough that some pixels can have fewer.
   static constexpr std::uint32_t mean_samples = 8;

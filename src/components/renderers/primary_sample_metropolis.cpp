@@ -8,11 +8,12 @@
 // Paths of one and two segments (visible emitters and direct light) are better estimated by samples that are well distributed
 // over the film: with `direct` the inner renderer estimates them that way, and the chains carry the remaining light.
 
+#include "etendue/render/follows_polarization.h"
 #include "etendue/render/primary_sample_chains.h"
 
 namespace etendue {
 
-class PrimarySampleMetropolis final : public Renderer {
+class PrimarySampleMetropolis final : public Renderer, public FollowsPolarization {
  public:
   Ref<Renderer> inner = ref_cast<Renderer>(Registry::instance().create("BidirectionalPathTracer"));
   bool direct = true;
@@ -40,6 +41,9 @@ class PrimarySampleMetropolis final : public Renderer {
 
   void prepare() override { map_filter = inner ? inner->map_filter : 0; }
   PathClasses finds() const override { return inner ? inner->finds() : no_paths; }
+  /// Chains are made of the whole light alone, without its Stokes vector.
+  bool follows_polarization() const override { return inner && etendue::follows_polarization(*inner); }
+  bool keeps_stokes() const override { return false; }
   Expectation expectation() const override { return inner ? inner->expectation() : Expectation::unbiased; }
   bool splats() const override { return true; }
   Estimator estimator() const override { return Estimator::correlated; }

@@ -28,6 +28,12 @@ Vector3 PhasedVolume::sample_phase(const Point3&, const Vector3& out, Point2 u, 
   return Frame(Normal3(phase_function ? -out : peak(out))).to_world({r * cosine, r * sine, 1 - h});
 }
 
+bool PhasedVolume::polarization(const Vector3& out, const Vector3& in, Polarization& event) const {
+  if (!phase_function) return false;
+  event.x_in = event.x_out = common_perpendicular(out, in);
+  return polarization_of(*phase_function, length_squared(in + out) / 2, event.mueller);
+}
+
 void PhasedVolume::check_phase() const {
   if (!(std::abs(anisotropy) < 1)) fail("anisotropy", "must lie between -1 and 1, both excluded");
   if (phase_function && anisotropy != 0)

@@ -1,7 +1,7 @@
 #pragma once
 // PhasedVolume: base class of media with one phase function that is the same everywhere; the density may vary.
 
-#include "etendue/phase_function.h"
+#include "etendue/polarizing_scatter.h"
 #include "etendue/volume_shader.h"
 
 namespace etendue {
@@ -10,10 +10,12 @@ namespace etendue {
 inline constexpr float most_extinction = 1e12f;
 inline constexpr char too_dense[] = "the extinction may become {:g} per metre, which light cannot be followed through";
 
-class PhasedVolume : public VolumeShader {
+class PhasedVolume : public VolumeShader, public PolarizingVolume {
  public:
   float phase(const Point3&, const Vector3& out, const Vector3& in) const final;
   Vector3 sample_phase(const Point3&, const Vector3& out, Point2 u, float& pdf) const final;
+  /// Henyey's and Greenstein's function depolarizes.
+  bool polarization(const Vector3& out, const Vector3& in, Polarization& event) const final;
 
   Ref<PhaseFunction> phase_function;
   float anisotropy = 0;

@@ -1,4 +1,5 @@
-// etendue image diff, info, tonemap, spectrum, sensor, balance, false-colour, glare, cryptomatte, merge: tools for image files.
+// etendue image diff, info, tonemap, spectrum, sensor, balance, false-colour, glare, cryptomatte, merge, polarizer: tools for
+// image files.
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@
 #include "image_false_color.h"
 #include "image_glare.h"
 #include "image_merge.h"
+#include "image_polarizer.h"
 #include "image_sensor.h"
 #include "image_spectrum.h"
 
@@ -175,6 +177,7 @@ void add_image_command(Command& program) {
   add_image_glare(command);
   add_image_cryptomatte(command);
   add_image_merge(command);
+  add_image_polarizer(command);
 }
 
 }  // namespace etendue

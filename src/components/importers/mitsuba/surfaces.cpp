@@ -100,11 +100,27 @@ Converter::Surface Converter::make_surface(const Element& e, Uv uv, const std::s
   return {shader, false};
 }
 
-// Polarizing filters transmit half of unpolarized light, or all of it, without a change of direction, as Mitsuba's unpolarized
-// variants do.
+// A linear polarizer and a retarder are plates here too. Others transmit half of unpolarized light, or all of it, without a
+// change of direction, as in Mitsuba's unpolarized variants.
 Converter::Surface Converter::filter_of_polarization(const Element& e, Uv uv, const std::string& name) {
-  inexact(e,
-          fmt::format("'{}' lets through what it lets through of light without polarization: there is no other here", e.type));
+  const Value angle = scalar(e, "theta", 0, uv);
+  const auto* turned = angle.as<Number>();
+  if (turned && e.type == "polarizer" && e.boolean("polarizing", true)) {
+    Ref<Component> sheet = make("LinearPolarizer", e, name);
+    set_member(*sheet, "angle", -turned->value, e.at);  // Mitsuba turns it clockwise, and a retarder the other way
+    set(*sheet, "transmitted", scalar(e, "transmittance", 1, uv));
+    return {sheet, true};
+  }
+  if (turned && e.type == "retarder" && !e.has("transmittance")) {
+    const Value delta = scalar(e, "delta", 90, uv);
+    if (const auto* degrees = delta.as<Number>()) {
+      Ref<Component> plate = make("Retarder", e, name);
+      set_member(*plate, "angle", turned->value, e.at);
+      set_member(*plate, "retardance", degrees->value / 360, e.at);
+      return {plate, true};
+    }
+  }
+  inexact(e, fmt::format("'{}' lets through what it lets through of light without polarization", e.type));
   e.ignore({"theta", "delta", "left_handed", "polarizing"});
   const double share = e.type == "retarder" ? 1 : 0.5;
   const Value through = scalar(e, "transmittance", 1, uv);

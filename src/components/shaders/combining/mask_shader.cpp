@@ -2,6 +2,7 @@
 
 #include "components/shaders/part_choice.h"
 #include "components/shaders/scalar_map.h"
+#include "etendue/polarizing_scatter.h"
 
 namespace etendue {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 // Sampling chooses between null scattering and the shader below, in proportion to 1 - a and a times the albedo below. Null
 // scattering by the shader below belongs to the second. If only null scattering is requested nothing is chosen: the weight is
 // the whole fraction, 1 - a + a t with t that of the shader below, on which shadow rays rely.
-class MaskScatter final : public Scatter {
+class MaskScatter final : public Scatter, public PolarizingScatter {
  public:
   MaskScatter(const SurfacePoint& p, const Scatter* below, float opacity)
       : Scatter(p, Lobes((below ? below->lobes() : no_lobes) | null_scattering)), below_(below), opacity_(opacity) {
@@ -44,6 +45,16 @@ class MaskScatter final : public Scatter {
     if (below_) sum = below_->albedo(out, lobes) * opacity_;
     if (lobes & null_scattering) sum += Spectrum(1 - opacity_);
     return sum;
+  }
+
+  /// Light through holes stays as it is.
+  bool polarization(const Vector3& out, const Vector3& in, Lobes lobes, Polarization& event) const override {
+    if (lobes != null_scattering) return below_ && polarization_of(*below_, out, in, lobes, event);
+    PolarizationMean mean(out, in);
+    const Vector3 x = any_perpendicular(out);
+    mean.add(Spectrum(1 - opacity_), {Mueller::identity(), x, x});
+    if (below_) add_part(mean, *below_, out, in, lobes, opacity_ * straight_fraction(below_, out, Transport::radiance));
+    return mean.mean(event);
   }
 
  private:

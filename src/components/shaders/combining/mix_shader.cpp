@@ -2,6 +2,7 @@
 
 #include "components/shaders/part_choice.h"
 #include "components/shaders/scalar_map.h"
+#include "etendue/polarizing_scatter.h"
 
 namespace etendue {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 // its p_k is not the true pdf of its samples, and dividing by it would be wrong: a sample then counts for its own part alone,
 // with weight share * weight / P_k. The pdf returned is the same sum nevertheless: MIS weights only need the same function in
 // all places.
-class MixScatter final : public Scatter {
+class MixScatter final : public Scatter, public PolarizingScatter {
  public:
   MixScatter(const SurfacePoint& p, const Scatter* first, const Scatter* second, float amount, bool stochastic)
       : Scatter(p, Lobes((first ? first->lobes() : no_lobes) | (second ? second->lobes() : no_lobes))),
@@ -75,6 +76,21 @@ class MixScatter final : public Scatter {
     for (int k = 0; k < 2; ++k)
       if (parts_[k]) sum += parts_[k]->albedo(out, lobes) * shares_[k];
     return sum;
+  }
+
+  // Specular lobes of both parts that have the same direction, as those of two mirrors, count by their albedos, whichever was
+  // sampled: the mean of the samples is then right.
+  bool polarization(const Vector3& out, const Vector3& in, Lobes lobes, Polarization& event) const override {
+    PolarizationMean mean(out, in);
+    for (int k = 0; k < 2; ++k) {
+      const Scatter* const part = parts_[k];
+      if (!part || !part->has(lobes)) continue;
+      add_part(mean, *part, out, in, lobes,
+               shares_[k] * (lobes & smooth_lobes       ? part->evaluate(out, in, {.lobes = lobes})
+                             : lobes == null_scattering ? straight_fraction(part, out, Transport::radiance)
+                                                        : part->albedo(out, lobes)));
+    }
+    return mean.mean(event);
   }
 
  private:

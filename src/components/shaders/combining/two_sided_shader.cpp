@@ -1,7 +1,7 @@
 // TwoSidedShader: one shader for the front of a surface and another for the back.
 
 #include "components/shaders/part_choice.h"
-#include "etendue/shader.h"
+#include "etendue/polarizing_scatter.h"
 
 namespace etendue {
 namespace {
@@ -9,7 +9,7 @@ namespace {
 // Neither part transmits light, so a pair of directions lies on one side, and f is that of this side's part: nothing is chosen
 // at random, and pdfs and adjoints are those of the part. Sides are those of the geometric normal, whatever shading normals the
 // parts have.
-class TwoSidedScatter final : public Scatter {
+class TwoSidedScatter final : public Scatter, public PolarizingScatter {
  public:
   TwoSidedScatter(const SurfacePoint& p, const Scatter* front, const Scatter* back)
       : Scatter(p, Lobes((front ? front->lobes() : no_lobes) | (back ? back->lobes() : no_lobes))),
@@ -33,6 +33,10 @@ class TwoSidedScatter final : public Scatter {
   Spectrum world_albedo(const Vector3& out, Lobes lobes) const override {
     const Scatter* const part = seen_from(out);
     return part ? part->albedo(out, lobes) : Spectrum();
+  }
+  bool polarization(const Vector3& out, const Vector3& in, Lobes lobes, Polarization& event) const override {
+    const Scatter* const part = seen_from(out);
+    return part && polarization_of(*part, out, in, lobes, event);
   }
 
  private:

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "components/shaders/polarized_fresnel.h"
 #include "components/shaders/reflectance.h"
 #include "components/shaders/tangent_frame.h"
 #include "etendue/transport/medium_stack.h"
@@ -23,6 +24,16 @@ struct BoundaryReflectance {
 
   Spectrum at(float cosine) const {
     return rgb && in_vacuum ? rgb->reflectance(cosine, wavelengths) : seen(fresnel_conductor(cosine, n, k));
+  }
+  /// What reflection does to polarization. Where n and k are given for red, green and blue, each wavelength takes those of the
+  /// colour it belongs to.
+  Polarization polarization(const Vector3& out, const Vector3& in) const {
+    const Spectrum& real = rgb && in_vacuum ? rgb->n() : n;
+    const Spectrum& imaginary = rgb && in_vacuum ? rgb->k() : k;
+    return polarized::reflection(out, in, [&](int lane, float cosine) {
+      const int at = !rgb ? lane : wavelengths[lane] > 580 ? 0 : wavelengths[lane] > 490 ? 1 : 2;
+      return polarized::reflected(cosine, {real[at], imaginary[at]});
+    });
   }
   Spectrum mean() const { return rgb && in_vacuum ? rgb->mean_reflectance(wavelengths) : seen(mean_fresnel_conductor(n, k)); }
 

@@ -1,6 +1,7 @@
 // Dielectric: the boundary of glass, water and the like, smooth or rough.
 
 #include "components/shaders/fresnel.h"
+#include "components/shaders/polarized_fresnel.h"
 #include "components/shaders/reflectance.h"
 #include "components/shaders/tangent_frame.h"
 #include "etendue/scatter_model.h"
@@ -16,7 +17,7 @@ namespace {
 // refracted direction is the hero's; where the index differs between the path's wavelengths the sample is marked dispersive and
 // the path drops the others, which is compensated in the hero's pdf (see Wavelengths::drop_secondary). A wavelength that is
 // totally reflected has F_i = 1 like any other.
-class DielectricScatter final : public ScatterModel<DielectricScatter> {
+class DielectricScatter final : public ScatterModel<DielectricScatter>, public PolarizingScatter {
  public:
   /// eta: index inside over index outside.
   DielectricScatter(const SurfacePoint& p, Spectrum eta, bool varies, bool dispersive, const BoundaryTint& tint)
@@ -73,7 +74,16 @@ class DielectricScatter final : public ScatterModel<DielectricScatter> {
     return sum;
   }
 
+  bool polarization(const Vector3& out, const Vector3& in, Lobes lobes, Polarization& event) const override {
+    event = polarized::at_dielectric(out, in, seen_from(out, eta_), lobes);
+    return true;
+  }
+
  private:
+  /// The same per wavelength, seen from a world direction.
+  Spectrum seen_from(const Vector3& out, const Spectrum& eta) const {
+    return dot(normal_, out) > 0 ? eta : Spectrum(1.0f) / eta;
+  }
   /// Index behind the boundary over index in front, seen from `out`.
   static float towards(const Vector3& out, float eta) { return out.z > 0 ? eta : 1 / eta; }
 

@@ -3,16 +3,32 @@
 // instead.
 //
 // A Fresnel is copied, and has `Spectrum at(float cosine) const`, the reflectance at a facet, and `Spectrum mean() const`, its
-// mean under diffuse light, the integral of 2 c F(c) over the cosine c.
+// mean under diffuse light, the integral of 2 c F(c) over the cosine c. If it also has `Polarization polarization(const
+// Vector3& out, const Vector3& in) const`, what reflection at the facet between these directions does to polarization, the
+// reflection polarizes light.
+
+#include <concepts>
+#include <type_traits>
 
 #include "etendue/core/warp.h"
+#include "etendue/polarizing_scatter.h"
 #include "etendue/scatter_model.h"
 #include "microfacet.h"
 
 namespace etendue {
 
 template <class Fresnel>
-class MirrorReflection final : public ScatterModel<MirrorReflection<Fresnel>> {
+concept PolarizingFresnel = requires(const Fresnel& fresnel, const Vector3& v) {
+  { fresnel.polarization(v, v) } -> std::same_as<Polarization>;
+};
+/// Of a Fresnel that says nothing of polarization.
+struct NotPolarizing {};
+/// The second base of a reflection, whose function `polarization` it implements.
+template <class Fresnel>
+using PolarizingIf = std::conditional_t<PolarizingFresnel<Fresnel>, PolarizingScatter, NotPolarizing>;
+
+template <class Fresnel>
+class MirrorReflection final : public ScatterModel<MirrorReflection<Fresnel>>, public PolarizingIf<Fresnel> {
  public:
   static constexpr bool uses_choice = false;
 
@@ -32,6 +48,10 @@ class MirrorReflection final : public ScatterModel<MirrorReflection<Fresnel>> {
   Spectrum local_albedo(const Vector3& out, Lobes lobes) const {
     return (lobes & specular_reflection) ? tint_ * fresnel_.at(std::abs(out.z)) : Spectrum();
   }
+  bool polarization(const Vector3& out, const Vector3& in, Lobes, Polarization& event) const {
+    event = fresnel_.polarization(out, in);
+    return true;
+  }
 
  private:
   Fresnel fresnel_;
@@ -45,9 +65,9 @@ class MirrorReflection final : public ScatterModel<MirrorReflection<Fresnel>> {
 // reflected light, computed with the mean of F. Samples of f1 that lead below the surface are absorbed, so the pdf integrates
 // to less than 1.
 template <class Fresnel>
-class FacetReflection final : public ScatterModel<FacetReflection<Fresnel>> {
+class FacetReflection final : public ScatterModel<FacetReflection<Fresnel>>, public PolarizingIf<Fresnel> {
   using Base = ScatterModel<FacetReflection<Fresnel>>;
-  using Base::has_choice_;
+  using Base::frame_, Base::has_choice_;
 
  public:
   /// `multiple`: whether light that meets more than one facet is counted, or lost.
@@ -102,6 +122,18 @@ class FacetReflection final : public ScatterModel<FacetReflection<Fresnel>> {
     if (!(lobes & glossy_reflection)) return {};
     const float missing = multiple_reflection_.missing(out);
     return tint_ * (fresnel_.at(distribution_.typical_cosine(out)) * (1 - missing) + multiple_ * missing);
+  }
+
+  /// Light that was scattered more than once is taken for unpolarized.
+  bool polarization(const Vector3& out, const Vector3& in, Lobes, Polarization& event) const {
+    event = fresnel_.polarization(out, in);
+    if (!has_choice_) return true;
+    const Vector3 o = frame_.to_local(out), i = frame_.to_local(in), m = reflection_half_vector(o, i);
+    PolarizationMean mean(out, in);
+    mean.add(fresnel_.at(std::abs(dot(o, m))) * (distribution_.D(m) * distribution_.visibility(o, i)), event);
+    mean.add_unpolarized(multiple_ *
+                         multiple_reflection_.value(multiple_reflection_.missing(o), multiple_reflection_.missing(i)));
+    return mean.mean(event);
   }
 
  private:

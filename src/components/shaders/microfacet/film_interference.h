@@ -75,4 +75,26 @@ inline FilmFractions film_fractions(float cosine, float n0, float n1, std::compl
   return sum;
 }
 
+/// The amplitudes of the same film, for each polarization, with the time dependence e^(-i w t): of transmitted light up to a
+/// factor that both have in common, such that the squares are in proportion to the power.
+struct FilmAmplitudes {
+  film::Complex reflected_s, reflected_p, transmitted_s, transmitted_p;
+};
+inline FilmAmplitudes film_amplitudes(float cosine, float n0, float n1, std::complex<float> n2, float d) {
+  using film::Complex;
+  const float c0 = clamp(cosine, 1e-4f, 1), a2 = square(n0) * (1 - c0) * (1 + c0), q0 = n0 * c0;
+  Complex e1 = square(n1), q1 = film::root(e1 - a2), e2 = n2 * n2, q2 = film::root(e2 - a2);
+  if (std::norm(q1) < 1e-12f * std::norm(e1)) q1 = 1e-3f * n1;  // at the film's critical angle, where all sums are 0 / 0
+  const Complex one_way = std::exp(Complex(0, 2 * pi * d) * q1), lag = one_way * one_way;
+  const auto amplitudes = [&](Complex y0, Complex y1, Complex y2, Complex& reflected, Complex& transmitted) {
+    const Complex r01 = (y0 - y1) / (y0 + y1), r12 = (y1 - y2) / (y1 + y2), all = 1.0f + r01 * r12 * lag;
+    reflected = (r01 + r12 * lag) / all;
+    transmitted = 4.0f * y0 * y1 / ((y0 + y1) * (y1 + y2) * all) * std::sqrt(std::max(y2.real() / y0.real(), 0.0f));
+  };
+  FilmAmplitudes a;
+  amplitudes(q0, q1, q2, a.reflected_s, a.transmitted_s);
+  amplitudes(q0 / square(n0), q1 / e1, q2 / e2, a.reflected_p, a.transmitted_p);
+  return a;
+}
+
 }  // namespace etendue

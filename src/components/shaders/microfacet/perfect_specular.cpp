@@ -1,12 +1,13 @@
 // PerfectSpecular: a mirror.
 
+#include "components/shaders/polarized_fresnel.h"
 #include "components/shaders/reflectance.h"
 #include "etendue/scatter_model.h"
 
 namespace etendue {
 namespace {
 
-class PerfectSpecularScatter final : public ScatterModel<PerfectSpecularScatter> {
+class PerfectSpecularScatter final : public ScatterModel<PerfectSpecularScatter>, public PolarizingScatter {
  public:
   PerfectSpecularScatter(const SurfacePoint& p, Spectrum reflectance)
       : ScatterModel(p, specular_reflection), reflectance_(reflectance) {}
@@ -21,6 +22,11 @@ class PerfectSpecularScatter final : public ScatterModel<PerfectSpecularScatter>
     return true;
   }
   Spectrum local_albedo(const Vector3&, Lobes lobes) const { return (lobes & specular_reflection) ? reflectance_ : Spectrum(); }
+  /// As the limit of a conductor whose index grows: a_s = -1, a_p = 1.
+  bool polarization(const Vector3& out, const Vector3& in, Lobes, Polarization& event) const override {
+    event = polarized::reflection(out, in, [](int, float) { return polarized::Amplitudes{-1, 1}; });
+    return true;
+  }
 
  private:
   Spectrum reflectance_;

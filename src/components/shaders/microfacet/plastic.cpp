@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "coated_body.h"
+#include "components/shaders/polarized_fresnel.h"
 #include "components/shaders/reflectance.h"
 #include "etendue/transport/medium_stack.h"
 #include "roughness.h"
@@ -32,7 +33,7 @@ struct Coat {
   float through(const Vector3& v) const { return rough ? (*rough)(v) : 1 - fresnel_dielectric(std::abs(v.z), eta); }
 };
 
-class PlasticScatter final : public CoatedBodyScatter<PlasticScatter> {
+class PlasticScatter final : public CoatedBodyScatter<PlasticScatter>, public PolarizingScatter {
  public:
   PlasticScatter(const SurfacePoint& p, const MicrofacetDistribution& distribution, const Coat& coat, Spectrum body,
                  bool nonlinear)
@@ -54,6 +55,20 @@ class PlasticScatter final : public CoatedBodyScatter<PlasticScatter> {
     if (lobes & diffuse_reflection) sum += body_albedo_ * through;
     if (lobes & (glossy_reflection | specular_reflection)) sum += Spectrum(1 - through);
     return sum;
+  }
+
+  /// The coat reflects as glass does. The light of the body is unpolarized below the coat, and polarized by passing it; of a
+  /// rough coat as of a smooth one.
+  bool polarization(const Vector3& out, const Vector3& in, Lobes lobes, Polarization& event) const override {
+    const Polarization coat = polarized::at_dielectric(out, in, Spectrum(coat_.eta), specular_reflection);
+    if (lobes & specular_reflection & lobes_ && !(lobes & smooth_lobes)) {
+      event = coat;
+      return true;
+    }
+    PolarizationMean mean(out, in);
+    mean.add(evaluate(out, in, {.lobes = glossy_reflection}), coat);
+    mean.add(evaluate(out, in, {.lobes = diffuse_reflection}), polarized::through_boundary_twice(out, in, frame_.n, coat_.eta));
+    return mean.mean(event);
   }
 
   const MicrofacetDistribution& facets() const { return distribution_; }

@@ -3,6 +3,7 @@
 
 #include "components/shaders/fresnel.h"
 #include "components/shaders/joint_scatter.h"
+#include "components/shaders/polarized_fresnel.h"
 #include "etendue/core/warp.h"
 #include "microfacet.h"
 
@@ -39,7 +40,7 @@ struct BoundaryTint {
 // and no wavelength needs to be dropped. Multiple scattering is tabulated for the hero: its transmitted part is multiplied by
 // eta / eta_hero, lobes keeps both transports adjoint at every wavelength. The resulting error of energy is the relative
 // difference of the indices times the few hundredths of the light that are scattered more than once.
-class RoughDielectric final : public JointScatter<RoughDielectric> {
+class RoughDielectric final : public JointScatter<RoughDielectric>, public PolarizingScatter {
  public:
   /// eta: index below (z < 0) over that above. `multiple`: whether multiple scattering is added, where it is tabulated.
   /// `single`: only the path's hero wavelength is left.
@@ -125,6 +126,18 @@ class RoughDielectric final : public JointScatter<RoughDielectric> {
   Spectrum relative_index(const Vector3& out, const Vector3& in) const {
     if (out.z * in.z > 0) return Spectrum(1.0f);
     return out.z > 0 ? eta_ : Spectrum(1.0f) / eta_;
+  }
+
+  /// Light that was scattered more than once is taken for unpolarized.
+  bool polarization(const Vector3& out, const Vector3& in, Lobes, Polarization& event) const override {
+    const bool transmitted = dot(normal_, out) * dot(normal_, in) < 0;
+    PolarizationMean mean(out, in);
+    const Vector3 o = frame_.to_local(out), i = frame_.to_local(in);
+    const Spectrum once = transmitted ? transmission(o, i, lobes_).value : reflection(o, i, lobes_).value;
+    mean.add(once, polarized::at_dielectric(out, in, dot(normal_, out) > 0 ? eta_ : Spectrum(1.0f) / eta_,
+                                            transmitted ? glossy_transmission : glossy_reflection));
+    if (multiple_) mean.add_unpolarized(side_factor(o, i) * multiple_refraction_.value(o, i));
+    return mean.mean(event);
   }
 
  private:

@@ -1,6 +1,7 @@
 // ThinDielectric: a pane of glass, so thin that light leaves it where it came in.
 
 #include "components/shaders/fresnel.h"
+#include "components/shaders/polarized_fresnel.h"
 #include "components/shaders/reflectance.h"
 #include "etendue/scatter_model.h"
 #include "etendue/transport/medium_stack.h"
@@ -20,7 +21,7 @@ namespace {
 // and R_p = 0.05 give 0.298 apart and 0.278 averaged).
 enum class Polarizations : std::uint8_t { apart, averaged };
 
-class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
+class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter>, public PolarizingScatter {
  public:
   /// eta: index of the slab over that around it; `passage`: transmittance of one passage along the normal.
   ThinDielectricScatter(const SurfacePoint& p, Spectrum eta, Spectrum passage, const BoundaryTint& tint, Polarizations kept)
@@ -63,7 +64,39 @@ class ThinDielectricScatter final : public ScatterModel<ThinDielectricScatter> {
     return sum;
   }
 
+  // With r = r_s r_p of one boundary, each pair of reflections inside multiplies a_p a_s* by a^2 r^2 and each passage of the
+  // slab by a, so that the products add up to geometric series as the powers do:
+  //   r + (1 - R_s)(1 - R_p) a^2 r / (1 - a^2 r^2)  in reflection,   (1 - R_s)(1 - R_p) a / (1 - a^2 r^2)  in transmission,
+  // since the amplitudes through both boundaries have the product 1 - R. They hold for polarizations apart, whatever is chosen
+  // for unpolarized light.
+  bool polarization(const Vector3& out, const Vector3&, Lobes lobes, Polarization& event) const override {
+    const bool reflects = (lobes & specular_reflection) != 0;
+    const float cosine = cosine_of(out);
+    const Vector3 s = common_perpendicular(out, Vector3(frame_.n));
+    event = {{}, s, s};
+    for (int i = 0; i < spectrum_size; ++i) {
+      const polarized::Amplitudes r = polarized::reflected(cosine, eta_[i]);
+      float behind = 0;
+      fresnel_dielectric(cosine, eta_[i], behind);
+      const float a = clear_ ? 1 : behind > 0 ? std::pow(passage_[i], 1 / behind) : 0;
+      const float rs = std::norm(r.s), rp = std::norm(r.p);
+      const polarized::Complex both = std::conj(r.p) * r.s;
+      if (rs >= 1 || rp >= 1) {  // total reflection: nothing gets in
+        polarized::set_mueller(event.mueller, i, 1, 1, both);
+        continue;
+      }
+      const auto power = [&](float R) {
+        const float through = (1 - R) * (1 - R) * a / (1 - a * a * R * R);
+        return reflects ? R + through * a * R : through;
+      };
+      const float r0 = both.real(), through = (1 - rs) * (1 - rp) * a / (1 - a * a * r0 * r0);
+      polarized::set_mueller(event.mueller, i, power(rs), power(rp), reflects ? r0 + through * a * r0 : through);
+    }
+    return true;
+  }
+
  private:
+  float cosine_of(const Vector3& v) const { return std::abs(dot(frame_.n, v)); }
   struct Slab {
     Spectrum reflected, transmitted;
   };

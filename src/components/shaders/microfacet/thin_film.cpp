@@ -1,5 +1,6 @@
 // ThinFilm: interference in one film: oil on water, a soap bubble, the coating of a lens, the tarnish on steel.
 
+#include "components/shaders/polarized_fresnel.h"
 #include "components/shaders/scalar_map.h"
 #include "etendue/object_map.h"
 #include "etendue/scatter_model.h"
@@ -17,7 +18,7 @@ namespace {
 //
 // Reflection is chosen with the mean of the reflectances over the path's wavelengths, not with the hero's alone, which may
 // vanish where the others' do not. The weights R_i / mean R are then at most the number of wavelengths.
-class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
+class ThinFilmScatter final : public ScatterModel<ThinFilmScatter>, public PolarizingScatter {
  public:
   struct Layers {
     Spectrum outside, film, base, absorbing;  ///< indices; the base's is base + i absorbing
@@ -64,6 +65,23 @@ class ThinFilmScatter final : public ScatterModel<ThinFilmScatter> {
     if (lobes & specular_reflection) sum += reflected;
     if (lobes & specular_transmission) sum += Spectrum(1.0f) - reflected;
     return sum;
+  }
+
+  bool polarization(const Vector3& out, const Vector3& in, Lobes lobes, Polarization& event) const override {
+    const bool inside = layers_.through && dot(normal_, out) < 0, reflects = (lobes & specular_reflection) != 0;
+    const Vector3 s = common_perpendicular(out, in);
+    event = {{}, s, s};
+    const float cosine = reflects ? std::min(0.5f * length(out + in), 1.0f) : std::abs(dot(frame_.n, out));
+    for (int i = 0; i < spectrum_size; ++i) {
+      const float before = inside ? layers_.base[i] : layers_.outside[i],
+                  behind = inside ? layers_.outside[i] : layers_.base[i];
+      const FilmAmplitudes a =
+          film_amplitudes(cosine, before, layers_.film[i], {behind, layers_.absorbing[i]}, layers_.thickness[i]);
+      polarized::set_mueller(event.mueller, i,
+                             reflects ? polarized::Amplitudes{a.reflected_s, a.reflected_p}
+                                      : polarized::Amplitudes{a.transmitted_s, a.transmitted_p});
+    }
+    return true;
   }
 
  private:
