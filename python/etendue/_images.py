@@ -126,10 +126,11 @@ class Image:
         return list(dict.fromkeys(name.rpartition(".")[0] for name in self.channels if "." in name))
 
     def layer(self, name: str) -> Doubles:
-        """The values of a layer or channel: shape (height, width, 3) for three channels, (height, width) for one.
+        """The values of a layer or channel: shape (height, width, n) for n channels, (height, width) for one.
 
-        "albedo" is linear sRGB, "normal" unit vectors in world space, "depth" a distance [m], "object" a number, "variance" the
-        variance of Y, "samples" a count, and "length_2" and "light.key" are X, Y, Z. The array is a read-only view where the
+        "albedo" is linear sRGB, "normal" unit vectors and "position" points [m] in world space, "depth" a distance [m],
+        "motion.next" and "motion.previous" ways [pixels], "object" a number, "variance" the variance of Y, "samples" a count,
+        and "length_2" and "light.key" are X, Y, Z. The array is a read-only view where the
         channels lie side by side, as in all pictures that are rendered.
         """
         channels = self.channels

@@ -15,27 +15,18 @@ constexpr double unknown = std::numeric_limits<double>::infinity();
 
 /// A channel besides the light.
 struct Layer {
-  enum class Source { mean, hit_mean, first, variance, count } source;
-  size_t offset;  // among the features
+  enum class Source { variance, count } source;
 };
 
 std::vector<Layer> add_layers(const PictureFormat& format, std::vector<std::string>& channels) {
   using enum Layer::Source;
   std::vector<Layer> layers;
-  const auto add = [&](const char* name, Layer::Source source, size_t offset = 0) {
+  const auto add = [&](const char* name, Layer::Source source) {
     channels.emplace_back(name);
-    layers.push_back({source, offset});
+    layers.push_back({source});
   };
   for (const std::string& layer : format.layers) {
-    if (layer == "albedo")
-      add("albedo.R", mean, 0), add("albedo.G", mean, 1), add("albedo.B", mean, 2);
-    else if (layer == "normal")
-      add("normal.X", mean, 3), add("normal.Y", mean, 4), add("normal.Z", mean, 5);
-    else if (layer == "depth")
-      add("depth.Z", hit_mean, 6);
-    else if (layer == "object")
-      add("object.ID", first);
-    else if (layer == "variance")
+    if (layer == "variance")
       add("variance.Y", variance);
     else if (layer == "samples")
       add("samples.N", count);
@@ -118,7 +109,8 @@ Image FilmSnapshot::develop() const {
   if (v.counts.samples.empty()) return image;
 
   const bool even = v.even();
-  const auto& [light, splats, features, parts, part_splats, weights, batches] = v.lists;
+  const auto &light = v.lists[light_list], &splats = v.lists[splat_list], &parts = v.lists[part_list],
+             &part_splats = v.lists[part_splat_list];
   const size_t stride = list_stride(part_list, format),
                all_parts = 3 * format.parts() + (format.bands ? format.bands->count() : 0);
   double* out = image.values.data();
@@ -130,17 +122,8 @@ Image FilmSnapshot::develop() const {
         return (camera.empty() ? 0 : scales.light * camera[at]) + (splatted.empty() ? 0 : scales.splat * splatted[at]);
       };
       for (size_t c = 0; c < 3; ++c) *out++ = sum(light, splats, 4 * pixel + c);
-      for (const Layer& layer : layers) {
-        const FeatureCount count = v.counts.features.empty() ? FeatureCount{} : v.counts.features[pixel];
-        const auto mean = [&](std::uint32_t n) { return n > 0 ? features[7 * pixel + layer.offset] / n : 0; };
-        switch (layer.source) {
-          case Layer::Source::mean: *out++ = mean(count.samples); break;
-          case Layer::Source::hit_mean: *out++ = mean(count.hits); break;
-          case Layer::Source::first: *out++ = count.object; break;
-          case Layer::Source::variance: *out++ = v.variance(pixel, scales); break;
-          case Layer::Source::count: *out++ = v.counts.samples[pixel]; break;
-        }
-      }
+      for (const Layer& layer : layers)
+        *out++ = layer.source == Layer::Source::variance ? v.variance(pixel, scales) : v.counts.samples[pixel];
       for (size_t i = 0; i < all_parts; ++i) *out++ = sum(parts, part_splats, stride * pixel + i);
       if (format.stokes) {
         const auto luminance = [&](size_t i) {

@@ -14,9 +14,15 @@
 namespace etendue {
 namespace {
 
+/// The layers that describe the light by one name each.
+constexpr std::array<const char*, 3> light_layers = {"variance", "samples", PictureFormat::stokes_layer};
+
 const std::vector<std::string>& known_layers() {
-  static const std::vector<std::string> names = {
-      "albedo", "normal", "depth", "object", "variance", "samples", PictureFormat::stokes_layer};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = SurfaceLayers::offered();
+    all.insert(all.end(), light_layers.begin(), light_layers.end());
+    return all;
+  }();
   return names;
 }
 
@@ -46,6 +52,15 @@ PictureFormat::PathLayer path_layer(const ImageBuffer& image, const std::string&
   return made;
 }
 
+/// Whether an entry is a layer of surfaces, which is added to the others. Throws Error at the image if it is not written well.
+bool takes_surfaces(const ImageBuffer& image, SurfaceLayers& surfaces, const std::string& entry) {
+  try {
+    return surfaces.take(entry);
+  } catch (const Error& e) {
+    image.fail("layers", e.what());
+  }
+}
+
 /// The known layers, and patterns for light groups and light path expressions of any name.
 std::vector<std::string> offered_layers() {
   std::vector<std::string> names = known_layers();
@@ -64,16 +79,23 @@ void ImageBuffer::describe(Description<ImageBuffer>& d) {
       .member<&ImageBuffer::crop>("crop", "1",
                                   "rectangle to render and write, x0, y0, x1, y1 [pixels from the upper left, x1 and y1 "
                                   "excluded]; empty: the whole picture")
-      .member<&ImageBuffer::layers>("layers", "",
-                                    "further channels: of albedo, normal, depth, object (what camera paths meet first), "
-                                    "variance (of the mean of Y), samples (per pixel), stokes (the polarization: S1, S2 and "
-                                    "S3 of the Stokes vector, of which the picture is S0, with the degrees of linear and "
-                                    "circular polarization and the angle); light.NAME for the light of the "
-                                    "luminaires of which the object or the emission has this name, light.NAME+NAME for that "
-                                    "of several together, and then light.rest for all other light; 'path.NAME = EXPRESSION' "
-                                    "for the light whose paths match a light path expression, as in 'path.caustics = "
-                                    "C<RD>S+L'",
-                                    offered_layers())
+      .member<&ImageBuffer::layers>(
+          "layers", "",
+          "further channels. Of the surfaces that camera rays meet first, the same with every "
+          "renderer: albedo, normal and geometric_normal (on the side of the camera), position, "
+          "depth (from the camera), uv, roughness, motion (from where a point is seen to where it "
+          "was and will be at the ends of the shutter, or 'motion = T' seconds before and after), "
+          "coverage; of the sample nearest to the pixel's centre object, material, primitive; and "
+          "Cryptomattes crypto_object, crypto_material, crypto_asset, crypto_group, of the six "
+          "largest coverages or as many as 'crypto_object = N' says. Of the light: "
+          "variance (of the mean of Y), samples (per pixel); stokes (the polarization: S1, S2 and S3 of the "
+          "Stokes vector, of which the picture is S0, with the degrees of linear and circular "
+          "polarization and the angle); light.NAME for the light of the "
+          "luminaires of which the object or the emission has this name, light.NAME+NAME for that "
+          "of several together, and then light.rest for all other light; 'path.NAME = EXPRESSION' "
+          "for the light whose paths match a light path expression, as in 'path.caustics = "
+          "C<RD>S+L'",
+          offered_layers())
       .member<&ImageBuffer::path_lengths>("path_lengths", "1",
                                           "further channels length_1.X, … by the number of segments of the paths that "
                                           "brought the light; the last holds all longer ones too",
@@ -108,15 +130,20 @@ void ImageBuffer::prepare() {
   }
   std::vector<std::string> light_groups;
   std::vector<PictureFormat::PathLayer> path_layers;
+  SurfaceLayers surfaces;
   for (size_t i = 0; i < layers.size(); ++i) {
     if (layers[i].starts_with(PictureFormat::light_prefix))
       light_groups.push_back(layers[i].substr(std::string_view(PictureFormat::light_prefix).size()));
     else if (layers[i].starts_with(PictureFormat::path_prefix))
       path_layers.push_back(path_layer(*this, layers[i]));
-    else if (std::find(known_layers().begin(), known_layers().end(), layers[i]) == known_layers().end())
+    else if (!takes_surfaces(*this, surfaces, layers[i]) && std::ranges::find(light_layers, layers[i]) == light_layers.end())
       fail("layers", fmt::format("no layer is called '{}'{}", layers[i], suggestion(layers[i], known_layers())));
-    if (std::find(layers.begin(), layers.begin() + std::ptrdiff_t(i), layers[i]) != layers.begin() + std::ptrdiff_t(i))
-      fail("layers", fmt::format("'{}' is named twice", layers[i]));
+    const auto same = [&](const std::string& other) {
+      return layers[i] == other || (!layers[i].starts_with(PictureFormat::path_prefix) &&
+                                    SurfaceLayers::name_of(layers[i]) == SurfaceLayers::name_of(other));
+    };
+    if (std::any_of(layers.begin(), layers.begin() + std::ptrdiff_t(i), same))
+      fail("layers", fmt::format("'{}' is named twice", SurfaceLayers::name_of(layers[i])));
   }
   for (const std::string& group : light_groups)
     if (group.empty())
@@ -159,7 +186,7 @@ void ImageBuffer::prepare() {
   format.area = area;
   format.cropped = !crop.empty();
   format.layers = layers;
-  format.wants_features = wants("albedo") || wants("normal") || wants("depth") || wants("object");
+  format.surfaces = std::move(surfaces);
   format.path_lengths = path_lengths;
   format.light_groups = std::move(light_groups);
   format.path_layers = std::move(path_layers);

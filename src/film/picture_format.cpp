@@ -10,6 +10,9 @@ namespace etendue {
 void PictureFormat::set_filter(std::vector<float> weights, float filter_radius) {
   table = std::move(weights);
   radius = filter_radius;
+  const float largest = std::ranges::max(table, {}, [](float w) { return std::abs(w); });
+  fixed_weights.clear();
+  for (const float w : table) fixed_weights.push_back(std::llround(double(w) / double(std::abs(largest)) * 0x1p30));
   box = radius == 0.5f && std::all_of(table.begin(), table.end(), [&](float w) { return w == table[0]; });
   filter_reach = int(std::ceil(radius - 0.5f));
   const int side = filter_reach + 1;
@@ -79,10 +82,13 @@ std::uint64_t PictureFormat::hash() const {
 }
 
 bool PictureFormat::collects_as(const PictureFormat& other) const {
-  return width == other.width && height == other.height && area == other.area && path_lengths == other.path_lengths &&
-         light_groups == other.light_groups && path_layers == other.path_layers && stokes == other.stokes &&
-         (bands ? other.bands && *bands == *other.bands : !other.bands) && wants_features == other.wants_features &&
-         radius == other.radius && table == other.table;
+  return samples_as(other) && path_lengths == other.path_lengths && light_groups == other.light_groups &&
+         path_layers == other.path_layers && stokes == other.stokes &&
+         (bands ? other.bands && *bands == *other.bands : !other.bands) && wants_features == other.wants_features;
+}
+
+bool PictureFormat::samples_as(const PictureFormat& other) const {
+  return width == other.width && height == other.height && area == other.area && radius == other.radius && table == other.table;
 }
 
 }  // namespace etendue

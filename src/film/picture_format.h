@@ -8,6 +8,7 @@
 
 #include "etendue/film/image_buffer.h"
 #include "spectral_bands.h"
+#include "surface_layers.h"
 
 namespace etendue {
 
@@ -40,12 +41,15 @@ struct PictureFormat {
   bool stokes = false;
   static constexpr const char* stokes_layer = "stokes";
   static constexpr size_t stokes_parts = 3;
+  /// The layers that show surfaces, which a SurfaceFilm collects.
+  SurfaceLayers surfaces;
   /// The bands of a spectral film. Null: it has none.
   std::shared_ptr<const SpectralBands> bands;
 
   /// The filter tabulated over one quadrant, weight at ((i + 0.5) / table_size * radius).
   static constexpr int table_size = 64;
   std::vector<float> table;
+  std::vector<std::int64_t> fixed_weights;  ///< the same as multiples of 2^-30 of the largest magnitude
   float radius = 0.5f;
   bool box = false;      ///< radius 0.5, constant: each sample contributes to its own pixel only
   int filter_reach = 0;  ///< pixels to each side that the filter of a pixel covers
@@ -87,6 +91,8 @@ struct PictureFormat {
   std::uint64_t hash() const;
   /// Whether sums collected with one format are valid for the other.
   bool collects_as(const PictureFormat&) const;
+  /// Whether both have the same pixels and filter.
+  bool samples_as(const PictureFormat&) const;
 
   void set_filter(std::vector<float> weights, float filter_radius);
 

@@ -48,39 +48,40 @@ std::uint32_t cryptomatte_identifier(std::string_view name) {
   return exponent == 0 || exponent == 255 ? hash ^ (1u << 23) : hash;
 }
 
+void add_cryptomatte(Image& image, const Cryptomatte& kind, size_t ranks) {
+  for (size_t rank = 0; rank < ranks; ++rank)
+    for (const size_t part : {size_t(0), size_t(1)})
+      image.channels.push_back(fmt::format("{}{:02}.{}", kind.name, rank / 2, letters[rank % 2 * 2 + part]));
+  const std::string prefix = prefix_of(kind.name);
+  image.metadata[prefix + "name"] = kind.name;
+  image.metadata[prefix + "hash"] = "MurmurHash3_32";
+  image.metadata[prefix + "conversion"] = "uint32_to_float32";
+  Json manifest = Json::object();
+  for (const auto& [name, identifier] : kind.manifest) manifest[name] = fmt::format("{:08x}", identifier);
+  image.metadata[prefix + "manifest"] = manifest.dump(-1, ' ', false, Json::error_handler_t::replace);
+
+  const size_t count = size_t(image.width) * size_t(image.height), after = image.channels.size(), before = after - 2 * ranks;
+  std::vector<double> values(count * after);
+  for (size_t i = 0; i < count; ++i) {
+    double* at = &values[i * after];
+    at = std::copy_n(image.values.begin() + std::ptrdiff_t(i * before), before, at);
+    for (size_t rank = 0; rank < std::min(ranks, kind.pixels[i].size()); ++rank) {
+      *at++ = double(std::bit_cast<float>(kind.pixels[i][rank].identifier));
+      *at++ = double(kind.pixels[i][rank].coverage);
+    }
+  }
+  image.values = std::move(values);
+}
+
 Image cryptomatte_image(std::span<const Cryptomatte> kinds, int ranks) {
   Image image;
-  std::vector<size_t> kept;  // of each kind
   for (const Cryptomatte& kind : kinds) {
     image.width = kind.width;
     image.height = kind.height;
     size_t most = 1;
     for (const auto& pixel : kind.pixels) most = std::max(most, pixel.size());
     if (ranks > 0) most = std::min(most, size_t(ranks));
-    kept.push_back((most + 1) / 2 * 2);
-    for (size_t rank = 0; rank < kept.back(); ++rank)
-      for (const size_t part : {size_t(0), size_t(1)})
-        image.channels.push_back(fmt::format("{}{:02}.{}", kind.name, rank / 2, letters[rank % 2 * 2 + part]));
-    const std::string prefix = prefix_of(kind.name);
-    image.metadata[prefix + "name"] = kind.name;
-    image.metadata[prefix + "hash"] = "MurmurHash3_32";
-    image.metadata[prefix + "conversion"] = "uint32_to_float32";
-    Json manifest = Json::object();
-    for (const auto& [name, identifier] : kind.manifest) manifest[name] = fmt::format("{:08x}", identifier);
-    image.metadata[prefix + "manifest"] = manifest.dump(-1, ' ', false, Json::error_handler_t::replace);
-  }
-  const size_t count = size_t(image.width) * size_t(image.height);
-  image.values.resize(count * image.channels.size());
-  size_t first = 0;
-  for (size_t k = 0; k < kinds.size(); ++k) {
-    for (size_t i = 0; i < count; ++i) {
-      double* at = &image.values[i * image.channels.size() + first];
-      for (size_t rank = 0; rank < std::min(kept[k], kinds[k].pixels[i].size()); ++rank) {
-        *at++ = double(std::bit_cast<float>(kinds[k].pixels[i][rank].identifier));
-        *at++ = double(kinds[k].pixels[i][rank].coverage);
-      }
-    }
-    first += 2 * kept[k];
+    add_cryptomatte(image, kind, (most + 1) / 2 * 2);
   }
   return image;
 }

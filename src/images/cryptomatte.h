@@ -30,12 +30,14 @@ struct Cryptomatte {
     std::uint32_t identifier;
     float coverage;
   };
-  std::string name;                               ///< "crypto_object", "crypto_material", "crypto_asset"
+  std::string name;                               ///< "crypto_object", "crypto_material", …
   std::map<std::string, std::uint32_t> manifest;  ///< names and their identifiers
   int width = 0, height = 0;
   std::vector<std::vector<Rank>> pixels;  ///< by row, from the top; ranks by decreasing coverage
 };
 
+/// Adds the channels and metadata of a kind to a picture of the same size, with so many ranks: an even number.
+void add_cryptomatte(Image&, const Cryptomatte&, size_t ranks);
 /// A picture with the channels and metadata of several kinds, all of the same size. `ranks` are kept of each pixel; 0: all.
 Image cryptomatte_image(std::span<const Cryptomatte>, int ranks = 0);
 /// The kinds in a picture that a file was read as. Throws Error if the metadata are damaged, or channels are missing.

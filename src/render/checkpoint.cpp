@@ -11,6 +11,7 @@
 #include "etendue/language/language.h"
 #include "etendue/render/render.h"
 #include "film/film_state.h"
+#include "film/surface_film.h"
 
 namespace etendue {
 
@@ -104,7 +105,9 @@ KeptPicture picture_of(const Checkpoint& c) {
   job->metadata = c.metadata;
   Film film(*job->image, estimator_of(c.state.image));
   film.load_state(c.state.image);
-  RenderSnapshot kept{film.snapshot(), {}, picture_metadata(*job, count(c.done))};
+  SurfaceFilm surfaces(*job->image);
+  surfaces.load_state(c.state.surfaces);
+  RenderSnapshot kept{film.snapshot(), {}, picture_metadata(*job, count(c.done)), surfaces.snapshot()};
   return {job, kept.picture()};
 }
 
@@ -170,6 +173,7 @@ Checkpoint merge_checkpoints(const std::vector<std::string>& paths) {
   if (!image) throw Error(fmt::format("'{}' describes no image", parts.front().path));
   prepare_tree(*image);
   std::unique_ptr<Film> film;
+  SurfaceFilm surfaces(*image);
   for (const Part& part : parts) {
     const Checkpoint c = read_checkpoint(part.path);
     if (c.done != part.header.done) throw Error(fmt::format("'{}' changed while it was read", part.path));
@@ -178,11 +182,13 @@ Checkpoint merge_checkpoints(const std::vector<std::string>& paths) {
                               part.path, c.metadata.at("renderer")));
     if (!film) film = std::make_unique<Film>(*image, estimator_of(c.state.image));
     film->add_state(c.state.image);
+    surfaces.add_state(c.state.surfaces);
     merged.seconds += c.seconds;
     merged.samples_wanted = std::max(merged.samples_wanted, c.samples_wanted);
     for (const IndexRange& range : c.done) insert(merged.done, range);
   }
   merged.state.image = film->save_state();
+  merged.state.surfaces = surfaces.save_state();
   return merged;
 }
 

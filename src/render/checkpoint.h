@@ -40,7 +40,7 @@ std::string difference(const Identity&, const std::string& whose, const Identity
 struct Checkpoint {
   /// The results of the passes, from which further passes continue.
   struct State {
-    std::vector<std::byte> image, renderer;  ///< from Film::save_state and RenderProcess::save_state
+    std::vector<std::byte> image, renderer, surfaces;  ///< of the Film, the RenderProcess and the SurfaceFilm
   };
 
   std::string version;  ///< of the program

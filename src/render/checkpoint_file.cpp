@@ -1,9 +1,10 @@
 // Checkpoints as files.
 //
 // All numbers are in the machine's byte order (little endian). The preamble consists of 64-bit words: name and version of the
-// format, the length of the file, the lengths of the five parts that follow, the hash of the first part, and the hash of all
-// preceding words. The parts are: a header (see `header` below), the states of the image and of the renderer, and the same two
-// states from before a short pass, which may be empty. The last word is the hash of everything before it.
+// format, the length of the file, the lengths of the seven parts that follow, the hash of the first part, and the hash of all
+// preceding words. The parts are: a header (see `header` below), the states of the image, the renderer and the layers of
+// surfaces, and the same three states from before a short pass, which may be empty. The last word is the hash of everything
+// before it.
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -29,8 +30,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr std::uint64_t name_of_format = 0x54504b4345445445;  // "ETDECKPT"
-constexpr std::uint64_t version_of_format = 2;
-constexpr size_t parts = 5;  // header, image, renderer, image before a short pass, renderer before a short pass
+constexpr std::uint64_t version_of_format = 3;
+constexpr size_t parts = 7;  // the header, a State, and the State before a short pass
 using Bytes = std::vector<std::byte>;
 
 std::uint64_t hash_of(std::span<const std::byte> bytes) {
@@ -156,8 +157,8 @@ Checkpoint read(Source& file, bool states) {
 
   Checkpoint c;
   const bool before = read_header(bytes[0], c);
-  c.state = {std::move(bytes[1]), std::move(bytes[2])};
-  if (before) c.before_short_pass = Checkpoint::State{std::move(bytes[3]), std::move(bytes[4])};
+  c.state = {std::move(bytes[1]), std::move(bytes[2]), std::move(bytes[3])};
+  if (before) c.before_short_pass = Checkpoint::State{std::move(bytes[4]), std::move(bytes[5]), std::move(bytes[6])};
   return c;
 }
 
@@ -185,11 +186,10 @@ namespace {
 class Pieces {
  public:
   explicit Pieces(const Checkpoint& c) : head_(header(c)) {
-    static const Bytes nothing;
-    const bool before = c.before_short_pass.has_value();
-    const std::array<const Bytes*, parts> bytes = {&head_, &c.state.image, &c.state.renderer,
-                                                   before ? &c.before_short_pass->image : &nothing,
-                                                   before ? &c.before_short_pass->renderer : &nothing};
+    static const Checkpoint::State nothing;
+    const Checkpoint::State &now = c.state, &before = c.before_short_pass ? *c.before_short_pass : nothing;
+    const std::array<const Bytes*, parts> bytes = {&head_,        &now.image,       &now.renderer,   &now.surfaces,
+                                                   &before.image, &before.renderer, &before.surfaces};
     preamble_.length = sizeof preamble_ + sizeof sum_;
     for (size_t i = 0; i < parts; ++i) {
       preamble_.lengths[i] = bytes[i]->size();

@@ -10,53 +10,47 @@
 #include "etendue/render/render.h"
 #include "etendue/transport/camera_walk.h"
 #include "film/image_bands.h"
+#include "film/surface_film.h"
 #include "parallel_schedule.h"
+#include "surface_step.h"
 
 namespace etendue {
 namespace {
 
-/// Traces the camera paths of the renderer for features only; the radiance is 0.
-class GuideProcess final : public RenderProcess {
- public:
-  using RenderProcess::RenderProcess;
+Vector3 to_srgb(const Spectrum& reflectance, const Wavelengths& wavelengths) {
+  static const RgbSpace& srgb = rgb_space("srgb");
+  const Xyz c = to_xyz(reflectance * srgb.illuminant->evaluate(wavelengths, ColorUse::reflectance), wavelengths);
+  const auto& m = srgb.from_xyz;
+  return {float(m[0] * c.x + m[1] * c.y + m[2] * c.z), float(m[3] * c.x + m[4] * c.y + m[5] * c.z),
+          float(m[6] * c.x + m[7] * c.y + m[8] * c.z)};
+}
 
-  Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
-    // Paths between two parallel mirrors would never end.
-    constexpr int longest = 32;
-    Features* const features = std::exchange(sample.sink.features, nullptr);
-    CameraWalk<> walk(context.scene, sample, ray, longest);
-    const auto nothing = [](const SurfacePoint&) { return 0.0f; };
-    Spectrum color;
-    Vector3 normal;
-    while (true) {
-      if (!walk.next_vertex(nothing)) {
-        if (walk.vertex.kind == PathVertex::Kind::escape && !context.scene.infinite_luminaires(walk.ray).empty())
-          color = walk.throughput;
-        break;
-      }
-      const PathVertex& v = walk.vertex;
-      if (v.in_medium() || v.scatters_smoothly() || v.point.object->luminaire() || walk.at_end()) {
-        const bool shines = !v.in_medium() && v.point.object->luminaire();
-        const Spectrum scattered = v.on_surface() && v.scatter ? v.scatter->albedo(v.out) : Spectrum();
-        color = walk.throughput * (v.in_medium() || shines ? Spectrum(1.0f) : scattered);
-        if (v.on_surface()) normal = Vector3(v.point.shading_normal) * (dot(v.point.shading_normal, v.out) < 0 ? -1.0f : 1.0f);
-        break;
-      }
-      if (!walk.scatter(walk.next_bounce())) break;
+/// The first surface on a camera path that is neither a mirror nor clear glass.
+FirstSurface guide_of(const RenderContext& context, const Ray& ray, SampleContext& sample) {
+  // Paths between two parallel mirrors would never end.
+  constexpr int longest = 32;
+  CameraWalk<> walk(context.scene, sample, ray, longest);
+  const auto nothing = [](const SurfacePoint&) { return 0.0f; };
+  FirstSurface guide;
+  guide.key = 1;  // what is met has no name
+  while (true) {
+    if (!walk.next_vertex(nothing)) {
+      if (walk.vertex.kind == PathVertex::Kind::escape && !context.scene.infinite_luminaires(walk.ray).empty())
+        guide.albedo = to_srgb(walk.throughput, sample.wavelengths);
+      return guide;
     }
-    if (features) *features = {to_srgb(color, sample.wavelengths), normal, 0, 0};
-    return {};
+    const PathVertex& v = walk.vertex;
+    if (v.in_medium() || v.scatters_smoothly() || v.point.object->luminaire() || walk.at_end()) {
+      const bool shines = !v.in_medium() && v.point.object->luminaire();
+      const Spectrum scattered = v.on_surface() && v.scatter ? v.scatter->albedo(v.out) : Spectrum();
+      guide.albedo = to_srgb(walk.throughput * (v.in_medium() || shines ? Spectrum(1.0f) : scattered), sample.wavelengths);
+      if (v.on_surface())
+        guide.normal = Vector3(v.point.shading_normal) * (dot(v.point.shading_normal, v.out) < 0 ? -1.0f : 1.0f);
+      return guide;
+    }
+    if (!walk.scatter(walk.next_bounce())) return guide;
   }
-
- private:
-  static Vector3 to_srgb(const Spectrum& reflectance, const Wavelengths& wavelengths) {
-    static const RgbSpace& srgb = rgb_space("srgb");
-    const Xyz c = to_xyz(reflectance * srgb.illuminant->evaluate(wavelengths, ColorUse::reflectance), wavelengths);
-    const auto& m = srgb.from_xyz;
-    return {float(m[0] * c.x + m[1] * c.y + m[2] * c.z), float(m[3] * c.x + m[4] * c.y + m[5] * c.z),
-            float(m[6] * c.x + m[7] * c.y + m[8] * c.z)};
-  }
-};
+}
 
 /// Whether a channel describes the noise of the original picture or holds a part of its light; neither is valid for the
 /// denoised picture.
@@ -76,13 +70,18 @@ Image denoising_guides(const Job& job, int samples, int threads) {
   image->filter = ref_cast<Filter>(Registry::instance().create("BoxFilter"));
   image->layers = {"albedo", "normal"};
   prepare_tree(*image);
-  Film film(*image);
+  const RenderContext context{*job.scene, *job.camera, *image, *job.wavelengths, job.seed};
+  Film unseen(*image);
   const std::atomic<bool> never{false};
-  ParallelSchedule schedule(film, threads, never);
-  GuideProcess process(*job.renderer, {*job.scene, *job.camera, *image, *job.wavelengths, job.seed});
-  process.step(schedule, {0, {0, std::uint32_t(samples)}});
+  ParallelSchedule schedule(unseen, threads, never);
+  SurfaceFilm film(*image);
+  film.take(surfaces_of_step(schedule, context, *job.renderer, {0, {0, std::uint32_t(samples)}}, [&](SurfaceTile&) {
+    return [&](const Ray& ray, const CameraSample&, SampleContext& sample) { return guide_of(context, ray, sample); };
+  }));
   film.end_step();
-  return film.develop();
+  Image guides(image->area().width(), image->area().height(), {});
+  film.snapshot()->add_channels(guides);
+  return guides;
 }
 
 Image denoised(const Denoiser& denoiser, const Job& job, const Image& picture, int threads) {

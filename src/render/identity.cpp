@@ -132,6 +132,7 @@ Identity identity_of(const Job& job) {
   bare->scene = job.scene;
   bare->image = job.image;
   bare->wavelengths = job.wavelengths;
+  bare->groups = job.groups;
   Identity identity;
   // Written with the folder as "folder/.", no path keeps its original spelling: "./a.ply" and "a.ply" become the same.
   identity.text = write_description(*bare, false, folder.empty() ? folder : folder + "/.");

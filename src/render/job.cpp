@@ -16,6 +16,7 @@ void Job::describe(Description<Job>& d) {
       .member<&Job::scene>("scene", "", "what is in front of it", required, Effect::rebuild)
       .member<&Job::image>("image", "", "where samples are collected")
       .member<&Job::wavelengths>("wavelengths", "", "which wavelengths paths carry")
+      .member<&Job::groups>("groups", "", "objects of the scene under one name: see the layer crypto_group of the image")
       .group("Display")
       .member<&Job::tone_map>("tone_map", "", "from radiance to display values", Effect::retone)
       .member<&Job::outputs>("outputs", "", "files to write", Effect::retone)
@@ -120,6 +121,24 @@ void Job::require_parts() const {
   if (camera->shutter_close < camera->shutter_open) camera->fail("shutter_close", "the shutter closes before it opens");
   for (const Ref<Output>& output : outputs)
     if (!output) fail("outputs", "an output is none");
+  for (const Ref<ObjectGroup>& group : groups)
+    if (!group) fail("groups", "a group is none");
+}
+
+/// Throws Error if a layer of the image cannot be made of the rest of the job.
+void Job::require_layers() const {
+  const LightGroups known(*scene, *image);  // throws Error for an unknown name
+  require_groups(groups, *scene);
+  const SurfaceLayers& surfaces = image->format()->surfaces;
+  if (surfaces.ranks[size_t(MatteKind::group)] > 0 && groups.empty())
+    image->fail("layers",
+                fmt::format("'{}' needs groups: Job {{ groups: [ ObjectGroup {{ name: \"…\", objects: [ \"…\" ] }} ] … }}",
+                            matte_layers[size_t(MatteKind::group)]));
+  if (surfaces.motion() && surfaces.motion_time == 0 && !(camera->shutter_close > camera->shutter_open))
+    image->fail(
+        "layers",
+        "'motion' leads to the ends of the shutter, which is open for no time: set the camera's shutter_close, or follow "
+        "the motion for some seconds, as in 'motion = 0.04'");
 }
 
 void Job::prepare() {
@@ -131,7 +150,7 @@ void Job::prepare() {
   }
   refuse_heterogeneous_media_within(*scene, false);
   camera->set_film(image->width, image->height);
-  const LightGroups known(*scene, *image);  // throws Error for an unknown name
+  require_layers();
   require_light(*renderer, *image);
 }
 
@@ -139,7 +158,7 @@ void Job::prepare_again() {
   require_parts();
   refuse_heterogeneous_media_within(*scene, false);
   camera->set_film(image->width, image->height);
-  const LightGroups known(*scene, *image);
+  require_layers();
   require_light(*renderer, *image);
 }
 

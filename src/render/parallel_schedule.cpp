@@ -12,7 +12,7 @@
 #include <mutex>
 #include <utility>
 
-#include "current_step.h"
+#include "core/current_step.h"
 
 namespace etendue {
 

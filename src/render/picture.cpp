@@ -2,6 +2,7 @@
 
 #include "denoising.h"
 #include "etendue/render/render.h"
+#include "images/surface_mattes.h"
 
 namespace etendue {
 
@@ -19,6 +20,10 @@ std::map<std::string, std::string> picture_metadata(const Job& job, std::uint32_
 
 Image RenderSnapshot::picture() const {
   Image picture = film.develop();
+  if (surfaces) {
+    surfaces->add_channels(picture);
+    add_mattes(picture, *surfaces);
+  }
   for (const auto& [key, text] : metadata) picture.metadata[key] = text;
   return picture;
 }

@@ -7,6 +7,7 @@
 #include "describe/guard.h"
 #include "etendue/render/tells_choice.h"
 #include "render_members.h"
+#include "surface_step.h"
 
 namespace etendue {
 namespace {
@@ -42,6 +43,7 @@ Render::Render(Ref<Job> job, RenderSettings settings)
   if (!members_->job) throw Error("there is no job to render");
   prepare_tree(*members_->job);
   members_->film = std::make_unique<Film>(*members_->job->image, members_->job->renderer->estimator());
+  members_->surfaces = std::make_unique<SurfaceFilm>(*members_->job->image);
   members_->step_size = members_->samples_per_step();
 }
 Render::~Render() = default;
@@ -95,6 +97,7 @@ void Render::Members::empty() {
   process_state.clear();
   const std::lock_guard lock(counts);
   film->clear();
+  surfaces->clear();
   done.clear();
   some_done = false;
   loaded_from.clear();
@@ -117,6 +120,15 @@ void Render::select_steps(std::optional<IndexRange> steps) {
 }
 
 // ---- one step --------------------------------------------------------------------------------------------------------------
+
+/// Renders the samples of a step: their light, and what they see, if the picture has such layers.
+void Render::Members::render_step(Schedule& schedule, const Step& at) {
+  process->prepare_step(schedule, at);
+  process->step(schedule, at);
+  if (!surfaces->wanted()) return;
+  if (!names) names = std::make_unique<const ObjectNames>(*job->scene);
+  surfaces->take(surfaces_of_step(schedule, context(), *job->renderer, at, *names, job->groups));
+}
 
 std::optional<Ended> Render::Members::step(Schedule& schedule) {
   while (true) {
@@ -142,6 +154,7 @@ std::optional<Ended> Render::Members::step(Schedule& schedule) {
       again->load_state(before_short_step->renderer);
       const std::lock_guard lock(counts);
       film->load_state(before_short_step->image);
+      surfaces->load_state(before_short_step->surfaces);
       process = std::move(again);
       drop_short_pass(done, size);
       before_short_step.reset();
@@ -154,7 +167,7 @@ std::optional<Ended> Render::Members::step(Schedule& schedule) {
     process_state = process->save_state();
     const bool is_short = samples.end % size != 0 && samples.end == part.end;
     std::optional<Checkpoint::State> before;
-    if (is_short) before = Checkpoint::State{film->save_state(), process_state};
+    if (is_short) before = Checkpoint::State{film->save_state(), process_state, surfaces->save_state()};
     {
       const std::lock_guard lock(counts);
       at_hand = samples;
@@ -171,6 +184,7 @@ std::optional<Ended> Render::Members::step(Schedule& schedule) {
         if (finished) return;
         if (m.settings.team) m.settings.team->drop_step();
         m.film->drop_step();
+        m.surfaces->drop_step();
         m.process.reset();  // the process may be anywhere within the step
       }
     } guard{*this};
@@ -178,8 +192,7 @@ std::optional<Ended> Render::Members::step(Schedule& schedule) {
     rendering(*job, [&] {
       const Step at{samples.begin / size, samples};
       if (settings.team) settings.team->begin_step(at, process_state);
-      process->prepare_step(schedule, at);
-      process->step(schedule, at);
+      render_step(schedule, at);
     });
     if (give_up.load()) {
       if (abort.load()) return Ended::aborted;
@@ -189,6 +202,7 @@ std::optional<Ended> Render::Members::step(Schedule& schedule) {
     if (settings.team) settings.team->end_step(process->save_state());
     const std::lock_guard lock(counts);
     film->end_step();
+    surfaces->end_step();
     insert(done, samples);
     some_done = true;
     loaded_from.clear();

@@ -86,6 +86,7 @@ void Render::Members::follow(const Consequences& consequences) {
   if (consequences.effect() == Effect::retone) return;
   wanted();
   identity.reset();
+  names.reset();
   const std::uint32_t size = samples_per_step();
   if (consequences.effect() == Effect::none) {
     // More samples continue from the existing ones; fewer give another picture.
@@ -93,8 +94,9 @@ void Render::Members::follow(const Consequences& consequences) {
     if (too_many || size != step_size) empty();
   } else {
     std::unique_ptr<RenderProcess> next = fresh_process();
-    const bool kept = film->follow(*job->image, job->renderer->estimator());
-    if (!kept || !consequences.concern_only(*job->image)) {
+    const bool light_kept = film->follow(*job->image, job->renderer->estimator()),
+               surfaces_kept = surfaces->follow(*job->image);
+    if (!light_kept || !surfaces_kept || !consequences.concern_only(*job->image)) {
       empty();
       process = std::move(next);
     }

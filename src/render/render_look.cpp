@@ -51,7 +51,7 @@ RenderSnapshot Render::snapshot() const {
   const std::lock_guard lock(members_->counts);
   std::map<std::string, std::string> metadata = picture_metadata(*members_->job, count(members_->done));
   if (!members_->choice.empty()) metadata["choice"] = members_->choice;
-  return {members_->film->snapshot(), members_->progress_now(), std::move(metadata)};
+  return {members_->film->snapshot(), members_->progress_now(), std::move(metadata), members_->surfaces->snapshot()};
 }
 
 std::vector<IndexRange> Render::samples_done() const {

@@ -15,8 +15,10 @@
 #include "checkpoint.h"
 #include "consequences.h"
 #include "etendue/render/render.h"
+#include "film/surface_film.h"
 #include "parallel_schedule.h"
 #include "team.h"
+#include "transport/object_names.h"
 
 namespace etendue {
 
@@ -26,6 +28,7 @@ struct Render::Members {
   const Ref<Job> job;
   RenderSettings settings;  // only `steps` changes, by select_steps
   std::unique_ptr<Film> film;
+  std::unique_ptr<SurfaceFilm> surfaces;  ///< beside the film
 
   mutable std::shared_mutex description;
   mutable std::shared_mutex look;
@@ -39,6 +42,7 @@ struct Render::Members {
   std::optional<Checkpoint::State> before_short_step;
   mutable std::optional<Identity> identity;  ///< of the job; computed on demand, since it reads files
   std::uint32_t step_size = 1;               ///< samples per step, until the next edit
+  std::unique_ptr<const ObjectNames> names;  ///< of the scene, for layers of surfaces; made on demand
   std::string loaded_from;                   ///< the checkpoint file whose state the render still has; empty: none
   bool assembled = false;                    ///< the processes of the team have met for this render, as it is now
   bool announced = false;                    ///< the team was told of it, as it is now or was before an edit
@@ -75,6 +79,7 @@ struct Render::Members {
   void follow(const Consequences&);
   void empty();
   std::optional<Ended> step(Schedule&);
+  void render_step(Schedule&, const Step&);
   std::unique_ptr<Schedule> make_schedule(std::function<void(std::uint64_t, std::uint64_t)> tick = {});
   void assemble();
   Ended follow_leader();

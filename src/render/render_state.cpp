@@ -24,7 +24,7 @@ Checkpoint Render::Members::state_now() const {
   const std::lock_guard lock(counts);
   c.done = done;
   c.seconds = seconds;
-  c.state = {film->save_state(), process ? process->save_state() : process_state};
+  c.state = {film->save_state(), process ? process->save_state() : process_state, surfaces->save_state()};
   c.before_short_pass = before_short_step;
   return c;
 }
@@ -72,7 +72,10 @@ void Render::Members::require_continuable(const Checkpoint& from, const std::str
 void Render::Members::take_over(Checkpoint&& from) {
   std::unique_ptr<RenderProcess> next = fresh_process();
   next->load_state(from.state.renderer);
+  auto seen = std::make_unique<SurfaceFilm>(*job->image);
+  seen->load_state(from.state.surfaces);
   film->load_state(from.state.image);
+  surfaces = std::move(seen);
   process = std::move(next);
   process_state = std::move(from.state.renderer);
   before_short_step = std::move(from.before_short_pass);
@@ -119,7 +122,9 @@ void Render::add(std::istream& stream) {
   }
   if (!reason.empty()) throw Error("cannot add this state: " + reason);
   const std::lock_guard lock(members_->counts);
+  SurfaceFilm(*members_->job->image).load_state(from.state.surfaces);  // throws Error before anything changes
   members_->film->add_state(from.state.image);
+  members_->surfaces->add_state(from.state.surfaces);
   members_->done = std::move(all);
   members_->some_done = !members_->done.empty();
   members_->seconds += from.seconds;

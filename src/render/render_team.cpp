@@ -38,10 +38,8 @@ Ended Render::Members::follow_leader() {
         process = fresh_process();
         if (!task->state.empty()) process->load_state(task->state);
       }
-      rendering(*job, [&] {
-        process->prepare_step(*schedule, task->step);
-        process->step(*schedule, task->step);
-      });
+      rendering(*job, [&] { render_step(*schedule, task->step); });
+      surfaces->drop_step();  // the leader has them as well
       if (!give_up) team.finished(process->save_state());
     } catch (const LostProcess&) {
       throw;

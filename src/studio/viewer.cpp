@@ -128,6 +128,11 @@ FrameInfo place_of(const Image& picture, FrameInfo info) {
   return info;
 }
 
+/// Whether the X, Y, Z of a layer are a colour: those of a position or a normal are none.
+bool holds_light(const std::string& layer) {
+  return layer.starts_with("length_") || layer.starts_with("light.") || layer.starts_with("path.");
+}
+
 }  // namespace
 
 std::shared_ptr<const Frame> Studio::make_frame(const Watch& watch, const Render& render, const Image& picture, FrameInfo info,
@@ -145,7 +150,7 @@ std::shared_ptr<const Frame> Studio::make_frame(const Watch& watch, const Render
   } else if (!watch.layer.empty()) {
     for (size_t i = 3; i < picture.channels.size(); ++i)
       if (picture.channels[i] == watch.layer || picture.channels[i].starts_with(watch.layer + ".")) {
-        const bool xyz = picture.channels[i] == watch.layer + ".X";
+        const bool xyz = picture.channels[i] == watch.layer + ".X" && holds_light(watch.layer);
         return Frame::make(Frame::Kind::linear, picture, i, xyz, info, number, before);
       }
     return nullptr;

@@ -38,7 +38,7 @@ Image render(const Ref<Job>& job, std::vector<int> crop, int threads = 0) {
   prepare_tree(*job);
   const auto done = test::rendered(job, {.threads = threads});
   EXPECT_EQ(done->film().bad_samples(), 0u);
-  return done->film().develop();
+  return done->picture();
 }
 
 /// Pieces with edges on and off the tiles' edges; one of them is a single pixel.

@@ -5,6 +5,8 @@
 #include <random>
 
 #include "etendue/film/film.h"
+#include "film/surface_film.h"
+#include "support/component_test_support.h"
 #include "support/filter_support.h"
 
 namespace etendue::test {
@@ -234,14 +236,11 @@ TEST(Film, SplatsOfAnEvenFilmAreEvenUpToTheEdge) {
 
 TEST(Film, StateRoundTrip) {
   const auto buffer = make_buffer(9, 7);
-  buffer->layers = {"albedo", "object"};
-  buffer->prepare();
   Film a(*buffer), b(*buffer);
   const auto samples = random_samples(buffer->area(), 4, 5), more = random_samples(buffer->area(), 4, 6);
   render(*buffer, a, samples, 4);
   ImageTile tile;
   tile.begin(*buffer, buffer->area());
-  tile.features(2, 3, 0, {{0.1f, 0.2f, 0.3f}, {0, 0, 1}, 2, 7});
   tile.splat({1.2f, 3.4f}, 1, 3, 0, Spectrum(1.0f), wavelengths, 2);
   tile.contribute({1, 1}, 1, 1, 3, Spectrum(-1.0f), wavelengths);
   a.merge(tile);
@@ -268,7 +267,10 @@ TEST(Film, StateRoundTrip) {
     EXPECT_THROW(film.add_state(state), Error);
   };
   refused(make_buffer(7, 9), Estimator::independent);
-  refused(make_buffer(9, 7), Estimator::independent);  // other layers
+  const auto layered = make_buffer(9, 7);
+  layered->path_lengths = 2;
+  layered->prepare();
+  refused(layered, Estimator::independent);
   refused(make_buffer(9, 7, make_filter("BoxFilter")), Estimator::independent);
   refused(buffer, Estimator::correlated);
 }
@@ -301,29 +303,46 @@ TEST(Film, CropIsThePartOfThePicture) {
   }
 }
 
-TEST(Film, LayersAreMeansOfTheFirstHits) {
+TEST(SurfaceFilm, LayersAreMeansOfTheFirstHits) {
   const auto buffer = make_buffer(4, 4);
-  buffer->layers = {"albedo", "normal", "depth", "object"};
+  buffer->filter = create<Filter>("BoxFilter");
+  buffer->layers = {"albedo", "normal", "depth", "object", "coverage"};
   buffer->prepare();
-  EXPECT_TRUE(buffer->wants_features());
-  Film film(*buffer);
-  ImageTile tile;
-  tile.begin(*buffer, buffer->area());
-  tile.features(1, 2, 4, {{0.2f, 0.4f, 0.6f}, {0, 0, 1}, 3, 5});
-  tile.features(1, 2, 2, {{0.4f, 0.4f, 0.6f}, {0, 1, 0}, 5, 6});
-  tile.features(1, 2, 9, {});  // hit nothing
-  film.merge(tile);
-  tile.begin(*buffer, buffer->area());
-  tile.features(1, 2, 3, {{0.4f, 0.4f, 0.6f}, {0, 1, 0}, 7, 8});
-  film.merge(tile);
-  const Image image = film.develop();
-  ASSERT_EQ(image.channels.size(), 11u);
-  EXPECT_EQ(image.channels[3], "albedo.R");
-  EXPECT_NEAR(image.at(1, 2, 3), 1.0 / 4, 1e-6);
-  EXPECT_NEAR(image.at(1, 2, 7), 0.5, 1e-6);
-  EXPECT_NEAR(image.at(1, 2, 9), 5, 1e-6);  // the mean of 3, 5, 7: a sample without a hit has no depth
-  EXPECT_EQ(image.at(1, 2, 10), 6);         // of the sample with the least index, in whatever order
-  EXPECT_EQ(image.at(0, 0, 9), 0);
+  SurfaceFilm film(*buffer);
+  const auto met = [](const Vector3& albedo, const Vector3& normal, double depth, int object) {
+    FirstSurface s;
+    s.key = 1;
+    s.albedo = albedo;
+    s.normal = normal;
+    s.depth = depth;
+    s.object = object;
+    return s;
+  };
+  std::vector<SurfaceTile> tiles(2);
+  tiles[0].begin(*buffer, buffer->area(), 0);
+  tiles[0].add({1.1f, 2.5f}, 1, 2, 4, met({0.2f, 0.4f, 0.6f}, {0, 0, 1}, 3, 5));
+  tiles[0].add({1.4f, 2.5f}, 1, 2, 2, met({0.4f, 0.4f, 0.6f}, {0, 1, 0}, 5, 6));
+  tiles[0].add({1.9f, 2.5f}, 1, 2, 9, {});  // met nothing
+  tiles[1].begin(*buffer, buffer->area(), 0);
+  tiles[1].add({1.6f, 2.5f}, 1, 2, 3, met({0.4f, 0.4f, 0.6f}, {0, 1, 0}, 7, 8));
+  film.take(tiles);
+  film.end_step();
+  Image image(4, 4, {"X"});
+  film.snapshot()->add_channels(image);
+  ASSERT_EQ(image.channels.size(), 10u);
+  EXPECT_EQ(image.channels[1], "albedo.R");
+  EXPECT_NEAR(image.at(1, 2, 1), 1.0 / 4, 1e-6);
+  EXPECT_NEAR(image.at(1, 2, 5), 0.5, 1e-6);
+  EXPECT_NEAR(image.at(1, 2, 7), 5, 1e-6);  // the mean of 3, 5, 7: a sample that met nothing has no depth
+  EXPECT_EQ(image.at(1, 2, 8), 6);          // of the sample nearest to the centre, of two that are so of the first
+  EXPECT_EQ(image.at(1, 2, 9), 0.75);
+  EXPECT_EQ(image.at(0, 0, 7), 0);
+  // A step that is dropped leaves nothing.
+  const std::vector<std::byte> before = film.save_state();
+  film.take(tiles);
+  film.drop_step();
+  film.end_step();
+  EXPECT_TRUE(film.save_state() == before);
   buffer->layers = {"albdo"};
   EXPECT_THROW(buffer->prepare(), Error);
 }

@@ -51,6 +51,24 @@ def test_another_reader_finds_the_same_mattes(tmp_path):
     assert whole.max() <= 1 + 1e-5 and 0.1 < whole.mean() < 0.5
 
 
+def test_another_reader_finds_the_mattes_in_the_picture(tmp_path):
+    """As layers beside the light, with groups."""
+    groups = 'groups: [ ObjectGroup { name: "round", objects: ["ball", "d*"] } ]\n}'
+    layers = 'layers: ["crypto_object", "depth", "crypto_group"]'
+    scene = SCENE.replace("height: 16 }", "height: 16, " + layers + " }").rstrip()[:-1] + groups
+    (tmp_path / "scene.etd").write_text(scene)
+    picture, alone = tmp_path / "picture.exr", tmp_path / "mattes.exr"
+    run("render", tmp_path / "scene.etd", "-o", picture, "--quiet")
+    run("cryptomatte", tmp_path / "scene.etd", "-o", alone, "--quiet")
+    kinds = {m.metadata().name(): m for m in cryptomatte_api.Cryptomatte.load(str(picture))}
+    assert set(kinds) == {"crypto_object", "crypto_group"}
+    expected = {m.metadata().name(): m for m in cryptomatte_api.Cryptomatte.load(str(alone))}
+    for name, mask in kinds["crypto_object"].masks().items():
+        np.testing.assert_array_equal(np.asarray(mask), np.asarray(expected["crypto_object"].mask(name)))
+    both = sum(np.asarray(kinds["crypto_object"].mask(name)) for name in ("ball", "dot"))
+    np.testing.assert_allclose(np.asarray(kinds["crypto_group"].mask("round")), both, atol=1e-6)
+
+
 def test_a_crop_is_a_part_of_the_whole(tmp_path):
     """With --crop, and with a crop of the description that --size scales."""
     (tmp_path / "scene.etd").write_text(SCENE)

@@ -77,6 +77,7 @@ class TeamTest : public CheckpointTest {
       Render render(described(), {.threads = ranks == 3 ? 2 : 1, .team = &*team.leader});
       EXPECT_EQ(render.run(), Ended::samples);
       EXPECT_TRUE(film(render) == film(alone));
+      EXPECT_TRUE(render.picture().values == alone.picture().values);
       EXPECT_EQ(render.film().bad_samples(), alone.film().bad_samples());
     }
   }
@@ -108,6 +109,15 @@ TEST_F(TeamTest, so_do_the_variants) {
     ASSERT_EQ(complaint([&] { alone = rendered(described(), two_threads); }), "");
     expect_same_bytes(described, *alone);
   }
+}
+
+TEST_F(TeamTest, so_do_layers_of_surfaces) {
+  const auto described = [&] {
+    const Ref<Job> job = job_of(text_of("PathTracer {}"), 24);
+    job->image->layers = {"crypto_object", "object", "position", "normal"};
+    return job;
+  };
+  expect_same_bytes(described, *rendered(described(), two_threads));
 }
 
 TEST_F(TeamTest, continues_with_another_number_of_processes) {

@@ -12,6 +12,7 @@
 #include "etendue/render/renderer.h"
 #include "etendue/scene.h"
 #include "etendue/tone_map.h"
+#include "etendue/transport/object_groups.h"
 #include "etendue/wavelength_sampler.h"
 
 namespace etendue {
@@ -39,6 +40,8 @@ class Job final : public Component {
   /// described member.
   std::map<std::string, std::string> metadata;
 
+  std::vector<Ref<ObjectGroup>> groups;  ///< objects under one name, for mattes
+
   void before_prepare() override;
   void prepare() override;
   void prepare_again() override;
@@ -52,6 +55,7 @@ class Job final : public Component {
 
  private:
   void require_parts() const;
+  void require_layers() const;
   void set_rendering_origin(const DoublePoint3&);
   DoublePoint3 viewpoint() const;
 

@@ -15,6 +15,7 @@
 
 namespace etendue {
 
+class SurfaceSnapshot;
 class Team;
 
 /// How far a render is.
@@ -53,6 +54,7 @@ struct RenderSnapshot {
   FilmSnapshot film;
   Progress progress;
   std::map<std::string, std::string> metadata;
+  std::shared_ptr<const SurfaceSnapshot> surfaces;  ///< null: the picture has no layers that show surfaces
   /// The picture as X Y Z, with layers and metadata.
   Image picture() const;
 };

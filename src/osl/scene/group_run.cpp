@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "render/current_step.h"
+#include "core/current_step.h"
 
 namespace etendue::osl {
 

@@ -1,5 +1,5 @@
 #pragma once
-// Mattes: which objects, materials and assets the samples of a picture see first.
+// Mattes alone: which objects, materials, assets and groups the samples of a picture see first, without its light.
 
 #include <functional>
 #include <vector>
@@ -9,13 +9,9 @@
 
 namespace etendue {
 
-/// The mattes of a render's picture: "crypto_object", "crypto_material" and "crypto_asset". The samples are those of the
-/// render: the same film points, lens points and times, and the film's filter. `go_on` is called now and then with the part
-/// that is done; false ends the work, and the result is empty. The result does not depend on `threads` (0: all cores).
-///
-/// An object is named by the path of names from the scene to it, such as "tree_2/leaf", where instances have names of their
-/// own; an asset by the first part of this path. What has no name is called by its class and a number in the order of the file.
-/// The same name is the same matte.
+/// The mattes that a render's picture has as layers of every kind: "crypto_object", "crypto_material", "crypto_asset" and, if
+/// the job has groups, "crypto_group". `go_on` is called now and then with the part that is done; false ends the work, and the
+/// result is empty. The result does not depend on `threads` (0: all cores).
 std::vector<Cryptomatte> render_mattes(const Render&, int threads, const std::function<bool(double)>& go_on);
 
 }  // namespace etendue

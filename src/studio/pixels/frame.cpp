@@ -27,6 +27,16 @@ float scale_for(const Image& image, size_t channel, float before) {
   return std::abs(wanted - had) <= slack ? before : float(std::exp2(std::round(wanted)));
 }
 
+/// How many channels from `first` on are shown: all three of a colour, or those of a layer, "uv.U" and "uv.V". One is shown in
+/// grey, two in red and green.
+size_t channels_shown(const Image& image, size_t first) {
+  const auto layer = [&](size_t c) { return image.channels[c].substr(0, image.channels[c].rfind('.')); };
+  const bool color = image.channels[first].find('.') == std::string::npos;
+  size_t count = 1;
+  while (count < 3 && first + count < image.channels.size() && (color || layer(first + count) == layer(first))) ++count;
+  return count;
+}
+
 void put(std::vector<std::uint8_t>& to, std::uint32_t value) {
   for (int i = 0; i < 4; ++i) to.push_back(std::uint8_t(value >> (8 * i)));
 }
@@ -62,7 +72,7 @@ std::shared_ptr<const Frame> Frame::make(Kind kind, const Image& image, size_t f
   if (kind == Kind::linear) f.scale_ = scale_for(image, first + (xyz ? 1 : 0), same_kind ? before->scale_ : 1.0f);
   f.lay_out();
   const auto& m = rgb_space("srgb").from_xyz;
-  const size_t stride = image.channels.size(), last = stride - 1;
+  const size_t stride = image.channels.size(), shown = channels_shown(image, first);
   const double factor = 1 / double(f.scale_);
   const bool comparable = before && f.continues(*before);
   for (size_t index = 0; index < f.tiles_.size(); ++index) {
@@ -71,8 +81,7 @@ std::shared_ptr<const Frame> Frame::make(Kind kind, const Image& image, size_t f
     for (int y = t.y; y < t.y + t.height; ++y)
       for (int x = t.x; x < t.x + t.width; ++x) {
         const double* p = &image.values[(size_t(y) * size_t(image.width) + size_t(x)) * stride];
-        // A layer with one channel is shown in grey.
-        const double c[3] = {p[first], p[std::min(first + 1, last)], p[std::min(first + 2, last)]};
+        const double c[3] = {p[first], shown == 1 ? p[first] : p[first + 1], shown == 2 ? 0 : p[first + shown - 1]};
         for (int k = 0; k < 3; ++k) {
           const double v = xyz ? m[size_t(3 * k)] * c[0] + m[size_t(3 * k + 1)] * c[1] + m[size_t(3 * k + 2)] * c[2] : c[k];
           if (kind == Kind::linear) {

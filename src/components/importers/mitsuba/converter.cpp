@@ -79,7 +79,8 @@ Ref<Job> Converter::job(const Element& scene) {
   const std::vector<const Element*> samplers = sensor ? sensor->all("sampler") : std::vector<const Element*>{};
   const std::vector<const Element*> integrators = scene.all("integrator");
   const Element* const film = films.empty() ? nullptr : films.front();
-  set_member(*job, "image", image(film), scene.at);
+  const Ref<Component> picture = image(film);
+  set_member(*job, "image", picture, scene.at);
   // volpath does not count null scattering (BSDFFlags::Null), such as transmission through a thin dielectric, for max_depth;
   // path does.
   const Element* volumetric = first_of(scene, "integrator", {"volpath", "volpathmis", "prbvolpath"});
@@ -91,6 +92,7 @@ Ref<Job> Converter::job(const Element& scene) {
       *job, "renderer",
       renderer(scene, integrators.empty() ? nullptr : integrators.front(), samplers.empty() ? nullptr : samplers.front()),
       scene.at);
+  if (!layers_.empty()) set_member(*picture, "layers", layers_, scene.at);
   if (!samplers.empty() && samplers.front()->has("seed")) {
     const Reading of_sampler(*samplers.front());
     const std::int64_t seed = samplers.front()->integer("seed", 0);

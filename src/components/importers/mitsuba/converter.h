@@ -61,6 +61,8 @@ class Converter {
   Ref<Component> renderer(const Element& scene, const Element* integrator, const Element* sampler);
   Ref<Component> around(const Element& outer, const std::vector<const Element*>& inner);
   Ref<Component> features(const Element& integrator);
+  /// Records the channels of an 'aov' as layers of the image.
+  void note_channels(const Element& aov);
   /// Mitsuba's defaults for a scene without a sensor or an emitter.
   Ref<Component> default_camera(const Element& scene, const std::vector<Ref<SceneObject>>& world);
   Ref<SceneObject> default_sky(const Element& scene);
@@ -223,6 +225,7 @@ class Converter {
   std::map<const Element*, GridPlace> places_;
   const Element *sun_of_sky_ = nullptr, *sky_with_sun_ = nullptr;  ///< a sun and a sky that belong together
   std::map<const Component*, Ref<Component>> turned_;              // shaders with front and back exchanged, by their originals
+  Value::List layers_;  ///< of the image
 };
 
 }  // namespace etendue::mitsuba

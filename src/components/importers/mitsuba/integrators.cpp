@@ -106,7 +106,7 @@ Ref<Component> Converter::around(const Element& e, const std::vector<const Eleme
   const std::string& t = e.type;
   if (inner.size() > 1) inexact(*inner[1], "one integrator is used: the first");
   if (t == "aov")
-    inexact(e, "channels of an 'aov' are not written: ask for layers of the image");
+    note_channels(e);
   else if (t == "moment" || t == "stokes")
     inexact(e, fmt::format("the channels that '{}' adds are not written", t));
   else if (t == "irrcache")
@@ -131,6 +131,37 @@ Ref<Component> Converter::around(const Element& e, const std::vector<const Eleme
   return made;
 }
 
+void Converter::note_channels(const Element& e) {
+  static constexpr std::pair<const char*, const char*> known[] = {
+      {"albedo", "albedo"},        {"depth", "depth"},
+      {"position", "position"},    {"uv", "uv"},
+      {"sh_normal", "normal"},     {"geo_normal", "geometric_normal"},
+      {"prim_index", "primitive"}, {"shape_index", "object"},
+  };
+  const std::string all = e.string("aovs", "");
+  for (size_t begin = 0; begin < all.size();) {
+    const size_t end = std::min(all.find(',', begin), all.size());
+    std::string asked = all.substr(begin, end - begin);
+    begin = end + 1;
+    if (const size_t colon = asked.find(':'); colon != std::string::npos) asked.erase(0, colon + 1);
+    std::erase(asked, ' ');
+    const auto* const found = std::ranges::find(known, asked, [](const auto& k) { return std::string(k.first); });
+    if (found == std::end(known)) {
+      importing_.inexact(fmt::format("'{}' is no layer of an image here, and is left out", asked), e.location_of("aovs"));
+      continue;
+    }
+    if (asked == "sh_normal" || asked == "geo_normal")
+      importing_.inexact("normals of layers are on the side of the camera", e.location_of("aovs"));
+    if (asked == "prim_index" || asked == "shape_index")
+      importing_.inexact("numbers of layers count from 1", e.location_of("aovs"));
+    const bool twice = std::ranges::any_of(layers_, [&](const Value& v) {
+      const auto* const text = v.as<std::string>();
+      return text && *text == found->second;
+    });
+    if (!twice) layers_.emplace_back(std::string(found->second), e.location_of("aovs"));
+  }
+}
+
 // The renderer of a geometric feature: 'field' of version 0.x, or the first channel of an 'aov' without an inner integrator.
 Ref<Component> Converter::features(const Element& e) {
   Ref<Component> made = make("FeatureRenderer", e);
@@ -138,10 +169,8 @@ Ref<Component> Converter::features(const Element& e) {
   const char* const name = e.type == "field" ? "field" : "aovs";
   if (e.type != "depth") {
     asked = e.string(name, "");
-    if (const size_t comma = asked.find(','); comma != std::string::npos) {
-      importing_.inexact("one of several channels is shown: the first", e.location_of(name));
-      asked.resize(comma);
-    }
+    if (e.type == "aov") note_channels(e);
+    asked.resize(std::min(asked.find(','), asked.size()));
     if (const size_t colon = asked.find(':'); colon != std::string::npos) asked.erase(0, colon + 1);
     std::erase(asked, ' ');
   }

@@ -133,9 +133,12 @@ void set_film(Reader& reader, Component& job) {
   set_filter(reader, *image);
   set_crop(reader, *image, size);
   if (reader.film.type == "gbuffer") {
-    set_member(*image, "layers",
-               Value::List{Value(std::string("albedo")), Value(std::string("normal")), Value(std::string("depth"))}, p.at);
-    if (p.text("coordinatesystem", "camera") == "camera") reader.importing.inexact("normals are the world's", p.at);
+    Value::List layers;
+    for (const char* layer : {"albedo", "position", "geometric_normal", "normal", "uv", "depth", "variance"})
+      layers.emplace_back(std::string(layer));
+    set_member(*image, "layers", layers, p.at);
+    if (p.text("coordinatesystem", "camera") == "camera")
+      reader.importing.inexact("positions and normals are the world's", p.at);
   } else if (reader.film.type == "spectral") {
     reader.importing.inexact("the film of buckets of wavelengths is one of X, Y and Z", p.at);
     p.ignore({"nbuckets", "lambdamin", "lambdamax"});
