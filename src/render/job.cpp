@@ -3,6 +3,7 @@
 #include "etendue/transport/light_groups.h"
 #include "film/picture_format.h"
 #include "geometry/rendering_space.h"
+#include "refuse_bands.h"
 
 namespace etendue {
 
@@ -124,6 +125,7 @@ void Job::prepare() {
   camera->set_film(image->width, image->height);
   const LightGroups known(*scene, *image);  // throws Error for an unknown name
   require_light(*renderer, *image);
+  refuse_bands_where_they_lack(*this);
 }
 
 void Job::prepare_again() {
@@ -132,6 +134,7 @@ void Job::prepare_again() {
   camera->set_film(image->width, image->height);
   const LightGroups known(*scene, *image);
   require_light(*renderer, *image);
+  refuse_bands_where_they_lack(*this);
 }
 
 bool Job::rendering_origin_is_stale() const {

@@ -7,6 +7,7 @@
 
 #include "closure_rows.h"
 #include "components/shaders/tangent_frame.h"
+#include "etendue/describe/bands.h"
 #include "lobes.h"
 
 namespace etendue::osl {
@@ -31,8 +32,12 @@ MicrofacetDistribution::Kind distribution_named(Gathering& g, const String* name
 struct Film {
   float thickness = 0, index = 1.5f;
 };
-Film film_of(const Component& c) {
+Film film_of(const Gathering& g, const Component& c) {
   const Film f{keyword(c, "thinfilm_thickness", 0), keyword(c, "thinfilm_ior", 1.5f)};
+  if (f.thickness > 0 && in_bands(g.wavelengths())) {
+    g.warn("a thin film interferes wavelength by wavelength, and is left out where paths carry three bands");
+    return {0, f.index};
+  }
   return {std::isfinite(f.thickness) ? clamp(f.thickness, 0, 1e5f) : 0, clamp(f.index, 0.01f, 99)};
 }
 
@@ -179,7 +184,7 @@ void dielectric_bsdf(Gathering& g, const Component& c) {
   b.roughness_y = c.argument<float>(5);
   b.index = c.argument<float>(6);
   b.kind = distribution_named(g, string_at(c, 7));
-  if (const Film film = film_of(c); film.thickness > 0) {
+  if (const Film film = film_of(g, c); film.thickness > 0) {
     const MicrofacetDistribution d(b.kind, b.roughness_x, b.roughness_y);
     const Spectrum reflected = g.reflectance(b.reflection_tint), through = g.reflectance(b.transmission_tint);
     SlotValues v;
@@ -239,13 +244,15 @@ void conductor_bsdf(Gathering& g, const Component& c) {
   }
   const MicrofacetDistribution d(distribution_named(g, string_at(c, 6)), v.numbers[0], v.numbers[1]);
   const SurfacePoint p = g.at(c.argument<Triple>(0), c.argument<Triple>(1));
-  if (const Film film = film_of(c); film.thickness > 0) return add_film(g, p, d, film, v, true, v.colors[0], reflection_lobes);
+  if (const Film film = film_of(g, c); film.thickness > 0)
+    return add_film(g, p, d, film, v, true, v.colors[0], reflection_lobes);
   const bool beckmann = d.kind == MicrofacetDistribution::beckmann;
   g.add(*models[beckmann ? 1 : 0], v, p, reflection_lobes);
 }
 
 void generalized_schlick_bsdf(Gathering& g, const Component& c) {
-  if (film_of(c).thickness > 0) g.warn("a film on generalized_schlick_bsdf() has no effect, as it has no index of refraction");
+  if (film_of(g, c).thickness > 0)
+    g.warn("a film on generalized_schlick_bsdf() has no effect, as it has no index of refraction");
   const Triple tint = c.argument<Triple>(2), through = c.argument<Triple>(3), f0 = c.argument<Triple>(6);
   const MicrofacetDistribution d(distribution_named(g, string_at(c, 9)), c.argument<float>(4), c.argument<float>(5));
   const SurfacePoint p = g.at(c.argument<Triple>(0), c.argument<Triple>(1));

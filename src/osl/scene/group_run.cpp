@@ -26,6 +26,10 @@ void RunsGroup::build_group(const Component& self, Network network, const std::s
   output_ = *found;
 }
 
+void RunsGroup::refuse_bands() const {
+  if (network_.needs_wavelengths()) throw Error(name_ + ": its shader computes with wavelength()");
+}
+
 RunsGroup::Run::Run(const RunsGroup& part, const SurfacePoint& p, const Wavelengths* w)
     : part_(part),
       globals_(globals_of(p, from_behind_)),

@@ -28,7 +28,7 @@ struct BoundaryReflectance {
   Spectrum mean() const { return rgb && in_vacuum ? rgb->mean_reflectance(wavelengths) : seen(mean_fresnel_conductor(n, k)); }
 
  private:
-  Spectrum seen(const Spectrum& reflected) const { return rgb ? rgb->spectrum_of(reflected).evaluate(wavelengths) : reflected; }
+  Spectrum seen(const Spectrum& reflected) const { return rgb ? rgb->seen(reflected, wavelengths) : reflected; }
 };
 
 class PolishedConductor final : public ScatterModel<PolishedConductor> {
