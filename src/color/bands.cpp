@@ -91,7 +91,14 @@ Spectrum xyz_in_bands(const Xyz& c, ColorUse use, const Wavelengths& bands) {
   return within(space_of_bands(bands).from_xyz * Vector{c.x, c.y, c.z}, use);
 }
 
-Spectrum equal_energy_in_bands(const Wavelengths& bands) { return xyz_in_bands({1, 1, 1}, ColorUse::radiance, bands); }
+Spectrum equal_energy_in_bands(const Wavelengths& bands) {
+  static const Xyz color = [] {
+    Xyz sum;
+    for (const auto& row : tables::observer) sum += 1 / observer_y_integral() * Xyz{row[0], row[1], row[2]};
+    return sum;
+  }();
+  return xyz_in_bands(color, ColorUse::radiance, bands);
+}
 
 BandValues::~BandValues() {
   for (const Entry* e = first_.load(); e;) {
