@@ -8,6 +8,7 @@
 // a photon is proportional to 1 / l. So y(l' -> l) = Q l' E(l) / int E(s) s ds.
 
 #include "etendue/core/spectral_function.h"
+#include "etendue/describe/bands.h"
 #include "etendue/describe/color.h"
 #include "etendue/describe/component.h"
 #include "etendue/describe/description.h"
@@ -15,13 +16,14 @@
 
 namespace etendue {
 
-class Dye final : public Component {
+class Dye final : public Component, public NeedsWavelengths {
  public:
   using Interface = Dye;
   using Parent = Component;
   static void describe(Description<Dye>&);
 
   void prepare() override;
+  void refuse_bands() const override { fail({}, "fluorescence moves light from one wavelength to others"); }
 
   /// Absorption relative to its largest value: x in [0, 1].
   const SampledFunction& absorption() const { return absorption_; }

@@ -21,6 +21,8 @@ namespace etendue {
 
 namespace {
 
+constexpr const char* rgb_wavelengths = "RgbWavelengths";
+
 std::pair<std::string, std::string> split(const std::string& option, const std::string& text, const char* what) {
   const size_t at = text.find('=');
   if (at == std::string::npos || at == 0) throw Error("'" + text + "' is not of the form " + what, {intern(option), 0, 0});
@@ -38,6 +40,9 @@ void SceneOptions::add_overrides_to(Command& command) {
   command.option("-D,--define NAME=VALUE", defines, "Replace the value of a param of the file; may be repeated");
   command.option("--set PATH=VALUE", sets,
                  "Set any member of any part, such as renderer.max_depth=4 or scene.objects[2].radius=\"1 cm\"");
+  command.flag(
+      "--rgb", rgb,
+      "Paths carry red, green and blue in place of wavelengths, as in RGB renderers: the Job's wavelengths are RgbWavelengths");
   add_plugin_option(command, plugins);
   command.flag("--strict", import.strict, "Imported files: what cannot be expressed exactly is an error");
   command.option("--allow-path FOLDER", import.allowed_folders,
@@ -73,6 +78,7 @@ LoadOptions SceneOptions::load_options() const {
   options.import = import;
   options.import.time = options.time;
   set_import_permissions(options.import);
+  set_imports_for_rgb(rgb);
   return options;
 }
 
@@ -121,6 +127,7 @@ void require_kept(const std::vector<SetOption>& sets) {
 std::vector<SetOption> SceneOptions::set_options() const {
   std::vector<SetOption> list;
   if (!renderer.empty()) list.push_back({"--renderer", "renderer"});
+  if (rgb) list.push_back({"--rgb", "wavelengths"});
   for (const std::string& set : sets) list.push_back({"--set", split("--set", set, "path=value").first});
   return list;
 }
@@ -138,6 +145,7 @@ void SceneOptions::apply_renderer(Job& job) const {
 void SceneOptions::apply_sets(Job& job) const {
   require_kept(set_options());
   if (!renderer.empty()) apply_renderer(job);
+  if (rgb && job.wavelengths->class_info().name != rgb_wavelengths) set_path(job, "wavelengths", rgb_wavelengths);
   std::vector<Error> errors;
   for (const std::string& set : sets) {
     try {
@@ -158,6 +166,7 @@ std::string SceneOptions::overrides_line() const {
   std::string text;
   for (const std::string& define : defines) text += " -D " + shell_quoted(define);
   if (!renderer.empty()) text += " --renderer " + shell_quoted(renderer);
+  if (rgb) text += " --rgb";
   for (const std::string& set : sets) text += " --set " + shell_quoted(set);
   for (const std::string& plugin : plugins) text += " --plugin " + shell_quoted(plugin);
   if (import.strict) text += " --strict";

@@ -25,6 +25,7 @@ struct SceneOptions {
   std::vector<std::string> defines;  ///< "name=value"
   std::vector<std::string> sets;     ///< "path=value"
   std::string renderer;              ///< a class or expression instead of the description's renderer; empty: that one
+  bool rgb = false;                  ///< RgbWavelengths instead of the description's
   std::vector<std::string> plugins;
   ImportOptions import;      ///< for files of other formats
   std::optional<int> frame;  ///< the value of `frame` in the file; without it 0

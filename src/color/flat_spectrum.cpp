@@ -1,4 +1,4 @@
-#include "etendue/core/spectral_function.h"
+#include "etendue/describe/bands.h"
 #include "named.h"
 
 namespace etendue {
@@ -8,7 +8,7 @@ namespace {
 class FlatSpectrum final : public SpectralFunction {
  public:
   explicit FlatSpectrum(float value) : value_(value) {}
-  Spectrum evaluate(const Wavelengths&, ColorUse) const override { return Spectrum(value_); }
+  Spectrum evaluate(const Wavelengths& w, ColorUse use) const override { return used_number(value_, use, w); }
   float at(float, ColorUse) const override { return value_; }
   std::string expression() const override { return number_text(value_); }
   bool varies() const override { return false; }

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "etendue/describe/color.h"
+#include "etendue/describe/bands.h"
 #include "named.h"
 #include "tables.h"
 
@@ -23,7 +23,9 @@ class GlassIndex final : public SpectralFunction {
     constant_ = float(constant);
   }
 
-  Spectrum evaluate(const Wavelengths& wavelengths, ColorUse) const override {
+  Spectrum evaluate(const Wavelengths& wavelengths, ColorUse use) const override {
+    if (in_bands(wavelengths)) [[unlikely]]
+      return in_bands_.of(*this, use, wavelengths);
     detail::Lanes result{};
     for (int i = 0; i < spectrum_size; ++i) {
       const float micrometres = wavelengths[i] * 1e-3f, square = micrometres * micrometres;
@@ -44,6 +46,7 @@ class GlassIndex final : public SpectralFunction {
  private:
   const tables::Glass& glass_;
   float constant_, product_[4], resonance_[4];  // micrometres squared
+  BandValues in_bands_;
 };
 
 }  // namespace

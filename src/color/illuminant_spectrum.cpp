@@ -1,4 +1,4 @@
-#include "etendue/describe/color.h"
+#include "etendue/describe/bands.h"
 #include "named.h"
 #include "stepped_table.h"
 #include "tables.h"
@@ -22,7 +22,11 @@ class IlluminantSpectrum final : public SpectralFunction {
     for (float& value : values) value = float(double(value) * (observer_y_integral() / y));
     table_ = SteppedTable(std::move(wavelengths), std::move(values));
   }
-  Spectrum evaluate(const Wavelengths& wavelengths, ColorUse) const override { return table_.evaluate(wavelengths); }
+  Spectrum evaluate(const Wavelengths& wavelengths, ColorUse use) const override {
+    if (in_bands(wavelengths)) [[unlikely]]
+      return in_bands_.of(*this, use, wavelengths);
+    return table_.evaluate(wavelengths);
+  }
   float at(float wavelength, ColorUse) const override { return float(table_.exact(double(wavelength))); }
   std::vector<float> corners() const override { return table_.corners(); }
   std::string expression() const override { return "illuminant(" + quoted(name_) + ")"; }
@@ -30,6 +34,7 @@ class IlluminantSpectrum final : public SpectralFunction {
  private:
   std::string name_;
   SteppedTable table_;
+  BandValues in_bands_;
 };
 
 }  // namespace

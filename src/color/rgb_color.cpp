@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "etendue/core/error.h"
-#include "etendue/describe/color.h"
+#include "etendue/describe/bands.h"
 #include "etendue/describe/component.h"
 #include "named.h"
 #include "sigmoid_fit.h"
@@ -23,12 +23,13 @@ constexpr int fine_step = 1;  // nm
 class RgbColor final : public SpectralFunction {
  public:
   RgbColor(const RgbSpace& space, const std::array<double, 3>& rgb, std::string expression)
-      : illuminant_(space.illuminant), expression_(std::move(expression)) {
+      : space_(&space), illuminant_(space.illuminant), expression_(std::move(expression)) {
     const SigmoidFit& fit = fit_of(space);
     std::array<double, 3> positive, reflectance, half;
     for (size_t i = 0; i < 3; ++i) {
       positive[i] = std::max(rgb[i], 0.0);
       reflectance[i] = std::min(positive[i], 1.0);
+      rgb_[i] = float(positive[i]);
     }
     const double largest = std::max({positive[0], positive[1], positive[2]});
     for (size_t i = 0; i < 3; ++i) half[i] = largest > 0 ? positive[i] / (2 * largest) : 0;
@@ -38,6 +39,9 @@ class RgbColor final : public SpectralFunction {
   }
 
   Spectrum evaluate(const Wavelengths& wavelengths, ColorUse use) const override {
+    if (in_bands(wavelengths)) [[unlikely]]
+      return &space_of_bands(wavelengths) == space_ ? rgb_in_bands(*space_, rgb_[0], rgb_[1], rgb_[2], use, wavelengths)
+                                                    : in_bands_.of(*this, use, wavelengths);
     const Coefficients& c = use == ColorUse::reflectance ? reflectance_ : half_;
     const Spectrum s = evaluate_sigmoid(float(c[0]), float(c[1]), float(c[2]), wavelengths);
     if (use == ColorUse::reflectance) return s;
@@ -64,6 +68,9 @@ class RgbColor final : public SpectralFunction {
 
   Coefficients reflectance_, half_;  // of the colour, and of the colour scaled so that its largest component is 1/2
   float scale_;                      // twice the largest component
+  float rgb_[3];                     // without negative components
+  const RgbSpace* space_;            // lives as long as the program
+  BandValues in_bands_;              // of other spaces
   Color illuminant_;
   std::string expression_;
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "etendue/describe/bands.h"
 #include "sigmoid_fit.h"
 
 namespace etendue {
@@ -214,9 +215,17 @@ RgbCoefficients RgbTable::look_up(const Node* nodes, const float rgb[3]) {
 
 RgbCoefficients rgb_coefficients(const RgbSpace& space, float r, float g, float b) { return space.table->find(space, r, g, b); }
 
-Spectrum RgbCoefficients::evaluate(const Wavelengths& wavelengths) const { return evaluate_sigmoid(c0, c1, c2, wavelengths); }
+Spectrum RgbCoefficients::evaluate(const Wavelengths& wavelengths) const {
+  if (in_bands(wavelengths)) [[unlikely]] {
+    const Coefficients c{double(c0), double(c1), double(c2)};
+    return projected([&](float lambda) { return evaluate_sigmoid(c, double(lambda)); }, ColorUse::reflectance, wavelengths);
+  }
+  return evaluate_sigmoid(c0, c1, c2, wavelengths);
+}
 
 Spectrum rgb_spectrum(const RgbSpace& space, float r, float g, float b, ColorUse use, const Wavelengths& wavelengths) {
+  if (in_bands(wavelengths)) [[unlikely]]
+    return rgb_in_bands(space, r, g, b, use, wavelengths);
   if (use == ColorUse::reflectance) return rgb_coefficients(space, r, g, b).evaluate(wavelengths);
   const float scale = 2 * std::max({r, g, b});
   if (scale < std::numeric_limits<float>::min()) return Spectrum();

@@ -1,11 +1,28 @@
 // The estimate of a path's colour in XYZ, computed once per path.
 
-#include "etendue/core/spectrum.h"
+#include <limits>
+
+#include "etendue/describe/bands.h"
 #include "tables.h"
 
 namespace etendue {
 
+namespace {
+
+/// One band alone, which dispersion would leave, gives no colour: such a sample is reported as bad.
+Xyz to_xyz_from_bands(const Spectrum& s, const Wavelengths& bands) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (bands.single()) return {none, none, none};
+  const auto& m = space_of_bands(bands).to_xyz;
+  const double r = double(s[0]), g = double(s[1]), b = double(s[2]);
+  return {m[0] * r + m[1] * g + m[2] * b, m[3] * r + m[4] * g + m[5] * b, m[6] * r + m[7] * g + m[8] * b};
+}
+
+}  // namespace
+
 Xyz to_xyz(const Spectrum& spectrum, const Wavelengths& wavelengths) {
+  if (in_bands(wavelengths)) [[unlikely]]
+    return to_xyz_from_bands(spectrum, wavelengths);
   // X = 1/size sum_i S_i xbar(lambda_i) / (p_i integral of ybar); rows hold xbar, ybar, zbar over that integral.
   using Row = float __attribute__((vector_size(16)));
   Row sum{};

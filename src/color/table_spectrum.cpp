@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "etendue/core/error.h"
-#include "etendue/describe/color.h"
+#include "etendue/describe/bands.h"
 #include "named.h"
 #include "stepped_table.h"
 
@@ -30,6 +30,8 @@ class TableSpectrum final : public SpectralFunction {
   }
 
   Spectrum evaluate(const Wavelengths& wavelengths, ColorUse use) const override {
+    if (in_bands(wavelengths)) [[unlikely]]
+      return in_bands_.of(*this, use, wavelengths);
     return light_ && use == ColorUse::radiance ? light_->evaluate(wavelengths) : table_.evaluate(wavelengths);
   }
   float at(float wavelength, ColorUse use) const override {
@@ -60,6 +62,7 @@ class TableSpectrum final : public SpectralFunction {
   SteppedTable table_;
   std::string expression_;             // empty: a literal of the table
   std::unique_ptr<DenseTable> light_;  // of a table with lines: the averaged emission
+  BandValues in_bands_;
 };
 
 }  // namespace

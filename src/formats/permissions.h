@@ -10,4 +10,9 @@ namespace etendue {
 const ImportOptions& import_permissions();
 void set_import_permissions(ImportOptions);
 
+/// Whether paths will carry three bands (`--rgb`): then importers read what a program's RGB and spectral modes read differently
+/// as its RGB mode does.
+bool imports_for_rgb();
+void set_imports_for_rgb(bool);
+
 }  // namespace etendue

@@ -225,12 +225,12 @@ TEST(Conductor, OfThreeChannelsIsTabulatedWithinItsBound) {
     for (int i = 0; i < 4000; ++i) {
       const float u = random(), cosine = i % 2 ? u : u * u * u;  // half of them concentrated near grazing angles
       const Wavelengths w = test::wavelengths(380 + 400 * random());
-      const Spectrum wanted = table.spectrum_of(fresnel_conductor(cosine, table.n(), table.k())).evaluate(w),
+      const Spectrum wanted = table.seen(fresnel_conductor(cosine, table.n(), table.k()), w),
                      found = table.reflectance(cosine, w);
       for (int l = 0; l < spectrum_size; ++l) worst = std::max(worst, std::abs(found[l] - wanted[l]));
     }
     EXPECT_EQ(table.reflectance(1, test::wavelengths())[0],
-              table.spectrum_of(fresnel_conductor(1, table.n(), table.k())).evaluate(test::wavelengths())[0]);
+              table.seen(fresnel_conductor(1, table.n(), table.k()), test::wavelengths())[0]);
   }
   EXPECT_LE(worst, 2 * RgbReflectance::tolerance);  // the tolerance holds at the middle of cells
 }

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "conformance.h"
-#include "etendue/describe/color.h"
+#include "etendue/describe/bands.h"
 #include "etendue/wavelength_sampler.h"
 #include "statistics.h"
 
@@ -29,6 +29,7 @@ class WavelengthTrial {
   explicit WavelengthTrial(Trial& t) : trial(t), sampler_(t.part<WavelengthSampler>()) {}
 
   void check() {
+    if (in_bands(sampler_.sample({}, 0))) return check_bands();
     draw();
     if (usable_) find_support();
     if (!usable_) return;
@@ -56,6 +57,20 @@ class WavelengthTrial {
         drawn_.push_back(w);
       }
     }
+  }
+
+  /// Paths in bands all carry the same ones, and the RGB (1, 1, 1) is the white of their space.
+  void check_bands() {
+    const Wavelengths first = sampler_.sample({}, 0);
+    for (int i = 0; i < std::max(8, trial.samples(100)); ++i) {
+      const SampleKey key(1, int(trial.random() % 1000), int(trial.random() % 1000), i);
+      const Wavelengths w = sampler_.sample(key, trial.uniform());
+      trial.expect(in_bands(w) && &space_of_bands(w) == &space_of_bands(first), "all samples have the same bands");
+    }
+    const auto& white = space_of_bands(first).white;
+    const Xyz c = to_xyz(Spectrum(1.0f), first);
+    trial.expect(std::abs(c.y - 1) < 1e-5 && std::abs(c.x - white[0] / white[1]) < 1e-5, "equal components are the white",
+                 [&] { return fmt::format("X Y Z are {:.5f} {:.5f} {:.5f}", c.x, c.y, c.z); });
   }
 
   /// Finds the support of the distribution: an interval, or so few single wavelengths that each gets a cell of its own.

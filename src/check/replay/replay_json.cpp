@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "etendue/describe/bands.h"
 #include "replay.h"
 
 namespace etendue {
@@ -9,6 +10,8 @@ namespace etendue {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* names_of_bands[] = {"red", "green", "blue"};
 
 Json array(const Spectrum& s) {
   Json json = Json::array();
@@ -62,7 +65,7 @@ std::string replay_json(const Job& job, const PixelReplay& replay, const std::st
     const PathRecord& record = path.record;
     Json wavelengths = Json::array(), pdfs = Json::array();
     for (int i = 0; i < spectrum_size; ++i) {
-      wavelengths.push_back(record.wavelengths[i]);
+      wavelengths.push_back(in_bands(record.wavelengths) ? Json(names_of_bands[i % 3]) : Json(record.wavelengths[i]));
       pdfs.push_back(record.wavelengths.pdf(i));
     }
     paths.push_back({{"sample", path.sample},

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "etendue/describe/bands.h"
 #include "replay.h"
 
 namespace etendue {
@@ -61,8 +62,11 @@ std::string path_text(const PathRecord& record, Point2 film) {
     pdf.set(i, record.wavelengths.pdf(i));
   }
   std::string text = fmt::format("film point      ({:.6f}, {:.6f}) pixels\n", film.x, film.y);
-  text += "wavelength [nm] " + numbers(lambda) + "\n";
-  text += "density [1/nm]  " + numbers(pdf) + (record.wavelengths.single() ? "  (the hero alone is left)" : "") + "\n";
+  if (in_bands(record.wavelengths))
+    text += "bands           red, green, blue, repeated\n";
+  else
+    text += "wavelength [nm] " + numbers(lambda) + "\n" + "density [1/nm]  " + numbers(pdf) +
+            (record.wavelengths.single() ? "  (the hero alone is left)" : "") + "\n";
   for (size_t i = 0; i < record.vertices.size(); ++i) text += vertex_text(record.vertices[i], "vertex", i);
   for (size_t i = 0; i < record.light_vertices.size(); ++i) text += vertex_text(record.light_vertices[i], "light vertex", i);
   if (!record.contributions.empty()) text += "contributions\n";

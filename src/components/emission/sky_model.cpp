@@ -102,6 +102,22 @@ Spectrum SkyModel::sun(float elevation, float cos_psi, const Wavelengths& w) con
   });
 }
 
+const Xyz& SkyModel::color_of_channel(int channel) {
+  static const std::array<Xyz, channels> colors = [] {
+    std::array<Xyz, channels> sums{};
+    for (float lambda = wavelength_low; lambda <= wavelength_high; ++lambda) {
+      Wavelengths w;
+      for (int i = 0; i < spectrum_size; ++i) w.place(i, lambda, 1);
+      for (int c = 0; c < channels; ++c) {
+        const Spectrum hat = between_channels(w, [&](int k) { return k == c ? 1.0f : 0.0f; });
+        sums[size_t(c)] += double(hat[0]) / observer_y_integral() * observer(lambda);
+      }
+    }
+    return sums;
+  }();
+  return colors[size_t(channel)];
+}
+
 float SkyModel::beyond(float wavelength) {
   // Planck: lambda^-5 / (e^(c_2 / (lambda T)) - 1), c_2 = 1.438777e7 nm K.
   const auto planck = [](float l) { return 1 / (l * l * l * l * l * 1e-14f * std::expm1(1.438777e7f / (l * 5778))); };

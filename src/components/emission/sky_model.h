@@ -3,8 +3,7 @@
 
 #include <array>
 
-#include "etendue/core/spectral_function.h"
-#include "etendue/core/spectrum.h"
+#include "etendue/describe/bands.h"
 
 namespace etendue {
 
@@ -42,6 +41,11 @@ class SkyModel {
   /// Interpolates the values of the channels at the wavelengths of a path.
   template <class F>
   static Spectrum between_channels(const Wavelengths& w, const F& value) {
+    if (in_bands(w)) {
+      Xyz sum;
+      for (int c = 0; c < channels; ++c) sum += double(value(c)) * color_of_channel(c);
+      return xyz_in_bands(sum, ColorUse::radiance, w);
+    }
     Spectrum result;
     for (int i = 0; i < spectrum_size; ++i) {
       const float x = clamp((w[i] - 360) / 40, 0, float(channels - 1));
@@ -53,6 +57,8 @@ class SkyModel {
     }
     return result;
   }
+  /// The colour of light that is 1 at a channel's wavelength and 0 at all others, as interpolated between.
+  static const Xyz& color_of_channel(int channel);
   /// The radiance at a wavelength beyond 720 nm, relative to that at 720 nm.
   static float beyond(float wavelength);
 

@@ -61,7 +61,7 @@ class PolarizedPathTracer final : public Renderer, public FollowsPolarization {
   }
 
   PathClasses finds() const override {
-    const PathClasses lost = delta_caustics | delta_caustics_in_mirrors;
+    const PathClasses lost = delta_caustics | delta_caustics_in_mirrors | fluorescence;
     return all_paths & ~(next_event ? lost : lost | delta_light);
   }
   bool follows_polarization() const override { return true; }

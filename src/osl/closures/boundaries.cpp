@@ -123,7 +123,7 @@ void dielectric_bsdf(Gathering& g, const Component& c) {
   b.roughness_y = c.argument<float>(5);
   b.index = c.argument<float>(6);
   b.kind = distribution_named(g, c, 7);
-  if (const Film film = film_of(c); film.thickness > 0) {
+  if (const Film film = film_of(g, c); film.thickness > 0) {
     const MicrofacetDistribution d(b.kind, b.roughness_x, b.roughness_y);
     const Spectrum reflected = g.reflectance(b.reflection_tint), through = g.reflectance(b.transmission_tint);
     SlotValues v;

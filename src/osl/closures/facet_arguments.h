@@ -13,7 +13,8 @@ MicrofacetDistribution::Kind distribution_named(const Gathering&, const ClosureC
 struct Film {
   float thickness = 0, index = 1.5f;
 };
-Film film_of(const ClosureComponent&);
+/// Of no thickness, with a warning, where paths carry bands instead of wavelengths.
+Film film_of(const Gathering&, const ClosureComponent&);
 /// A film on a smooth boundary: the house's ThinFilm. A film on facets: their Fresnel reflectance is that of the film.
 /// `v.index` and `v.extinction` are those of the base, which light enters unless it is `opaque`.
 void add_film(Gathering&, const SurfacePoint&, const MicrofacetDistribution&, const Film&, SlotValues v, bool opaque,

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "etendue/describe/bands.h"
+
 namespace etendue::osl {
 
 MicrofacetDistribution::Kind distribution_named(const Gathering& g, const ClosureComponent& c, size_t i) {
@@ -18,8 +20,12 @@ MicrofacetDistribution::Kind distribution_named(const Gathering& g, const Closur
 
 // ---- thin films
 
-Film film_of(const ClosureComponent& c) {
+Film film_of(const Gathering& g, const ClosureComponent& c) {
   const Film f{keyword(c, "thinfilm_thickness", 0), keyword(c, "thinfilm_ior", 1.5f)};
+  if (f.thickness > 0 && in_bands(g.wavelengths())) {
+    g.warn("a thin film interferes wavelength by wavelength, and is left out where paths carry three bands");
+    return {0, f.index};
+  }
   return {std::isfinite(f.thickness) ? clamp(f.thickness, 0, 1e5f) : 0, clamp(f.index, 0.01f, 99)};
 }
 
@@ -166,7 +172,7 @@ void conductor_bsdf(Gathering& g, const Component& c) {
   } else {
     metal = recent_metal(g, c.argument<Triple>(4), c.argument<Triple>(5), outside);
   }
-  if (const Film film = film_of(c); film.thickness > 0) {
+  if (const Film film = film_of(g, c); film.thickness > 0) {
     SlotValues v;
     v.index = metal.n * outside;
     v.extinction = metal.k * outside;
@@ -176,7 +182,8 @@ void conductor_bsdf(Gathering& g, const Component& c) {
 }
 
 void generalized_schlick_bsdf(Gathering& g, const Component& c) {
-  if (film_of(c).thickness > 0) g.warn("a film on generalized_schlick_bsdf() has no effect, as it has no index of refraction");
+  if (film_of(g, c).thickness > 0)
+    g.warn("a film on generalized_schlick_bsdf() has no effect, as it has no index of refraction");
   const Triple tint = c.argument<Triple>(2), through = c.argument<Triple>(3), f0 = c.argument<Triple>(6);
   const MicrofacetDistribution d(distribution_named(g, c, 9), c.argument<float>(4), c.argument<float>(5));
   const SurfacePoint& p = g.at(c.argument<Triple>(0), c.argument<Triple>(1));

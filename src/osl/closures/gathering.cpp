@@ -7,6 +7,7 @@
 #include <span>
 
 #include "closure_walk.h"
+#include "etendue/describe/bands.h"
 #include "etendue/transport/medium_stack.h"
 
 namespace etendue::osl {
@@ -89,7 +90,8 @@ Spectrum Gathering::reflectance(const Triple& c) const {
 
 Spectrum Gathering::color(const Triple& c, ColorUse use) const {
   if (c.x == c.y && c.y == c.z && use != ColorUse::radiance) return Spectrum(c.x);
-  if (use != ColorUse::reflectance) return rgb_spectrum(place_.space, c.x, c.y, c.z, use, place_.wavelengths);
+  if (use != ColorUse::reflectance || in_bands(place_.wavelengths))
+    return rgb_spectrum(place_.space, c.x, c.y, c.z, use, place_.wavelengths);
   return recent_coefficients(place_.space, c).evaluate(place_.wavelengths);
 }
 

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "choose.h"
+#include "etendue/describe/bands.h"
 #include "numbers.h"
 #include "parts.h"
 #include "services.h"
@@ -87,11 +88,16 @@ void of_color(const Call& c) {
 /// The radiant exitance per wavelength of a black body [W/m^2/nm].
 void blackbody(const Call& c) {
   const double kelvin = double(c.at<float>(0));
+  const auto exitance = [kelvin](float nanometres) {
+    const double metres = double(nanometres) * 1e-9;
+    return 1e-9 * 3.741771852e-16 * std::pow(metres, -5) / std::expm1(1.438776877e-2 / (metres * kelvin));
+  };
+  const Wavelengths& w = c.services.wavelengths();
   Spectrum s;
-  for (int i = 0; i < size && kelvin > 0; ++i) {
-    const double metres = double(c.services.wavelengths()[i]) * 1e-9;
-    s.set(i, float(1e-9 * 3.741771852e-16 * std::pow(metres, -5) / std::expm1(1.438776877e-2 / (metres * kelvin))));
-  }
+  if (kelvin > 0 && in_bands(w))
+    s = projected(exitance, ColorUse::radiance, w);
+  else
+    for (int i = 0; i < size && kelvin > 0; ++i) s.set(i, float(exitance(w[i])));
   give_spectrum(c, s);
 }
 

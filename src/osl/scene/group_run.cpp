@@ -29,6 +29,10 @@ void RunsGroup::build_group(const Component& self, Network network, const std::s
   output_ = *found;
 }
 
+void RunsGroup::refuse_bands() const {
+  if (network_.needs_wavelengths()) throw Error(name_ + ": its shader computes with wavelength()");
+}
+
 namespace {
 
 /// The memory of the closures of a thread's runs. A map that a shader asks for may run shaders itself, in the middle of the run

@@ -1,12 +1,16 @@
 #pragma once
 // RunsGroup: the second base of parts whose values are what a group of shaders computes at a point.
 
+#include "etendue/describe/bands.h"
 #include "network.h"
 #include "render_services.h"
 
 namespace etendue::osl {
 
-class RunsGroup {
+class RunsGroup : public NeedsWavelengths {
+ public:
+  void refuse_bands() const final;
+
  protected:
   /// Builds the group, which afterwards runs at points from all threads. `last`: the layer that gives the result. `outputs`:
   /// what is read; if there are any, nothing else is run. `besides`: an output that is read besides

@@ -77,6 +77,7 @@ void Network::add_layer(LayerText layer, std::shared_ptr<const Shader> shader) {
   depends_on_view_ |= shader->globals[size_t(Global::I)] != nullptr;
   for (const Symbol* global : shader->globals) varies_ |= global && global->global != Global::Ci;
   varies_ |= calls(*shader, "int getattribute(");
+  needs_wavelengths_ |= calls(*shader, "spectrum wavelength(");
   shaders_[layer.name] = std::move(shader);
   description_.layers.push_back(std::move(layer));
 }

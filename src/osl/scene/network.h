@@ -45,6 +45,8 @@ class Network {
   bool depends_on_view() const { return depends_on_view_; }
   /// Whether what the layers compute may be different at different points.
   bool varies() const { return varies_; }
+  /// Whether a layer asks for the wavelengths themselves.
+  bool needs_wavelengths() const { return needs_wavelengths_; }
   const MapInputs& maps() const { return maps_; }
   /// The shader of a layer; null if there is no such layer.
   std::shared_ptr<const Shader> shader_of(const std::string& layer) const;
@@ -64,7 +66,7 @@ class Network {
   std::map<std::pair<const ObjectMap*, bool>, std::string> map_layers_;
   MapInputs maps_;
   ClosureUses uses_;
-  bool depends_on_view_ = false, varies_ = false, lets_in_ = false;
+  bool depends_on_view_ = false, varies_ = false, lets_in_ = false, needs_wavelengths_ = false;
 };
 
 }  // namespace etendue::osl

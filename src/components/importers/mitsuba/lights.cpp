@@ -8,6 +8,7 @@
 #include "converter.h"
 #include "etendue/describe/color.h"
 #include "etendue/film/image_tools.h"
+#include "formats/permissions.h"
 
 namespace etendue::mitsuba {
 
@@ -24,8 +25,8 @@ Numbers three(const DoubleVector3& v) { return {{v.x, v.y, v.z}, 1, Dimension::n
 }  // namespace
 
 Color Converter::scaled_light(const ColorValue& c, bool old) const {
-  // Mitsuba before 2 renders in RGB: a light of equal components is white, which is D65.
-  if (old && c.kind == ColorValue::Kind::flat) return rgb_color("srgb", c.rgb[0], c.rgb[0], c.rgb[0]);
+  // Mitsuba before 2 renders in RGB, as its RGB variants do since: a light of equal components is white, which is D65.
+  if ((old || imports_for_rgb()) && c.kind == ColorValue::Kind::flat) return rgb_color("srgb", c.rgb[0], c.rgb[0], c.rgb[0]);
   return c.color;
 }
 
@@ -40,7 +41,8 @@ Value Converter::light(const Element& e, const std::string& name, Uv uv) {
 
 Value Converter::light_of(const Element& e, Uv uv) {
   Value v = texture(e, uv);
-  if (const auto* n = v.as<Number>(); n && e.old) return Value(rgb_color("srgb", n->value, n->value, n->value), e.at);
+  if (const auto* n = v.as<Number>(); n && (e.old || imports_for_rgb()))
+    return Value(rgb_color("srgb", n->value, n->value, n->value), e.at);
   const auto* map = v.as<Ref<Component>>();
   if (!map || e.old) return v;
   // Mitsuba does not multiply an image used as light by the white point of its colour space.

@@ -11,6 +11,7 @@
 #include "components/importers/measured_media.h"
 #include "converter.h"
 #include "etendue/describe/color.h"
+#include "formats/permissions.h"
 #include "tabulated_color.h"
 
 namespace etendue::mitsuba {
@@ -45,7 +46,7 @@ Color Converter::medium_color(const Element& e, const std::string& name, double 
   const Element& says = inner ? *inner : e;
   const std::string property = inner ? "value" : name;
   const Color read = spectrum_of(says, property, otherwise);
-  const ColorValue* const written = written_rgb(says, property);
+  const ColorValue* const written = imports_for_rgb() ? nullptr : written_rgb(says, property);
   if (!written || std::ranges::any_of(written->rgb, [](double x) { return x > 1; })) return read;
   if (name != "albedo") return used_spectrum(ColorUse::reflectance, read);
   const std::array<double, 3> given{written->rgb[0], written->rgb[1], written->rgb[2]}, there = tabulated_color(given);

@@ -2,6 +2,7 @@
 
 #include "components/maps/combining/combination.h"
 #include "components/maps/footprint.h"
+#include "etendue/describe/bands.h"
 #include "etendue/object_map.h"
 #include "formula.h"
 
@@ -55,7 +56,8 @@ class FormulaMap final : public ObjectMap {
   }
 
   Spectrum color(const SurfacePoint& p, const Wavelengths& w, ColorUse use) const override {
-    return as_used(compute(p, [&](const ObjectMap& map) { return map.color(p, w, use); }), use);
+    const Spectrum result = as_used(compute(p, [&](const ObjectMap& map) { return map.color(p, w, use); }), use);
+    return maps.empty() ? used_number(result[0], use, w) : result;
   }
   float scalar(const SurfacePoint& p) const override {
     return compute(p, [&](const ObjectMap& map) { return Spectrum(map.scalar(p)); })[0];

@@ -1,6 +1,7 @@
 // BlackbodyMap: the radiance of a black body at a temperature given by a map.
 
 #include "color/planck.h"
+#include "etendue/describe/bands.h"
 #include "etendue/object_map.h"
 
 namespace etendue {
@@ -26,6 +27,7 @@ class BlackbodyMap final : public ObjectMap {
     const double t = double(temperature->scalar(p));
     if (!(t > 0)) return {};
     const double scale = scale_at(t);
+    if (in_bands(w)) return projected([&](float lambda) { return std::min(scale * planck(double(lambda), t), most); }, use, w);
     Spectrum s;
     for (int i = 0; i < spectrum_size; ++i) {
       const auto x = float(std::min(scale * planck(double(w[i]), t), most));

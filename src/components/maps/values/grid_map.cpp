@@ -5,7 +5,7 @@
 #include "components/volumes/bounded_map.h"
 #include "components/volumes/volume_grid.h"
 #include "etendue/core/transform.h"
-#include "etendue/describe/color.h"
+#include "etendue/describe/bands.h"
 #include "etendue/object_map.h"
 
 namespace etendue {
@@ -57,7 +57,7 @@ class GridMap final : public ObjectMap, public RgbSource, public BoundedMap {
     look_up(p, v);
     for (float& x : v) x = std::max(x, 0.0f);
     if (grid_.channels == 3) return rgb_spectrum(*space_, v[0], v[1], v[2], use, w);
-    return use == ColorUse::reflectance ? std::min(v[0], 1.0f) : v[0];
+    return used_number(use == ColorUse::reflectance ? std::min(v[0], 1.0f) : v[0], use, w);
   }
   float scalar(const SurfacePoint& p) const override {
     float v[3];

@@ -3,6 +3,7 @@
 #include "components/shaders/reflectance.h"
 #include "components/shaders/scalar_map.h"
 #include "components/shaders/tangent_frame.h"
+#include "etendue/describe/bands.h"
 #include "etendue/scatter_model.h"
 
 namespace etendue {
@@ -84,7 +85,7 @@ class DiffractionGratingScatter final : public ScatterModel<DiffractionGratingSc
   bool single_;
 };
 
-class DiffractionGrating final : public Shader {
+class DiffractionGrating final : public Shader, public NeedsWavelengths {
  public:
   static void describe(Description<DiffractionGrating>& d) {
     d.summary(
@@ -117,6 +118,8 @@ class DiffractionGrating final : public Shader {
       fail("efficiency", "all orders together would reflect " + fmt::format("{:.4g}", sum) +
                              " of the light (that of order 0, and twice that of each other)");
   }
+
+  void refuse_bands() const override { fail("lines", "a grating diffracts each wavelength into directions of its own"); }
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     const Spectrum reflectance = reflectance_at(*color, p, w);

@@ -20,7 +20,7 @@ class MatrixReradiation final : public Reradiation {
   const DonaldsonMatrix& matrix_;
 };
 
-class DonaldsonShader final : public Shader, public FluorescentSurface {
+class DonaldsonShader final : public Shader, public FluorescentSurface, public NeedsWavelengths {
  public:
   static void describe(Description<DonaldsonShader>& d) {
     d.summary(
@@ -48,6 +48,8 @@ class DonaldsonShader final : public Shader, public FluorescentSurface {
                        first, wavelength_low),
            location_of(file.empty() ? "values" : "file"));
   }
+
+  void refuse_bands() const override { fail({}, "fluorescence moves light from one wavelength to others"); }
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     Spectrum reflectance;

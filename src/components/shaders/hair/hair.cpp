@@ -7,6 +7,7 @@
 #include "components/shaders/reflectance.h"
 #include "components/shaders/scalar_map.h"
 #include "components/shaders/tangent_frame.h"
+#include "etendue/describe/bands.h"
 #include "etendue/transport/medium_stack.h"
 
 namespace etendue {
@@ -246,6 +247,7 @@ class HairShader final : public Shader {
   // pheomelanin (d'Eon et al. 2011). Within 3 %, these are the values at 645, 550 and 450 nm of power laws of their spectra,
   // lambda^-3.33 and lambda^-4.75 (Donner & Jensen 2006, "A spectral BSSRDF for shading human skin").
   static Spectrum melanin(float black, float red, const Wavelengths& w) {
+    if (in_bands(w)) return black * band_spectrum(0.419f, 0.697f, 1.37f) + red * band_spectrum(0.187f, 0.4f, 1.05f);
     Spectrum r;
     for (int i = 0; i < spectrum_size; ++i) {
       const float x = std::log(550 / w[i]);

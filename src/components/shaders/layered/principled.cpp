@@ -4,6 +4,7 @@
 #include "components/shaders/reflectance.h"
 #include "components/shaders/scalar_map.h"
 #include "components/shaders/tangent_frame.h"
+#include "etendue/describe/bands.h"
 #include "etendue/transport/medium_stack.h"
 #include "principled_scatter.h"
 
@@ -43,7 +44,7 @@ Spectrum darkening(Spectrum albedo, float k, float amount) {
 
 Spectrum mix(float t, Spectrum a, Spectrum b) { return a * (1 - t) + b * t; }
 
-class Principled final : public Shader {
+class Principled final : public Shader, public NeedsWavelengths {
  public:
   static void describe(Description<Principled>&);
   static void describe_upper_layers(Description<Principled>&);
@@ -58,6 +59,11 @@ class Principled final : public Shader {
         p, turned ? tangent_frame(p, geometry_tangent_rotation->scalar(p)) : Frame(p.shading_normal), layers);
   }
 
+  void refuse_bands() const override {
+    if (!always(thin_film_weight, 0)) fail("thin_film_weight", "a thin film interferes wavelength by wavelength");
+    if (refracts_ && transmission_dispersion_scale > 0)
+      fail("transmission_dispersion_scale", "dispersion refracts each wavelength into a direction of its own");
+  }
   /// The transmittance of the layers above is taken for `out` alone, and as a mean for facets.
   float albedo_error() const override { return 0.3f; }
   Lobes possible_lobes() const override { return possible_lobes_; }

@@ -46,6 +46,8 @@ class RglData {
   float largest_albedo() const { return largest_albedo_; }
 
   bool isotropic() const { return isotropic_; }
+  /// Whether the file holds spectra, else RGB.
+  bool spectral() const { return !wavelengths_.empty(); }
   const std::string& description() const { return description_; }
 
  private:

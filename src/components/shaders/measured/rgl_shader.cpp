@@ -2,6 +2,7 @@
 
 #include "components/shaders/tangent_frame.h"
 #include "etendue/core/warp.h"
+#include "etendue/describe/bands.h"
 #include "etendue/describe/value.h"
 #include "etendue/scatter_model.h"
 #include "rgl_data.h"
@@ -73,7 +74,7 @@ class RglScatter final : public ScatterModel<RglScatter> {
   bool symmetric_;
 };
 
-class RglShader final : public Shader {
+class RglShader final : public Shader, public NeedsWavelengths {
  public:
   static void describe(Description<RglShader>& d) {
     d.summary(
@@ -100,6 +101,11 @@ class RglShader final : public Shader {
       warn("the material in '" + path + "' reflects up to " + std::to_string(data_->largest_albedo()) +
                " times the light that arrives",
            location_of("file"));
+  }
+
+  void refuse_bands() const override {
+    if (data_->spectral())
+      fail("file", "was measured wavelength by wavelength; the database has a file in RGB of each material");
   }
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {

@@ -7,6 +7,7 @@
 #include "components/shaders/polarized_fresnel.h"
 #include "components/shaders/reflectance.h"
 #include "components/shaders/tangent_frame.h"
+#include "etendue/describe/bands.h"
 #include "etendue/transport/medium_stack.h"
 #include "facet_reflection.h"
 #include "rgb_reflectance.h"
@@ -31,14 +32,15 @@ struct BoundaryReflectance {
     const Spectrum& real = rgb && in_vacuum ? rgb->n() : n;
     const Spectrum& imaginary = rgb && in_vacuum ? rgb->k() : k;
     return polarized::reflection(out, in, [&](int lane, float cosine) {
-      const int at = !rgb ? lane : wavelengths[lane] > 580 ? 0 : wavelengths[lane] > 490 ? 1 : 2;
+      const int color = in_bands(wavelengths) ? lane % 3 : wavelengths[lane] > 580 ? 0 : wavelengths[lane] > 490 ? 1 : 2;
+      const int at = rgb ? color : lane;
       return polarized::reflected(cosine, {real[at], imaginary[at]});
     });
   }
   Spectrum mean() const { return rgb && in_vacuum ? rgb->mean_reflectance(wavelengths) : seen(mean_fresnel_conductor(n, k)); }
 
  private:
-  Spectrum seen(const Spectrum& reflected) const { return rgb ? rgb->spectrum_of(reflected).evaluate(wavelengths) : reflected; }
+  Spectrum seen(const Spectrum& reflected) const { return rgb ? rgb->seen(reflected, wavelengths) : reflected; }
 };
 
 class Conductor final : public Shader {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "components/shaders/fresnel.h"
-#include "etendue/describe/color.h"
+#include "etendue/describe/bands.h"
 
 namespace etendue {
 
@@ -22,6 +22,7 @@ class RgbReflectance {
   const Spectrum& k() const { return k_; }
 
   Spectrum reflectance(float cosine, const Wavelengths& w) const {
+    if (in_bands(w)) return seen(fresnel_conductor(cosine, n_, k_), w);
     const float at = clamp(cosine, 0, 1) * cells;
     const int cell = std::min(int(at), cells - 1);
     const Node &low = nodes_[size_t(cell)], &high = nodes_[size_t(cell) + 1];
@@ -31,10 +32,14 @@ class RgbReflectance {
         w);
   }
   /// The mean reflectance over diffuse illumination, see mean_fresnel_conductor.
-  Spectrum mean_reflectance(const Wavelengths& w) const { return mean_.evaluate(w); }
+  Spectrum mean_reflectance(const Wavelengths& w) const {
+    return in_bands(w) ? seen(mean_fresnel_conductor(n_, k_), w) : mean_.evaluate(w);
+  }
 
-  /// The spectrum of a reflected colour.
-  RgbCoefficients spectrum_of(const Spectrum& rgb) const { return rgb_coefficients(*space_, rgb[0], rgb[1], rgb[2]); }
+  /// The spectrum of a reflected colour, of which the first three elements are red, green and blue.
+  Spectrum seen(const Spectrum& rgb, const Wavelengths& w) const {
+    return rgb_spectrum(*space_, rgb[0], rgb[1], rgb[2], ColorUse::reflectance, w);
+  }
 
   /// The greatest accepted difference between interpolated and exact spectrum, midway between two entries of the table: the
   /// precision of the spectrum itself (rgb_coefficients). Intervals with a greater difference are not interpolated but computed
@@ -47,6 +52,7 @@ class RgbReflectance {
     RgbCoefficients c;
     bool coarse = false;  ///< the interval from here to the next is not interpolated
   };
+  RgbCoefficients spectrum_of(const Spectrum& rgb) const { return rgb_coefficients(*space_, rgb[0], rgb[1], rgb[2]); }
   RgbCoefficients exact(float cosine) const { return spectrum_of(fresnel_conductor(cosine, n_, k_)); }
 
   const RgbSpace* space_;

@@ -2,6 +2,7 @@
 
 #include "components/shaders/polarized_fresnel.h"
 #include "components/shaders/scalar_map.h"
+#include "etendue/describe/bands.h"
 #include "etendue/object_map.h"
 #include "etendue/scatter_model.h"
 #include "etendue/transport/medium_stack.h"
@@ -110,7 +111,7 @@ class ThinFilmScatter final : public ScatterModel<ThinFilmScatter>, public Polar
   Layers layers_;
 };
 
-class ThinFilm final : public Shader {
+class ThinFilm final : public Shader, public NeedsWavelengths {
  public:
   static void describe(Description<ThinFilm>& d) {
     d.summary(
@@ -137,6 +138,8 @@ class ThinFilm final : public Shader {
       if (!(k->at(lambda, ColorUse::coefficient) >= 0 && k->at(lambda, ColorUse::coefficient) < 100))
         fail("base_ior", "the imaginary part of an index of refraction lies between 0 and 100");
   }
+
+  void refuse_bands() const override { fail("thickness", "a thin film interferes wavelength by wavelength"); }
 
   const Scatter* bind(const SurfacePoint& p, const Wavelengths& w, Arena& arena) const override {
     ThinFilmScatter::Layers layers;
