@@ -2,6 +2,7 @@
 
 #include "components/shaders/lambertian_scatter.h"
 #include "donaldson_matrix.h"
+#include "etendue/describe/bands.h"
 #include "etendue/describe/value.h"
 
 namespace etendue {
