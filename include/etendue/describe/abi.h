@@ -15,7 +15,7 @@
 namespace etendue::detail {
 
 /// Increased whenever a public header changes in a way that is incompatible for plugins.
-#define ETENDUE_INTERFACE_VERSION 14
+#define ETENDUE_INTERFACE_VERSION 15
 
 /// The width [bytes] of the widest vector registers that the compiler may use. A Spectrum is passed in one of them if it fits,
 /// else in memory or in several registers: code compiled with another width reads it from the wrong place.
