@@ -23,14 +23,6 @@ void ObjectGroup::describe(Description<ObjectGroup>& d) {
 }
 static const Register<ObjectGroup> registered;
 
-void ObjectGroup::prepare() {
-  if (name.empty()) fail("name", "a group needs a name");
-  if (objects.empty()) fail("objects", fmt::format("the group '{}' has no objects", name));
-  for (const std::string& object : objects)
-    if (std::ranges::any_of(NamePattern(object).names(), &std::string::empty))
-      fail("objects", fmt::format("'{}' names nothing", object));
-}
-
 NamePattern::NamePattern(std::string_view text) {
   for (size_t begin = 0; begin <= text.size();) {
     const size_t end = std::min(text.find('/', begin), text.size());
@@ -69,9 +61,13 @@ void require_groups(const std::vector<Ref<ObjectGroup>>& groups, const Scene& sc
   std::set<std::string> named;
   const std::vector<std::string> known = ObjectNames(scene).all();
   for (const Ref<ObjectGroup>& group : groups) {
+    if (group->name.empty()) group->fail("name", "a group needs a name");
+    if (group->objects.empty()) group->fail("objects", fmt::format("the group '{}' has no objects", group->name));
     if (!named.insert(group->name).second) group->fail("name", fmt::format("two groups are called '{}'", group->name));
     for (const std::string& object : group->objects) {
       const NamePattern pattern(object);
+      if (std::ranges::any_of(pattern.names(), &std::string::empty))
+        group->fail("objects", fmt::format("'{}' names nothing", object));
       for (const std::string& name : pattern.names())
         if (std::ranges::none_of(known, [&](const std::string& k) { return NamePattern::fits(name, k); }))
           group->fail("objects", fmt::format("no object is called '{}'{}", name, suggestion(name, known)));

@@ -102,7 +102,7 @@ TEST(Transport, DepthIsMeasuredFromTheCameraThroughBoundaries) {
                                "Sphere { radius: 1, shader: Lambertian {}, emission: DiffuseEmission {} }"),
                       "test.etd");
     job->image->layers = {"depth"};
-    EXPECT_NEAR(rendered(job)->film().develop().at(1, 1, 3), 4, 1e-3) << renderer;
+    EXPECT_NEAR(rendered(job)->picture().at(1, 1, 3), 4, 1e-3) << renderer;
   }
 }
 

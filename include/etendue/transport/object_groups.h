@@ -21,8 +21,6 @@ class ObjectGroup final : public Component {
 
   std::string name;
   std::vector<std::string> objects;  ///< patterns of names (NamePattern)
-
-  void prepare() override;
 };
 
 /// The names from the scene to an object: those of the instances and nested scenes that contain it, outermost first, and its
@@ -44,8 +42,8 @@ class NamePattern {
   std::vector<std::string> names_;
 };
 
-/// Throws Error at a group without a name, at two of the same name, and at a pattern with a name that no object of the scene
-/// has.
+/// Throws Error at a group without a name or without objects, at two groups of the same name, and at a pattern with a name that
+/// no object of the scene has.
 void require_groups(const std::vector<Ref<ObjectGroup>>&, const Scene&);
 
 }  // namespace etendue
