@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import sys
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Literal, Optional, Union
@@ -73,6 +74,7 @@ class Render:
         file = None if checkpoint is None else os.fspath(checkpoint)
         self._job: Any = job
         self._threads = threads
+        self._is_part = passes is not None
         self._core = _core.Render(job, threads, file, checkpoint_interval, passes)
         self._bad_samples_told = 0
         if warn:
@@ -109,6 +111,7 @@ class Render:
         of a progress function, and Ctrl-C, end the render in the middle of a step, which leaves nothing: the picture so far can be
         taken, and the render can go on. Raises Error if the scene cannot be rendered.
         """
+        self._refuse_copies()
         limits = self._limits(samples, seconds, error)
         display = display_for(self, progress)
         before = {(part, name): getattr(part, name) for part, name in limits}
@@ -123,6 +126,18 @@ class Render:
             display.close()
             if limits:
                 self._put_back(before, limits)
+
+    def _refuse_copies(self) -> None:
+        """Of the processes that mpirun or srun has started, each would render the whole picture. Workers of Dask, which may be such, get
+        parts of it."""
+        count = _core.processes_started()
+        if count == 1 or self._is_part or "distributed.worker" in sys.modules:
+            return
+        _fail(
+            f"this is one of {count} processes that mpirun or srun has started, and each would render the whole picture. So that they render it "
+            f"together, save the job (etendue.save(job, 'box.etd')) and run: mpirun -n {count} etendue render box.etd. Or give each its passes "
+            "(etendue.Render(job, passes=…)), or set ETENDUE_MPI=off if each renders another picture"
+        )
 
     def _limits(
         self, samples: Optional[int], seconds: Optional[float], error: Optional[float]
@@ -171,6 +186,7 @@ class Render:
     def step(self) -> bool:
         """Renders the next step, a pass over the picture. Returns whether there was one: False if all samples are done, or after
         `stop` or `abort`."""
+        self._refuse_copies()
         return self._run(self._core.step, display_for(self, False)) is None
 
     def __iter__(self) -> Iterator[Image]:

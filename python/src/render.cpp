@@ -23,6 +23,7 @@
 #include "render/checkpoint.h"
 #include "render/denoising.h"
 #include "render/file_hash.h"
+#include "render/team/message_library.h"
 #include "shaped_arrays.h"
 
 namespace etendue::python {
@@ -340,6 +341,7 @@ void bind_render(nb::module_& m) {
   m.def("has_member",
         [](nb::handle part, const std::string& name) { return component_of(part)->class_info().find(name) != nullptr; });
   m.def("file_of", [](nb::handle part) { return std::string(component_of(part)->location_of().file); });
+  m.def("processes_started", &processes_started);
   m.def("leave_all_renders", &leave_all_renders);
   m.def(
       "fail", [](const std::string& message) { throw Error(message, calling_line()); },

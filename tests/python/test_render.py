@@ -697,3 +697,14 @@ def test_parts_leave_no_memory():
     before = resident()
     parts(PARTS)
     assert resident() - before < 1e6 + PARTS
+
+
+def test_one_of_many_processes_says_what_to_do_instead(monkeypatch, tmp_path):
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "4")
+    monkeypatch.delitem(sys.modules, "distributed.worker", raising=False)
+    with pytest.raises(etendue.Error, match="mpirun -n 4 etendue render"):
+        etendue.render(small_job())
+    with etendue.Render(small_job(), passes=(0, 1)) as part:
+        assert part.step()
+    monkeypatch.setenv("ETENDUE_MPI", "off")
+    assert etendue.render(small_job(), samples=1).pixels.max() > 0
