@@ -7,6 +7,7 @@
 #include <map>
 
 #include "etendue/describe/color.h"
+#include "etendue/language/language.h"
 #include "etendue/object_map.h"
 #include "etendue/shader.h"
 #include "osl/scene/osl_class.h"
@@ -103,6 +104,25 @@ TEST(OslClasses, LookTexturesUp) {
     prepare_tree(*map);
     EXPECT_FLOAT_EQ(map->scalar(front()), wanted) << output;
   }
+}
+
+// Object space is that of the point's object, turned and scaled, and back.
+TEST(OslClasses, ObjectSpaceIsThatOfTheObject) {
+  Registry::instance().load_plugin(
+      written("test_spaces.osl",
+              "shader test_spaces(output float off = 1) { point there = transform(\"object\", P); "
+              "off = length(there - point(1, 0, 0)) + length(transform(\"object\", \"world\", there) - P) + "
+              "length(transform(\"object\", vector(0, 2, 0)) - vector(1, 0, 0)); }"));
+  const Ref<SceneObject> object = ref_cast<SceneObject>(
+      parse_component("Sphere { transform: translate(1 m, 2 m, 3 m) * rotate(90 deg, \"z\") * scale(2), radius: 1 m }"));
+  prepare_tree(*object);
+  SurfacePoint p = front();
+  p.object = object.get();
+  p.position = {1, 4, 3};  // the ball's point (1, 0, 0)
+  p.object_position = {1, 0, 0};
+  const Ref<ObjectMap> map = ref_cast<ObjectMap>(Registry::instance().create("TestSpaces"));
+  prepare_tree(*map);
+  EXPECT_NEAR(map->scalar(p), 0, 1e-5f);
 }
 
 // A texture lies beside the shader that names it, or beside the scene; what is found nowhere is told with the places.
