@@ -67,7 +67,7 @@ class MirrorReflection final : public ScatterModel<MirrorReflection<Fresnel>>, p
 template <class Fresnel>
 class FacetReflection final : public ScatterModel<FacetReflection<Fresnel>>, public PolarizingIf<Fresnel> {
   using Base = ScatterModel<FacetReflection<Fresnel>>;
-  using Base::frame_, Base::has_choice_;
+  using Base::has_choice_;
 
  public:
   /// `multiple`: whether light that meets more than one facet is counted, or lost.
@@ -128,7 +128,7 @@ class FacetReflection final : public ScatterModel<FacetReflection<Fresnel>>, pub
   bool polarization(const Vector3& out, const Vector3& in, Lobes, Polarization& event) const {
     event = fresnel_.polarization(out, in);
     if (!has_choice_) return true;
-    const Vector3 o = frame_.to_local(out), i = frame_.to_local(in), m = reflection_half_vector(o, i);
+    const Vector3 o = this->frame_.to_local(out), i = this->frame_.to_local(in), m = reflection_half_vector(o, i);
     PolarizationMean mean(out, in);
     mean.add(fresnel_.at(std::abs(dot(o, m))) * (distribution_.D(m) * distribution_.visibility(o, i)), event);
     mean.add_unpolarized(multiple_ *
