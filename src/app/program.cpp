@@ -44,12 +44,12 @@ Exit status: 0 done, 1 failed, 2 bad input or usage, 130 interrupted.
 
 /// Of the processes that mpirun or srun has started, each would do all of the work of other commands, and write the same files.
 bool is_one_of_many(const char* command) {
-  constexpr std::array<std::string_view, 1> by_teams{"render"};
+  constexpr std::array<std::string_view, 2> by_teams{"render", "studio"};
   if (processes_started() == 1 || *command == '-' || std::ranges::find(by_teams, command) != by_teams.end()) return false;
   fmt::print(stderr, "{}\n",
              show(Error(fmt::format(
                  "this is one of {} processes that mpirun or srun has started, and each would do all of '{}': start one, or "
-                 "set ETENDUE_MPI=off if that is meant. Several processes share 'render'.",
+                 "set ETENDUE_MPI=off if that is meant. Several processes share 'render' and 'studio'.",
                  processes_started(), command))));
   return true;
 }

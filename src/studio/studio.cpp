@@ -42,13 +42,24 @@ class ShaderFiles {
 
 }  // namespace
 
+namespace {
+
+RenderSettings without_team(RenderSettings settings) {
+  settings.team = nullptr;
+  return settings;
+}
+
+}  // namespace
+
+// If there is a team, it computes the document's render; side renders and the queue are computed by this process alone.
 Studio::Studio(StudioSettings settings)
     : settings_(std::move(settings)),
       document_(settings_.render, settings_.folders),
       runner_(turns_),
       sides_(settings_.render, settings_.folders, turns_),
-      queue_(settings_.render, [this] { tell_queue(); }),
+      queue_(without_team(settings_.render), [this] { tell_queue(); }),
       checks_([this](const Json& event) { broadcast(event); }) {
+  settings_.render.team = nullptr;  // sides_ refers to these
   answerer_ = std::thread([this] { answer(); });
   viewer_ = std::thread([this] { look(); });
 }

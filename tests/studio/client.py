@@ -28,8 +28,8 @@ class Closed(Exception):
 class Studio:
     """The program, and where it listens."""
 
-    def __init__(self, file=None, *arguments, folder=None, threads=2, environment=None, command="studio"):
-        command = [os.path.abspath(PROGRAM), command, "--no-browser", *arguments]
+    def __init__(self, file=None, *arguments, folder=None, threads=2, environment=None, command="studio", launcher=()):
+        command = [*launcher, os.path.abspath(PROGRAM), command, "--no-browser", *arguments]
         if threads:
             command += ["--threads", str(threads)]
         if file:

@@ -7,10 +7,13 @@
 
 #include "app/commands.h"
 #include "app/common_options.h"
+#include "app/program_team.h"
+#include "app/python_plugins.h"
 #include "app/text.h"
 #include "etendue/language/language.h"
 #include "files/regular_file.h"
 #include "studio_serving.h"
+#include "studio_team.h"
 
 namespace etendue {
 
@@ -54,7 +57,12 @@ void load_python_plugins_of(const std::string& file) {
 int run_studio(const StudioOptions& options) {
   load_plugins(options.plugins);
   if (!options.file.empty()) load_python_plugins_of(options.file);
+  ProcessTeam* const team = join_team();
+  if (team) refuse_restarts();
+  if (team && !team->leads()) return follow_studio(*team, options.threads);
   studio::StudioSettings settings;
+  if (team) lead_studio(*team);
+  settings.render.team = team;
   settings.render.threads = options.threads;
   settings.read_only = options.read_only;
   if (!options.file.empty()) settings.folders.allow(fs::absolute(options.file).parent_path().string());
@@ -98,6 +106,8 @@ void add_studio_command(Command& program) {
   command.option("--page FILE", options->page, "Another page").hidden();
   add_plugin_option(command, options->plugins);
   add_threads_option(command, options->threads);
+  command.footer(
+      "\nmpirun -n 8 etendue studio box.etd: the first process serves the page, and all of them render (docs/cluster.md).");
   command.runs([options] { return run_studio(*options); });
   add_view_command(program);
 }

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "app/commands.h"
+#include "app/program_team.h"
 #include "app/python_plugins.h"
 #include "check/warnings/advice.h"
 #include "check/warnings/scene_warnings.h"
@@ -144,7 +145,11 @@ int serve(studio::StudioSettings settings, studio::ServerSettings server_setting
   // While the scene is still being loaded nothing can have been edited, and loading cannot be interrupted.
   if (by_others && studio.beginning()) std::_Exit(exit_status::done);
   if (const std::string aside = studio.end(); !aside.empty()) fmt::print(stderr, "Unsaved changes are in {}\n", aside);
-  if (studio.begin_again && !by_others) begin_again(server.port_and_token(), studio.document().file());
+  if (studio.begin_again && !by_others && join_team())
+    fmt::print(stderr,
+               "The processes that mpirun or srun has started cannot start again by themselves: start the studio anew.\n");
+  else if (studio.begin_again && !by_others)
+    begin_again(server.port_and_token(), studio.document().file());
   return exit_status::done;
 }
 
