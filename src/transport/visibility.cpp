@@ -9,8 +9,6 @@ namespace etendue {
 Spectrum shadow_transmittance_slowly(const Scene& scene, const Ray& shadow, const MediumStack* around,
                                      const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena, Transport transport,
                                      Spectrum* likely) {
-  // Most rays meet no surface at all, or an opaque one.
-  if ((!around || around->empty()) && !scene.any(shadow)) return Spectrum(1.0f);
   MediumStack media;
   if (around) media = *around;
   Ray ray = shadow;
