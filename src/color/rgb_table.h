@@ -7,6 +7,7 @@
 #include <mutex>
 #include <vector>
 
+#include "core/huge_pages.h"
 #include "etendue/describe/color.h"
 #include "sigmoid_fit.h"
 
@@ -52,7 +53,7 @@ class RgbTable {
 
   std::once_flag once_;
   std::atomic<const Node*> nodes_{nullptr};
-  std::vector<Node> storage_;  // [largest][z][y][x]
+  HugeVector<Node> storage_;  // [largest][z][y][x]
   std::unique_ptr<std::atomic<const Divided*>[]>
       divided_;  // of the cell whose lowest corner is the node; null: not divided yet
   std::unique_ptr<SigmoidFit> fit_;

@@ -22,12 +22,12 @@ struct HugePages {
   HugePages(const HugePages<U>&) {}  // NOLINT: implicit, as allocators are
 
   T* allocate(size_t count) {
-    if (count > ~size_t(0) / sizeof(T) - page) throw std::bad_alloc();
-    const size_t bytes = count * sizeof(T);
+    if (count > (~size_t(0) - page) / sizeof(T)) throw std::bad_alloc();
+    size_t bytes = count * sizeof(T);
     if (!large(bytes)) return static_cast<T*>(::operator new(bytes, std::align_val_t(alignof(T))));
+    bytes = (bytes + page - 1) / page * page;
     void* const memory = ::operator new(bytes, std::align_val_t(page));
-    // Whole pages of the array alone: the memory beside it is not ours.
-    madvise(memory, bytes / page * page, MADV_HUGEPAGE);
+    madvise(memory, bytes, MADV_HUGEPAGE);
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, size_t count) {
@@ -36,7 +36,8 @@ struct HugePages {
   bool operator==(const HugePages&) const { return true; }
 
  private:
-  static bool large(size_t bytes) { return bytes >= page; }
+  /// From half a page on, so that at most half of the memory is not used.
+  static bool large(size_t bytes) { return bytes >= page / 2; }
 };
 
 template <class T>

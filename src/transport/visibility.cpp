@@ -11,8 +11,6 @@ namespace {
 Spectrum transmittance_of_shadow_ray(const Scene& scene, const Ray& shadow, const MediumStack* around,
                                      const Wavelengths& wavelengths, NumberStream& numbers, Arena& arena, Transport transport,
                                      Spectrum* likely, NullCrossings* crossed) {
-  // Most rays meet no surface at all, or an opaque one.
-  if ((!around || around->empty()) && !scene.any(shadow)) return Spectrum(1.0f);
   MediumStack media;
   if (around) media = *around;
   Ray ray = shadow;
