@@ -242,7 +242,7 @@ class Walk {
   /// Whether media only attenuate the walk, which then scatters at surfaces alone: the algorithm gathers the light that media
   /// scatter along the segments (Events::through). Emission of media is ignored.
   bool attenuates_only = false;
-  /// Whether the end of the last segment is needed even if it is not an emitter, for features or the record of a path.
+  /// Whether the end of the last segment is needed even if it is not an emitter, for the record of a path.
   bool observed = false;
 
  protected:

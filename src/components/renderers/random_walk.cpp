@@ -61,7 +61,6 @@ class RandomWalk final : public Renderer {
       if (x.object->luminaire()) add_emission(x, out, length);
 
       const Scatter* scatter = scattering_at(x, out, wavelengths, sample.arena);
-      if (length == 1) sample.sink.first_surface(scene, x, hit, scatter, out, wavelengths);
       if (!scatter) break;
       const Vector3 in = warp::sphere(sample.numbers.next_pair());
       const float p = warp::sphere_pdf;

@@ -61,7 +61,6 @@ class SimplePathTracer final : public Renderer {
         add(T * x.object->emission->radiance(x, out, sample.wavelengths), length, x.object);
 
       const Scatter* scatter = scattering_at(x, out, sample.wavelengths, sample.arena);
-      if (length == 1) sample.sink.first_surface(scene, x, hit, scatter, out, sample.wavelengths);
       if (!scatter || length == max_depth) break;
 
       const SceneObject* luminaire = nullptr;
