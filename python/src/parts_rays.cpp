@@ -123,9 +123,7 @@ SurfaceList intersect(const RayList& rays) {
     s.hit[i] = 1;
     s.distances[i] = distance(from, s.points[i].position);
     s.scatters[i] = scattering_at(s.points[i], s.out(i), batch.wavelengths[i], batch.arena);
-    if (batch.first) batch.sinks[i].first_surface(scene, s.points[i], hit, s.scatters[i], s.out(i), batch.wavelengths[i]);
   });
-  batch.first = false;
   return s;
 }
 

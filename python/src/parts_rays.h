@@ -21,7 +21,6 @@ struct PathBatch {
   std::vector<PathSink> sinks;               ///< of each path
   const std::atomic<bool>* abort = nullptr;  ///< true: the results are no longer needed
   bool open = true;
-  bool first = true;  ///< whether the camera rays have not been intersected yet
 
   size_t size() const { return wavelengths.size(); }
   bool aborted() const { return abort && abort->load(std::memory_order_relaxed); }

@@ -50,8 +50,6 @@ class TileProcess final : public RenderProcess {
 
   void render(const PathRange& range, ImageTile& tile, Arena& arena, const std::atomic<bool>* abort) const {
     const size_t count = size_t(range.area.width()) * size_t(range.area.height()) * (range.last - range.first);
-    const bool wants_features = context.image.wants_features();
-    std::vector<Features> features(wants_features ? count : 0);
     std::vector<Path> paths;
     paths.reserve(count);  // samples refer to the wavelengths within
     std::vector<Ray> rays;
@@ -60,7 +58,7 @@ class TileProcess final : public RenderProcess {
       for (int x = range.area.x0; x < range.area.x1; ++x)
         for (SampleKey key(context.seed, x, y, range.first); key.sample < range.last; ++key.sample) {
           Path& path = paths.emplace_back(Path{x, y, key.sample, {}, {}});
-          const PathSink sink{.features = wants_features ? &features[paths.size() - 1] : nullptr, .abort = abort};
+          const PathSink sink{.abort = abort};
           SampleContext sample{path.contribution.wavelengths, {*renderer.sampler, key}, arena, sink};
           path.blocked = !begin_camera_path(*this, {x, y, x + 1, y + 1}, key, sample, path.contribution, path.ray);
           if (path.blocked) continue;
@@ -82,9 +80,6 @@ class TileProcess final : public RenderProcess {
       }
       tile.count_path();
       tile.contribute(s.film, path.x, path.y, path.sample, s.value, s.wavelengths);
-      if (!wants_features) continue;
-      if (features[i].depth > 0) features[i].depth += context.camera.reach(path.ray.ray).nearest;
-      tile.features(path.x, path.y, path.sample, features[i]);
     }
   }
 

@@ -119,15 +119,9 @@ void Film::add_tile(const ImageTile& tile) {
   if (tile.lit_ && !tile.light_.empty()) add(tile.extent_, light_list, tile.light_);
   if (tile.lit_ && !tile.parts_.empty()) add(tile.extent_, part_list, tile.parts_);
   if (!tile.weights_.empty()) add(tile.area_, weight_list, tile.weights_);
-  if (!tile.features_.empty()) {
-    add(tile.area_, feature_list, tile.features_);
-    if (counts.features.empty()) counts.features.resize(format.pixels());
-  }
   for (int y = tile.area_.y0; y < tile.area_.y1; ++y)
-    for (int x = tile.area_.x0; x < tile.area_.x1; ++x) {
+    for (int x = tile.area_.x0; x < tile.area_.x1; ++x)
       counts.samples[format.index(x, y)] += tile.samples_[tile.own_pixel(x, y)];
-      if (!tile.features_.empty()) counts.features[format.index(x, y)].add(tile.feature_counts_[tile.own_pixel(x, y)]);
-    }
   if (!tile.splats_.empty()) add_splats(tile);
   for (const LargeSample& s : tile.largest_) ImageTile::keep_larger(m.step.largest, s, m.largest_wanted);
   counts.add_bad(tile.bad_);
@@ -289,7 +283,6 @@ void Film::Members::add_step() {
   });
   totals.counts.add(step.counts);
   std::ranges::fill(step.counts.samples, 0);
-  std::ranges::fill(step.counts.features, FeatureCount{});
   step.counts.paths = step.counts.bad_count = 0;
   step.counts.bad.clear();
   step.begun = false;

@@ -11,22 +11,18 @@
 namespace etendue {
 namespace {
 
-constexpr std::uint64_t magic = 0x34304d4c49465445;  // "ETFILM04": name and version of the format, little endian
+constexpr std::uint64_t magic = 0x35304d4c49465445;  // "ETFILM05": name and version of the format, little endian
 constexpr const char* what = "the film's state";
 
-static_assert(std::has_unique_object_representations_v<FeatureCount>, "written as bytes");
-
 /// The properties that a state must have in common with the film that loads it.
-std::array<std::int32_t, 9> kind_of_film(const PictureFormat& f, Estimator estimator) {
-  return {f.width,          f.height,      f.area.x0, f.area.y0, f.area.x1, f.area.y1, int(f.wants_features),
-          int(f.triples()), int(estimator)};
+std::array<std::int32_t, 8> kind_of_film(const PictureFormat& f, Estimator estimator) {
+  return {f.width, f.height, f.area.x0, f.area.y0, f.area.x1, f.area.y1, int(f.triples()), int(estimator)};
 }
 
-constexpr size_t place_of_estimator = 8;  // index of the estimator in kind_of_film
+constexpr size_t place_of_estimator = 7;  // index of the estimator in kind_of_film
 
 void write_counts(ByteWriter& w, const FilmCounts& counts) {
   w.list(counts.samples);
-  w.list(counts.features);
   w.value(counts.paths);
   w.value(counts.bad_count);
   w.value(std::uint64_t(counts.bad.size()));
@@ -41,7 +37,6 @@ void write_counts(ByteWriter& w, const FilmCounts& counts) {
 FilmCounts read_counts(ByteReader& r, const PictureFormat& format) {
   FilmCounts counts;
   counts.samples = r.list<std::uint32_t>(format.pixels());
-  counts.features = r.list<FeatureCount>(format.wants_features ? format.pixels() : 0);
   counts.paths = r.value<std::uint64_t>();
   counts.bad_count = r.value<std::uint64_t>();
   const auto noted = r.value<std::uint64_t>();
@@ -66,8 +61,7 @@ std::vector<std::byte> Film::save_state() const {
   const Members& m = *members_;
   const std::lock_guard lock(m.mutex);
   const Totals& totals = m.ended();
-  size_t size =
-      1024 + totals.counts.samples.size() * sizeof(std::uint32_t) + totals.counts.features.size() * sizeof(FeatureCount);
+  size_t size = 1024 + totals.counts.samples.size() * sizeof(std::uint32_t);
   for (const ExactSums& sums : totals.sums) size += sums.digits().size() * sizeof(std::int64_t) + sums.places().size();
   ByteWriter w;
   w.bytes.reserve(size);

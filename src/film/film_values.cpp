@@ -17,8 +17,6 @@ void FilmCounts::require_room_for(const FilmCounts& more) const {
 void FilmCounts::add(const FilmCounts& more) {
   if (samples.empty()) samples.resize(more.samples.size());
   for (size_t i = 0; i < more.samples.size(); ++i) samples[i] += more.samples[i];
-  if (features.empty()) features.resize(more.features.size());
-  for (size_t i = 0; i < more.features.size(); ++i) features[i].add(more.features[i]);
   paths += more.paths;
   bad_count += more.bad_count;
   add_bad(more.bad);

@@ -12,10 +12,9 @@ namespace etendue {
 
 /// The values of each pixel, in separate lists; lists that a render does not use stay empty.
 enum List : std::uint8_t {
-  light_list,    ///< filtered X, Y, Z of samples, and filtered Y^2
-  splat_list,    ///< filtered X, Y, Z of splats, and the squared Y of all splats of one sample
-  feature_list,  ///< albedo, normal, depth
-  part_list,     ///< X, Y, Z for each path length, then for each light group, and then the bands (PictureFormat::triples)
+  light_list,  ///< filtered X, Y, Z of samples, and filtered Y^2
+  splat_list,  ///< filtered X, Y, Z of splats, and the squared Y of all splats of one sample
+  part_list,   ///< X, Y, Z for each path length, then for each light group, and then the bands (PictureFormat::triples)
   part_splat_list,
   weight_list,  ///< the weight of samples minus their number
   batch_list,   ///< squares of steps' means, times their samples (Estimator::correlated)
@@ -25,7 +24,7 @@ using Lists = std::array<std::vector<double>, list_count>;
 
 /// Values per pixel in a list.
 inline size_t list_stride(List list, const PictureFormat& format) {
-  constexpr std::array<size_t, list_count> strides = {4, 4, 7, 3, 3, 1, 1};
+  constexpr std::array<size_t, list_count> strides = {4, 4, 3, 3, 1, 1};
   return strides[list] * (list == part_list || list == part_splat_list ? format.triples() : 1);
 }
 
@@ -34,17 +33,14 @@ struct Plane {
   List list;
   size_t offset, group;
 };
-inline constexpr std::array<Plane, 11> planes = {{{light_list, 0, 3},
-                                                  {light_list, 3, 1},
-                                                  {splat_list, 0, 3},
-                                                  {splat_list, 3, 1},
-                                                  {feature_list, 0, 3},
-                                                  {feature_list, 3, 3},
-                                                  {feature_list, 6, 1},
-                                                  {part_list, 0, 3},
-                                                  {part_splat_list, 0, 3},
-                                                  {weight_list, 0, 1},
-                                                  {batch_list, 0, 1}}};
+inline constexpr std::array<Plane, 8> planes = {{{light_list, 0, 3},
+                                                 {light_list, 3, 1},
+                                                 {splat_list, 0, 3},
+                                                 {splat_list, 3, 1},
+                                                 {part_list, 0, 3},
+                                                 {part_splat_list, 0, 3},
+                                                 {weight_list, 0, 1},
+                                                 {batch_list, 0, 1}}};
 /// Whether a plane is stored. Squares of correlated samples give no variance, so they are not.
 inline bool kept(const Plane& plane, Estimator estimator) {
   return estimator == Estimator::independent || !((plane.list == light_list || plane.list == splat_list) && plane.group == 1);
@@ -57,7 +53,6 @@ inline size_t groups_per_pixel(const Plane& plane, const PictureFormat& format) 
 /// Counters, and values that are chosen by the order of pixels and samples: exact in any order of addition.
 struct FilmCounts {
   std::vector<std::uint32_t> samples;  ///< per pixel
-  std::vector<FeatureCount> features;
   std::uint64_t paths = 0, bad_count = 0;
   std::vector<BadSample> bad;  ///< the first ones, sorted
   static constexpr size_t bad_kept = 32;

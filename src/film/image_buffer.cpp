@@ -111,7 +111,6 @@ ImageBuffer::~ImageBuffer() = default;
 
 const PixelArea& ImageBuffer::area() const { return format_->area; }
 const PixelArea& ImageBuffer::sampled_area() const { return format_->sampled_area; }
-bool ImageBuffer::wants_features() const { return format_->wants_features; }
 
 bool ImageBuffer::wants(const std::string& layer) const {
   return std::find(layers.begin(), layers.end(), layer) != layers.end();

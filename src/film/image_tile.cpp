@@ -148,15 +148,6 @@ bool BadSample::operator<(const BadSample& b) const {
   return std::tuple(y, x, sample, kind) < std::tuple(b.y, b.x, b.sample, b.kind);
 }
 
-void FeatureCount::add(const FeatureCount& more) {
-  samples += more.samples;
-  hits += more.hits;
-  if (std::tuple(more.first, more.object) < std::tuple(first, object)) {
-    first = more.first;
-    object = more.object;
-  }
-}
-
 void ImageTile::begin(const ImageBuffer& image, const PixelArea& area, std::uint32_t block) {
   format_ = image.format();
   block_ = block;
@@ -168,8 +159,6 @@ void ImageTile::begin(const ImageBuffer& image, const PixelArea& area, std::uint
   parts_.assign(pixel_values(*format_, extent_), 0);
   samples_.assign(pixels(area_), 0);
   weights_.clear();
-  features_.assign(format_->wants_features ? feature_values * pixels(area_) : 0, 0);
-  feature_counts_.assign(format_->wants_features ? pixels(area_) : 0, {});
   splats_.clear();
   splat_path_ = {-1, -1, 0};
   largest_.clear();
@@ -315,19 +304,6 @@ void ImageTile::splat(Point2 film, int px, int py, std::uint32_t sample, const S
   if (largest_wanted_ > 0) [[unlikely]]
     note_large(
         {color.y * (double(format_->width) * double(format_->height) / double(pixels(all))), px, py, sample, film, true});
-}
-
-void ImageTile::features(int px, int py, std::uint32_t sample, const Features& f) {
-  if (features_.empty() || !area_.contains(px, py)) return;
-  if (!is_finite(f.albedo) || !is_finite(f.normal) || !std::isfinite(f.depth)) return;
-  const size_t pixel = own_pixel(px, py);
-  double* sum = &features_[feature_values * pixel];
-  for (int i = 0; i < 3; ++i) {
-    sum[i] += double(f.albedo[i]);
-    sum[3 + i] += double(f.normal[i]);
-  }
-  if (f.depth > 0) sum[6] += double(f.depth);
-  feature_counts_[pixel].add({1, f.depth > 0 ? 1u : 0u, sample, f.object});
 }
 
 }  // namespace etendue

@@ -84,7 +84,7 @@ std::uint64_t PictureFormat::hash() const {
 bool PictureFormat::collects_as(const PictureFormat& other) const {
   return samples_as(other) && path_lengths == other.path_lengths && light_groups == other.light_groups &&
          path_layers == other.path_layers && stokes == other.stokes &&
-         (bands ? other.bands && *bands == *other.bands : !other.bands) && wants_features == other.wants_features;
+         (bands ? other.bands && *bands == *other.bands : !other.bands);
 }
 
 bool PictureFormat::samples_as(const PictureFormat& other) const {

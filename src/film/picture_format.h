@@ -22,7 +22,6 @@ struct PictureFormat {
   PixelArea area, sampled_area;  ///< as the functions of ImageBuffer with these names
   bool cropped = false;
   std::vector<std::string> layers;
-  bool wants_features = false;
   int path_lengths = 0;
   /// Names of the light groups, as in ImageBuffer::layers without "light."; the last group holds the light of luminaires in no
   /// other group. Empty: there are no light groups.

@@ -32,8 +32,6 @@ void ImageTile::pack(std::vector<std::byte>& to) const {
   }
   Packing::pack(to, samples_);
   Packing::pack(to, weights_);
-  Packing::pack(to, features_);
-  Packing::pack(to, feature_counts_);
   Packing::pack(to, largest_);
   Packing::pack(to, splats_);
   Packing::pack(to, bad_);
@@ -68,19 +66,15 @@ void Film::unpack(std::span<const std::byte>& from, ImageTile& tile) const {
   }
   Packing::unpack(from, tile.samples_);
   Packing::unpack(from, tile.weights_);
-  Packing::unpack(from, tile.features_);
-  Packing::unpack(from, tile.feature_counts_);
   Packing::unpack(from, tile.largest_);
   Packing::unpack(from, tile.splats_);
   Packing::unpack(from, tile.bad_);
   Packing::unpack(from, tile.bad_count_);
   Packing::unpack(from, tile.paths_);
-  const size_t features = format->wants_features ? own : 0;
   const bool sound = lies_within(tile.area_, format->area) && lies_within(tile.extent_, format->area) &&
                      tile.light_.size() == 4 * reached &&
                      tile.parts_.size() == pixel_values(*format, tile.extent_) + splat_values(*format) * tile.splats_.size() &&
-                     tile.samples_.size() == own && (tile.weights_.empty() || tile.weights_.size() == own) &&
-                     tile.features_.size() == ImageTile::feature_values * features && tile.feature_counts_.size() == features;
+                     tile.samples_.size() == own && (tile.weights_.empty() || tile.weights_.size() == own);
   if (!sound) throw Error("the packed tile is of another picture");
 }
 

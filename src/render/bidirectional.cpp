@@ -8,7 +8,6 @@ Spectrum bidirectional_radiance(const RenderContext& context, const LightSampler
                                 const LearnedGuide* guide) {
   const BidirectionalStrategies& use = settings.strategies;
   const int k = settings.max_depth;
-  if (sample.sink.features) note_first_surface(context.scene, ray, sample);
   const bool trains = guide && guide->teaches(sample);
   std::optional<GuidedDirections> directions;
   if (guide) directions.emplace(guide->guide(), trains);

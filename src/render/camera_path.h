@@ -21,8 +21,8 @@ inline bool begin_camera_path(const RenderProcess& process, const PixelArea& are
   s.wavelengths = process.wavelengths(key, numbers.next());
   if (!camera.sample_ray(s.film, lens, at, s.wavelengths, from)) {
     // The lens blocks the ray, so the sample is black. The algorithm's splats from light subpaths do not pass through this ray,
-    // and features and records do not depend on it: these are still computed.
-    if (!renderer.splats() && !sample.sink.features && !sample.sink.record) return false;
+    // and records do not depend on it: these are still computed.
+    if (!renderer.splats() && !sample.sink.record) return false;
     from.ray = camera.ray(s.film, lens, at);
     from.weight = {};
   }

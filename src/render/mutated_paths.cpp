@@ -42,10 +42,8 @@ void MutatedPaths::step(Schedule& schedule, const Step& step) {
 Spectrum MutatedPaths::radiance(const Ray& ray, SampleContext& sample) const {
   std::array<Spectrum, direct_length + 1> lengths;
   std::vector<Splat> splats;
-  SampleContext own{sample.wavelengths,
-                    sample.numbers,
-                    sample.arena,
-                    {.features = sample.sink.features, .lengths = lengths, .splats = &splats, .abort = sample.sink.abort}};
+  SampleContext own{
+      sample.wavelengths, sample.numbers, sample.arena, {.lengths = lengths, .splats = &splats, .abort = sample.sink.abort}};
   if (groups_.any()) {
     std::vector<LightParts::Labelled> labelled;
     {

@@ -52,8 +52,6 @@ CameraSample RenderProcess::path(const PixelArea& area, const NumberSource& sour
   s.value = from.weight * radiance(from.ray, sample);
   if (film) [[unlikely]]
     s.wavelengths = *film;
-  if (Features* const features = sink.features; features && features->depth > 0) [[unlikely]]
-    features->depth += context.camera.reach(from.ray).nearest;
   weigh_parts(from.weight, sink);
   arena.reset();
   if (record) [[unlikely]] {
@@ -76,25 +74,17 @@ std::uint64_t RenderProcess::path_items(const Step& step) const { return Divisio
 
 RenderProcess::PathWork RenderProcess::path_work(const Schedule& schedule, const Step& step) const {
   const Division division(context.image, step.samples);
-  const bool wants_features = context.image.wants_features();
   const LightGroups groups(context.scene, context.image);
-  return [this, &schedule, division, wants_features, groups](std::uint64_t item, ImageTile& tile, RecordList records,
-                                                             Arena& arena) {
+  return [this, &schedule, division, groups](std::uint64_t item, ImageTile& tile, RecordList records, Arena& arena) {
     const auto [area, first, last, block] = division.item(item);
     tile.begin(context.image, area, block);
     std::vector<Splat> splats;
     LightParts parts(context.image, groups);
-    Features features;
-    const PathSink sink{.features = wants_features ? &features : nullptr,
-                        .lengths = parts.lengths(),
-                        .splats = &splats,
-                        .records = records,
-                        .abort = schedule.abort};
+    const PathSink sink{.lengths = parts.lengths(), .splats = &splats, .records = records, .abort = schedule.abort};
     for (int y = area.y0; y < area.y1; ++y)
       for (int x = area.x0; x < area.x1; ++x)
         for (SampleKey key(context.seed, x, y, first); key.sample < last; ++key.sample) {
           if (schedule.aborted()) return;
-          if (wants_features) features = {};
           splats.clear();
           parts.clear();
           const CameraSample s = path({x, y, x + 1, y + 1}, *renderer.sampler, key, arena, sink);
@@ -103,7 +93,6 @@ RenderProcess::PathWork RenderProcess::path_work(const Schedule& schedule, const
           tile.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, 1, parts.all());
           for (const Splat& splat : splats)
             tile.splat(splat.film, x, y, key.sample, splat.value, splat.wavelengths, splat.length);
-          if (wants_features) tile.features(x, y, key.sample, features);
         }
   };
 }

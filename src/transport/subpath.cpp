@@ -219,25 +219,4 @@ void record_subpath(std::vector<PathRecord::Vertex>& vertices, std::span<const S
   }
 }
 
-void note_first_surface(const Scene& scene, const Ray& camera_ray, SampleContext& sample) {
-  Ray ray = camera_ray;
-  float null_crossed_distance = 0;
-  Hit hit;
-  SurfacePoint point;
-  for (int crossings = 0; crossings <= most_crossings && scene.nearest(ray, hit); ++crossings) {
-    scene.locate(ray, hit, point);
-    const Shader* shader = point.object->shader.get();
-    if (shader && shader->possible_lobes() == null_scattering) {
-      null_crossed_distance += hit.distance;
-      ray.maximum -= hit.distance;
-      ray.origin = point.exit(ray.direction);
-      hit = {};
-      continue;
-    }
-    const Scatter* scatter = shader ? bound(*shader, point, sample.wavelengths, sample.arena) : nullptr;
-    sample.sink.first_surface(scene, point, hit, scatter, -ray.direction, sample.wavelengths, null_crossed_distance);
-    return;
-  }
-}
-
 }  // namespace etendue

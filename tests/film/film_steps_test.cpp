@@ -21,7 +21,7 @@ Ref<ImageBuffer> picture(int width, int height, const std::string& filter = "Gau
   image->width = width;
   image->height = height;
   image->filter = test::make_filter(filter);
-  image->layers = {"albedo", "normal", "depth", "object", "variance", "samples"};
+  image->layers = {"variance", "samples"};
   image->path_lengths = 2;
   image->prepare();
   return image;
@@ -45,8 +45,6 @@ void add_pass(const ImageBuffer& image, Film& film, unsigned pass, std::uint32_t
         tile.count_path();
         tile.contribute(at, x, y, pass, random() % 50 ? value : Spectrum(-1.0f), wavelengths, random() % 9 ? 1.0f : 1.3f,
                         lengths);
-        tile.features(x, y, pass,
-                      {{0.1f, uniform(random), 1}, {0, 0, uniform(random)}, uniform(random) - 0.3f, int(random() % 9)});
         for (unsigned i = random() % 4; i > 0; --i)
           tile.splat({float(all.x1) * uniform(random), float(all.y1) * uniform(random)}, x, y, pass, value, wavelengths,
                      int(1 + i));

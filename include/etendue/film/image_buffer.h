@@ -35,7 +35,7 @@ class ImageBuffer : public Component {
   int width = 512, height = 512;
   Ref<Filter> filter;
   std::vector<int> crop;            ///< x0, y0, x1, y1 [pixels]; empty: all
-  std::vector<std::string> layers;  ///< of "albedo", "normal", "depth", "object", "variance", "samples"
+  std::vector<std::string> layers;  ///< further channels: "depth", "variance", "light.lamp", …
   int path_lengths = 0;             ///< number of layers by path length; the last one includes all longer paths
 
   void prepare() override;
@@ -45,7 +45,6 @@ class ImageBuffer : public Component {
   /// The pixels that are sampled: `area`, and around a crop window a border as wide as the filter, so that the pixels of the
   /// crop are the same as in the whole image.
   const PixelArea& sampled_area() const;
-  bool wants_features() const;
   bool wants(const std::string& layer) const;
 
   /// Immutable: `prepare` makes a new one. It stays valid if the description is edited or destroyed.

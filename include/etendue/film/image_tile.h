@@ -13,14 +13,6 @@
 
 namespace etendue {
 
-/// Auxiliary values (AOVs) at the first surface that a camera path hits.
-struct Features {
-  Vector3 albedo;   ///< linear sRGB
-  Vector3 normal;   ///< unit, world
-  float depth = 0;  ///< distance from the camera [m]; 0: no surface was hit
-  int object = 0;   ///< 1 + index of the object in the scene; 0: nothing
-};
-
 /// A sample that was not a finite non-negative spectrum; it counts as black.
 struct BadSample {
   int x = 0, y = 0;
@@ -37,14 +29,6 @@ struct LargeSample {
   std::uint32_t sample = 0;
   Point2 film;         ///< the film point of the contribution
   bool splat = false;  ///< the contribution is a splat of a light subpath
-};
-
-/// Counts of a pixel's samples with features.
-struct FeatureCount {
-  std::uint32_t samples = 0, hits = 0;  ///< all samples with features, and those with a depth
-  std::uint32_t first = ~0u;            ///< the smallest sample index,
-  std::int32_t object = 0;              ///< and the object of that sample (Features::object)
-  void add(const FeatureCount&);
 };
 
 /// Used in a cycle: begin, add samples, merge into a Film (film.h).
@@ -69,8 +53,6 @@ class ImageTile {
   /// identify the sample (the splats of one sample must be added consecutively), `length` is the SplatLabel: the number of
   /// segments of the path, and its light group.
   void splat(Point2 film, int px, int py, std::uint32_t sample, const Spectrum&, const Wavelengths&, int length);
-  /// Adds the auxiliary values of a sample, if the image has such layers.
-  void features(int px, int py, std::uint32_t sample, const Features&);
   /// Counts a sample path for splats. Must be called once for each path, including those without contribution.
   void count_path() { ++paths_; }
 
@@ -79,7 +61,6 @@ class ImageTile {
 
  private:
   friend class Film;
-  static constexpr size_t feature_values = 7;  // sums of albedo (3), normal (3), depth
   struct Splat {
     Point2 film;
     Xyz value;
@@ -102,8 +83,6 @@ class ImageTile {
   std::vector<double> parts_;  // X Y Z per part and the bands, per pixel of the extent; then of each splat (film/tile_values.h)
   std::vector<std::uint32_t> samples_;  // number of samples per pixel of the area
   std::vector<double> weights_;         // sum of (weight - 1) per pixel of the area; empty if all weights are 1
-  std::vector<double> features_;        // feature_values per pixel of the area
-  std::vector<FeatureCount> feature_counts_;
   std::vector<LargeSample> largest_;
   size_t largest_wanted_ = 0;
   std::vector<Splat> splats_;

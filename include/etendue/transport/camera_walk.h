@@ -49,7 +49,7 @@ class CameraWalk : public Walk<unattenuated> {
   CameraWalk(const Scene& scene_, SampleContext& sample_, const Ray& ray_, int longest_)
       : Base(scene_, sample_, ray_, longest_), memory_(sample_.arena.mark()), one_luminaire_(scene_.luminaires().size() == 1) {
     this->collects_light = true;
-    this->observed = sample.sink.features || sample.sink.record;
+    this->observed = sample.sink.record;
     if (!unattenuated && scene.has_interiors()) media_at(scene, ray.origin, ray.time, this->media);
   }
 
@@ -82,9 +82,6 @@ class CameraWalk : public Walk<unattenuated> {
       sample.sink.medium(vertex.point.position, placed(throughput));
     } else if (vertex.on_surface()) {
       sample.sink.surface(vertex.point, placed(throughput));
-      if (length == 1)
-        sample.sink.first_surface(scene, vertex.point, this->hit, vertex.scatter, vertex.out, sample.wavelengths,
-                                  this->null_crossed_distance);
       if (vertex.point.object->luminaire()) add_luminaire(weight);
       if (length < longest) this->choose_reradiation();
     } else {

@@ -1,7 +1,6 @@
 #pragma once
-// PathSink: receives the results of a path besides the radiance that it returns. These are the features of the first surface,
-// radiance by path length, splats, training samples of a guide, and the record of a replay. Each is optional: an unused one
-// costs one test.
+// PathSink: receives the results of a path besides the radiance that it returns. These are radiance by path length, splats,
+// training samples of a guide, and the record of a replay. Each is optional: an unused one costs one test.
 
 #include <algorithm>
 #include <atomic>
@@ -46,7 +45,6 @@ class RecordList {
 };
 
 struct PathSink {
-  Features* features = nullptr;              ///< filled at the first surface; null: not needed
   PathRecord* record = nullptr;              ///< filled when a sample is replayed; null: not needed
   std::span<Spectrum> lengths = {};          ///< radiance by path length, the last entry for all longer paths too
   std::vector<Splat>* splats = nullptr;      ///< null: splats are dropped
@@ -97,14 +95,6 @@ struct PathSink {
       record_next_event(value, length, weight);
   }
 
-  /// The first surface of a camera path; features are taken from the first call alone. `scatter` may be null: black. `before`:
-  /// the distance to the last null-scattering boundary on the way [m].
-  void first_surface(const Scene& scene, const SurfacePoint& point, const Hit& hit, const Scatter* scatter, const Vector3& out,
-                     const Wavelengths& wavelengths, float before = 0) {
-    if (features) [[unlikely]]
-      store_features(scene, point, hit, scatter, out, wavelengths, before);
-  }
-
   // The rare case of each, out of line.
   void record_surface(const SurfacePoint&, const Spectrum& throughput);
   void record_medium(const Point3&, const Spectrum& throughput);
@@ -112,8 +102,6 @@ struct PathSink {
   void record_scattering(const ScatterSample&);
   void record_emitter_hit(const Spectrum&, int length, float weight);
   void record_next_event(const Spectrum&, int length, float weight);
-  void store_features(const Scene&, const SurfacePoint&, const Hit&, const Scatter*, const Vector3& out, const Wavelengths&,
-                      float before);
 };
 
 /// The description of an object for users: its name in the file, and its class.

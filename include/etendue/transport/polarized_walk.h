@@ -31,7 +31,7 @@ class PolarizedWalk : public Walk<false> {
         memory_(sample_.arena.mark()),
         one_luminaire_(scene_.luminaires().size() == 1) {
     collects_light = true;
-    observed = sample.sink.features || sample.sink.record;
+    observed = sample.sink.record;
     if (scene.has_interiors()) media_at(scene, ray.origin, ray.time, media);
   }
 
@@ -54,9 +54,6 @@ class PolarizedWalk : public Walk<false> {
       sample.sink.medium(vertex.point.position, throughput);
     } else if (vertex.on_surface()) {
       sample.sink.surface(vertex.point, throughput);
-      if (length == 1)
-        sample.sink.first_surface(scene, vertex.point, hit, vertex.scatter, vertex.out, sample.wavelengths,
-                                  null_crossed_distance);
       if (vertex.point.object->luminaire()) add_luminaire(weight);
     } else {
       for (const SceneObject* far : scene.infinite_luminaires(ray)) {

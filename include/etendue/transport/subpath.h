@@ -139,8 +139,4 @@ float next_event_point_pdf(const LightSampler&, const SubpathVertex& x1, const S
 /// Stores the vertices of a subpath in a PathRecord.
 void record_subpath(std::vector<PathRecord::Vertex>&, std::span<const SubpathVertex> walk);
 
-/// Passes the features of the first surface along a camera ray to the PathSink, for renderers whose subpaths do not store the
-/// intersection.
-void note_first_surface(const Scene&, const Ray&, SampleContext&);
-
 }  // namespace etendue

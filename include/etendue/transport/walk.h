@@ -273,7 +273,7 @@ class Walk {
   /// new wavelengths are sampled at each reradiation.
   const WavelengthLevels* levels = nullptr;
   int level = 0;
-  /// Whether the end of the last segment is needed even if it is not an emitter, for features or the record of a path.
+  /// Whether the end of the last segment is needed even if it is not an emitter, for the record of a path.
   bool observed = false;
 
  protected:

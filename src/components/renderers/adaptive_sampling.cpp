@@ -216,7 +216,6 @@ void AdaptiveProcess::step(Schedule& schedule, const Step& step) {
   // A partial step, when the render ends within a step, is sampled evenly with its own random seed.
   const bool whole = count == AdaptiveSampling::mean_samples && step.samples.begin % count == 0;
   const std::uint64_t seed = mix_bits(context.seed + mix_bits(whole ? epoch : std::uint64_t(step.samples.begin) + 64));
-  const bool wants_features = context.image.wants_features();
   const LightGroups groups(context.scene, context.image);
   const std::uint64_t items = columns() * rows();
   const std::vector<Luminances> found = schedule.film_and_collect<Luminances>(
@@ -224,22 +223,18 @@ void AdaptiveProcess::step(Schedule& schedule, const Step& step) {
         const PixelArea area = item_area(item);
         film.begin(context.image, area);
         LightParts parts(context.image, groups);
-        Features features;
-        const PathSink sink{
-            .features = wants_features ? &features : nullptr, .lengths = parts.lengths(), .abort = schedule.abort};
+        const PathSink sink{.lengths = parts.lengths(), .abort = schedule.abort};
         for (int y = area.y0; y < area.y1; ++y)
           for (int x = area.x0; x < area.x1; ++x) {
             const std::uint32_t n = whole ? planned_[place(x, y)] : count, first = whole ? (step.number - first_step) * n : 0;
             Luminances of_pixel;
             for (SampleKey key(seed, x, y, first); key.sample < first + n; ++key.sample) {
               if (schedule.aborted()) return;
-              features = {};
               parts.clear();
               const CameraSample s = path({x, y, x + 1, y + 1}, *renderer.sampler, key, arena, sink);
               film.count_path();
               parts.require_all(s.value, s.wavelengths);
               film.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, float(count) / float(n), parts.all());
-              if (wants_features) film.features(x, y, key.sample, features);
               const double luminance = to_xyz(s.value, s.wavelengths).y;
               if (std::isfinite(luminance)) of_pixel.add({1, luminance, luminance * luminance});
             }

@@ -55,10 +55,6 @@ class AmbientOcclusionRenderer final : public Renderer {
     }
     const Vector3 out = -ray.direction;
     sample.sink.surface(point, Spectrum(1.0f));
-    if (sample.sink.features) {
-      const Scatter* scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
-      sample.sink.first_surface(scene, point, hit, scatter, out, sample.wavelengths);
-    }
 
     // The hemisphere is on the side that is seen. Directions below the geometric surface, which shading normals allow, count as
     // occluded.

@@ -284,7 +284,6 @@ void AutomaticProcess::decide(const std::vector<size_t>& tried) {
 
 void AutomaticProcess::step(Schedule& schedule, const Step& step) {
   const Division division(context.image, step.samples);
-  const bool wants_features = context.image.wants_features();
   const LightGroups groups(context.scene, context.image);
   LearnsFromPaths* const learner = pupil(*film_);
   const PixelArea all = context.image.sampled_area();
@@ -294,17 +293,11 @@ void AutomaticProcess::step(Schedule& schedule, const Step& step) {
     tile.begin(context.image, area, block);
     std::vector<Splat> splats;
     LightParts parts(context.image, groups);
-    Features features;
-    const PathSink sink{.features = wants_features ? &features : nullptr,
-                        .lengths = parts.lengths(),
-                        .splats = &splats,
-                        .records = records,
-                        .abort = schedule.abort};
+    const PathSink sink{.lengths = parts.lengths(), .splats = &splats, .records = records, .abort = schedule.abort};
     for (int y = area.y0; y < area.y1; ++y)
       for (int x = area.x0; x < area.x1; ++x)
         for (SampleKey key(context.seed, x, y, first); key.sample < last; ++key.sample) {
           if (schedule.aborted()) return;
-          features = {};
           splats.clear();
           parts.clear();
           const CameraSample s = film_->path({x, y, x + 1, y + 1}, *renderer.sampler, key, arena, sink);
@@ -313,7 +306,6 @@ void AutomaticProcess::step(Schedule& schedule, const Step& step) {
           tile.contribute(s.film, x, y, key.sample, s.value, s.wavelengths, float(weight_), parts.all());
           for (const Splat& splat : splats)
             tile.splat(splat.film, x, y, key.sample, splat.value * float(weight_), splat.wavelengths, splat.length);
-          if (wants_features) tile.features(x, y, key.sample, features);
         }
   };
   if (learner) {

@@ -101,7 +101,6 @@ class DirectRenderer final : public Renderer {
     sample.sink.surface(point, branch.throughput);
     if (point.object->luminaire()) tree.add_emission(branch, point, point.object);
     const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
-    sample.sink.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
     if (!scatter) return false;
 
     Spectrum direct;

@@ -127,7 +127,6 @@ class DistributionRenderer final : public Renderer {
       sample.sink.surface(point, branch.throughput);
       if (point.object->luminaire()) add_emission(tree, branch, point);
       const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
-      sample.sink.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
       if (!scatter) return;
 
       const Place place{point, *scatter, out, branch.depth <= split_depth};

@@ -60,14 +60,10 @@ class FeatureProcess final : public RenderProcess {
     if (!meet_surface(scene, ray, media_around(scene, ray, media), hit, point)) return {};
     const Vector3 out = -ray.direction;
     sample.sink.surface(point, Spectrum(1.0f));
-    const Scatter* scatter = nullptr;
-    if (sample.sink.features || feature == Feature::albedo)
-      scatter = scattering_at(point, out, sample.wavelengths, sample.arena);
-    sample.sink.first_surface(scene, point, hit, scatter, out, sample.wavelengths);
-
     Spectrum value;
     if (feature == Feature::albedo) {  // the albedo is shown as scattered white light
-      if (scatter) value = scatter->albedo(out) * white_->evaluate(sample.wavelengths, ColorUse::radiance);
+      if (const Scatter* const scatter = scattering_at(point, out, sample.wavelengths, sample.arena))
+        value = scatter->albedo(out) * white_->evaluate(sample.wavelengths, ColorUse::radiance);
     } else {
       value = display_colors()(
           color(scene, camera_ray, hit, point, distance(context.camera.lens_point(camera_ray), point.position)));

@@ -158,7 +158,6 @@ class DirectProcess final : public RenderProcess {
  public:
   DirectProcess(const MultiplexedMetropolis& r, const RenderContext& c) : RenderProcess(r, c), settings_(r) {}
   Spectrum radiance(const Ray& ray, SampleContext& sample) const override {
-    if (sample.sink.features) note_first_surface(context.scene, ray, sample);
     const int longest = std::min(settings_.max_depth, MutatedPaths::direct_length);
     BidirectionalSubpaths walks(context, *settings_.light_sampler, sample, {settings_.heuristic});
     ContributionSum sum(sample, walks, [](const PathContribution&) { return true; });

@@ -63,7 +63,6 @@ class RandomWalk final : public Renderer {
       if (x.object->luminaire()) add_emission(x, out, length);
 
       const Scatter* scatter = scattering_at(x, out, wavelengths, sample.arena);
-      if (length == 1) sample.sink.first_surface(scene, x, hit, scatter, out, wavelengths);
       // A fluorescent surface scatters light of the same wavelengths or emits light of others: from here the path follows one.
       if (scene.has_fluorescence()) scatter = choose_reradiation(x, out, scatter, T, sample).scatter;
       if (!scatter) break;

@@ -62,7 +62,6 @@ class SimplePathTracer final : public Renderer {
         add(T * x.object->emission->radiance(x, out, sample.wavelengths), length, x.object);
 
       const Scatter* scatter = scattering_at(x, out, sample.wavelengths, sample.arena);
-      if (length == 1) sample.sink.first_surface(scene, x, hit, scatter, out, sample.wavelengths);
       // A fluorescent surface scatters light of the same wavelengths or emits light of others: from here the path follows one.
       if (scene.has_fluorescence()) scatter = choose_reradiation(x, out, scatter, T, sample).scatter;
       if (!scatter || length == max_depth) break;

@@ -66,7 +66,6 @@ class WhittedRenderer final : public Renderer {
     sample.sink.surface(point, branch.throughput);
     if (point.object->luminaire()) tree.add_emission(branch, point, point.object);
     const Scatter* scatter = scattering_at(point, out, branch.wavelengths, sample.arena);
-    sample.sink.first_surface(scene, point, hit, scatter, out, branch.wavelengths);
     if (!scatter) return false;
     const bool last = branch.depth >= max_depth;
     if (!last && scatter->has(smooth_lobes)) {
