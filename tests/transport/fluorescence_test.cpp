@@ -256,16 +256,21 @@ TEST_P(InMedia, ABallOfDyeOnAGrid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Fluorescence, InMedia,
-                         testing::Values(Way{"PathTracer {}", 64}, Way{"GuidedPathTracer {}", 64}, Way{"LightTracer {}", 1024}),
+                         testing::Values(Way{"PathTracer {}", 160}, Way{"GuidedPathTracer {}", 160},
+                                         Way{"LightTracer {}", 1024}),
                          [](const auto& info) {
                            return fmt::format("{}_{}", info.param.renderer.substr(0, info.param.renderer.find(' ')),
                                               info.index);
                          });
 
+/// A job with these objects; `before` stands before it.
+Ref<Job> job_of(const std::string& objects, const std::string& before = {}) {
+  return load_job_text(before + test::job_text("PathTracer {}", above, 4, objects), "test.etd");
+}
+
 // Photons are kept: of each photon absorbed, quantum_yield are emitted.
 TEST(Fluorescence, ADyeKeepsTheNumberOfPhotons) {
-  const Ref<Job> job = load_job_text(
-      "Job { scene: BruteForceScene { objects: [" + plate("FluorescentShader { dye: " + dye() + " }") + "] } }", "test.etd");
+  const Ref<Job> job = job_of("plate", "plate = " + plate("FluorescentShader { dye: " + dye() + " }"));
   prepare_tree(*job);
   const FluorescentSurface* const surface = fluorescent(job->scene->objects[0]->shader.get());
   ASSERT_TRUE(surface);
@@ -304,7 +309,7 @@ TEST(Fluorescence, SampledWavelengthsHaveTheirPdf) {
 
 std::string message(const std::string& shader) {
   try {
-    prepare_tree(*load_job_text("Job { scene: BruteForceScene { objects: [" + plate(shader) + "] } }", "test.etd"));
+    prepare_tree(*job_of(plate(shader)));
   } catch (const Error& e) {
     return e.what();
   }
@@ -358,9 +363,7 @@ TEST(Fluorescence, MatricesAreReadFromFiles) {
 
 // A renderer that does not follow changes of wavelengths says that it loses them.
 TEST(Fluorescence, TheOthersTellWhatTheyLose) {
-  const Ref<Job> job = load_job_text(
-      "Job { scene: BruteForceScene { objects: [plate] } }\nplate = " + plate("FluorescentShader { dye: " + dye() + " }"),
-      "test.etd");
+  const Ref<Job> job = job_of("plate", "plate = " + plate("FluorescentShader { dye: " + dye() + " }"));
   prepare_tree(*job);
   const SceneTraits traits = scene_traits(*job->scene, *job->camera);
   for (const char* name :
