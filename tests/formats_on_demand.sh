@@ -57,7 +57,11 @@ tells Sphre "there is no class 'Sphre' (did you mean 'Sphere'?)"
 tells Qwertyuiop 'cannot be loaded'
 
 # Other commands than `render` are told to be missing, not to be unknown.
-LD_LIBRARY_PATH="$folder/alone" "$folder/alone/etendue" check "$folder/misspelt.etd" >"$folder/output" 2>&1 && exit 1
+LD_LIBRARY_PATH="$folder/alone" "$folder/alone/etendue" check "$folder/misspelt.etd" >"$folder/output" 2>&1 && status=0 || status=$?
+if [ "$status" != 1 ]; then
+  echo "without the library of commands the status is $status"
+  exit 1
+fi
 if ! grep -q "the library of commands ('./etendue build' builds it) cannot be loaded" "$folder/output"; then
   echo "without the library of commands this is told:"
   cat "$folder/output"

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <sstream>
@@ -31,6 +32,13 @@ CommandOption& CommandOption::range(int least, int most) {
 }
 
 CommandOption& CommandOption::range(double least, double most) {
+  option_->check(CLI::Validator(  // a range lets what is no number pass
+      [](const std::string& value) {
+        double number = 0;
+        return CLI::detail::lexical_cast(value, number) && std::isnan(number) ? "'" + value + "' is not a number"
+                                                                              : std::string();
+      },
+      ""));
   option_->check(CLI::Range(least, most).description(""));
   return *this;
 }

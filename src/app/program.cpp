@@ -62,7 +62,14 @@ int run_program(int argument_count, char** arguments) {
   program.require_command();
 
   add_render_command(program);
-  if (argument_count < 2 || std::string_view(arguments[1]) != "render") add_other_commands(program);
+  if (argument_count < 2 || std::string_view(arguments[1]) != "render") {
+    try {
+      add_other_commands(program);
+    } catch (const Error& error) {
+      fmt::print(stderr, "etendue: {}\n", error.what());
+      return exit_status::failed;
+    }
+  }
   return command_line.run(argument_count, arguments);
 }
 

@@ -13,17 +13,10 @@
 #include "film/surface_film.h"
 #include "parallel_schedule.h"
 #include "surface_step.h"
+#include "transport/first_surface.h"
 
 namespace etendue {
 namespace {
-
-Vector3 to_srgb(const Spectrum& reflectance, const Wavelengths& wavelengths) {
-  static const RgbSpace& srgb = rgb_space("srgb");
-  const Xyz c = to_xyz(reflectance * srgb.illuminant->evaluate(wavelengths, ColorUse::reflectance), wavelengths);
-  const auto& m = srgb.from_xyz;
-  return {float(m[0] * c.x + m[1] * c.y + m[2] * c.z), float(m[3] * c.x + m[4] * c.y + m[5] * c.z),
-          float(m[6] * c.x + m[7] * c.y + m[8] * c.z)};
-}
 
 /// The first surface on a camera path that is neither a mirror nor clear glass.
 FirstSurface guide_of(const RenderContext& context, const Ray& ray, SampleContext& sample) {
@@ -36,14 +29,14 @@ FirstSurface guide_of(const RenderContext& context, const Ray& ray, SampleContex
   while (true) {
     if (!walk.next_vertex(nothing)) {
       if (walk.vertex.kind == PathVertex::Kind::escape && !context.scene.infinite_luminaires(walk.ray).empty())
-        guide.albedo = to_srgb(walk.throughput, sample.wavelengths);
+        guide.albedo = linear_srgb(walk.throughput, sample.wavelengths);
       return guide;
     }
     const PathVertex& v = walk.vertex;
     if (v.in_medium() || v.scatters_smoothly() || v.point.object->luminaire() || walk.at_end()) {
       const bool shines = !v.in_medium() && v.point.object->luminaire();
       const Spectrum scattered = v.on_surface() && v.scatter ? v.scatter->albedo(v.out) : Spectrum();
-      guide.albedo = to_srgb(walk.throughput * (v.in_medium() || shines ? Spectrum(1.0f) : scattered), sample.wavelengths);
+      guide.albedo = linear_srgb(walk.throughput * (v.in_medium() || shines ? Spectrum(1.0f) : scattered), sample.wavelengths);
       if (v.on_surface())
         guide.normal = Vector3(v.point.shading_normal) * (dot(v.point.shading_normal, v.out) < 0 ? -1.0f : 1.0f);
       return guide;

@@ -29,11 +29,11 @@ void require_description_name(const std::string& file, Location at) {
 }  // namespace
 
 void save_description(const Job& job, const std::string& file, const std::string& comments, bool all, Location at) {
-  require_description_name(file, at);
   note_inputs_of(job);
   OutputFiles files;
   files.add(file, at);
   files.raise();
+  require_description_name(file, at);
   std::error_code error;
   const std::string folder = std::filesystem::absolute(file, error).parent_path().string();
   if (error) throw Error(fmt::format("cannot write '{}': {}", file, error.message()), at);

@@ -75,15 +75,15 @@ FirstSurfaces::Met::Object FirstSurfaces::named(const Hit& hit, Met& met, Surfac
   return found->second;
 }
 
-namespace {
-
 Vector3 linear_srgb(const Spectrum& reflectance, const Wavelengths& wavelengths) {
   static const RgbSpace& srgb = rgb_space("srgb");
-  const Xyz c = to_xyz(reflectance * srgb.illuminant->evaluate(wavelengths, ColorUse::reflectance), wavelengths);
+  const Xyz c = to_xyz(reflectance * srgb.illuminant->evaluate(wavelengths, ColorUse::radiance), wavelengths);
   const auto& m = srgb.from_xyz;
   return {float(m[0] * c.x + m[1] * c.y + m[2] * c.z), float(m[3] * c.x + m[4] * c.y + m[5] * c.z),
           float(m[6] * c.x + m[7] * c.y + m[8] * c.z)};
 }
+
+namespace {
 
 /// The maps that say how rough a shader is: one, or one for each of two directions; none: no member says so.
 std::vector<Ref<const ObjectMap>> roughness_maps(const Shader& shader) {

@@ -49,6 +49,9 @@ class FirstSurfaces {
   std::vector<Group> groups_;
 };
 
+/// The colour of a reflectance, or an albedo, in the light of sRGB's white: linear sRGB. One path's estimate.
+Vector3 linear_srgb(const Spectrum& reflectance, const Wavelengths&);
+
 /// Where the point of an object that a hit has found is at another time, in rendering space: it moves with the object, with all
 /// instances that contain it, and with the vertices of its mesh.
 DoublePoint3 position_at(const Hit&, const SurfacePoint&, float time);

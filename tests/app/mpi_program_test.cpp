@@ -121,8 +121,10 @@ TEST_F(MpiProgram, when_mpirun_is_killed_a_file_says_so_and_nobody_goes_on) {
   ASSERT_TRUE(exists("state")) << process.err();
   process.send(SIGKILL);
   EXPECT_NE(finish(std::move(process)), 0);
-  for (int i = 0; i < 3000 && !exists("state.killed.txt"); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  EXPECT_TRUE(has(file_text(folder / "state.killed.txt"), "process 0 on "));
+  // There for a moment before its text is.
+  const auto told = [&] { return exists("state.killed.txt") && has(file_text(folder / "state.killed.txt"), "process 0 on "); };
+  for (int i = 0; i < 3000 && !told(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(told());
   // What has ended and waits to be collected has no command line.
   for (const char* rank : {"rank0", "rank1"})
     EXPECT_EQ(file_text("/proc/" + std::to_string(std::stoi(file_text(folder / rank))) + "/cmdline"), "") << rank;

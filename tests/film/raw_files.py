@@ -159,6 +159,13 @@ def main():
         expose("photo.tif", "--white", "D65")
         expose("photo.exr", "--white", "D65")
         expose("lamp.dng", "--white", "A")
+        expose("small.png")
+        expose("CAPITAL.PNG")
+        assert open("small.png", "rb").read() == open("CAPITAL.PNG", "rb").read()
+        for name, *options, told in (("picture.tga", "--output: "), ("volts.PNG", "--quantity", "volts", "--quantity: "),
+                                     ("nothing.npy", "--f-number", "nan", "'nan' is not a number")):
+            refused = subprocess.run([program, "image", "sensor", "picture.exr", name, *options, "--camera", "Nikon D5100"], capture_output=True, text=True)
+            assert refused.returncode == 2 and told in refused.stderr and not os.path.exists(name), (name, refused)
         raw = np.load("raw.npy")
         assert raw.shape == (HEIGHT, WIDTH, 3) and 300 < raw.min() and raw.max() < 16383 and len(np.unique(raw)) > 30, (raw.min(), raw.max())
 

@@ -71,6 +71,24 @@ TEST(SurfaceLayers, ShowAPlane) {
   }
 }
 
+// Where paths carry red, green and blue, an albedo is what the scene says, in every space of theirs whose white is sRGB's.
+TEST(SurfaceLayers, ShowAlbedosOfPathsInBands) {
+  for (const char* space : {"srgb", "rec2020"}) {
+    SCOPED_TRACE(space);
+    const Image image =
+        picture(R"("albedo")",
+                "Rectangle { corner: [-2, -2, -1] m, edge_u: [4, 0, 0] m, edge_v: [0, 4, 0] m, shader: Lambertian "
+                "{ color: srgb(0.8, 0.4, 0.1) } }",
+                "filter: BoxFilter {}", "PathTracer { samples: 1, max_depth: 1 }",
+                "OrthographicCamera { from: [0, 0, 5] m, to: [0, 0, 0] m, width: 4 m }",
+                std::string("wavelengths: RgbWavelengths { color_space: \"") + space + "\" }\n");
+    // srgb() takes encoded values (IEC 61966-2-1): ((v + 0.055) / 1.055)^2.4.
+    EXPECT_NEAR(at(image, 8, 8, "albedo.R"), std::pow(0.855 / 1.055, 2.4), 2e-3);
+    EXPECT_NEAR(at(image, 8, 8, "albedo.G"), std::pow(0.455 / 1.055, 2.4), 2e-3);
+    EXPECT_NEAR(at(image, 8, 8, "albedo.B"), std::pow(0.155 / 1.055, 2.4), 2e-3);
+  }
+}
+
 TEST(SurfaceLayers, ShowASphereWithoutItsBackground) {
   const Image image = picture(R"("position", "normal", "depth", "coverage")", "Sphere { radius: 1 m, shader: Lambertian {} }");
   double covered = 0;

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 
 #include "etendue/describe/color.h"
 #include "etendue/describe/description.h"
@@ -73,6 +74,17 @@ void each(const etendue::Value& value, const Member& m, const F& f) {
   T x{};
   detail::Convert<T>::read(value, m, x);
   f(x);
+}
+
+/// The name by which a shader opens a file that a scene names. What is not there as the scene says it stays as it was written,
+/// so that it is looked for beside the shader, too.
+std::string texture_name(const FilePath& file) {
+  if (file.empty()) return {};
+  const std::string path = file.resolved();
+  std::error_code ignored;
+  const bool elsewhere = std::filesystem::path(file.text).is_relative() && file.text.find("<UDIM>") == std::string::npos &&
+                         !std::filesystem::exists(path, ignored);
+  return elsewhere ? file.text : path;
 }
 
 }  // namespace
@@ -150,9 +162,7 @@ Constant constant_of(const Type& type, const Member& m, const etendue::Value& va
     case Kind::number: each<double>(value, m, [&](double x) { add(float(x)); }); break;
     case Kind::string:
     case Kind::choice: each<std::string>(value, m, [&](const std::string& x) { add(intern_string(x)); }); break;
-    case Kind::file:
-      each<FilePath>(value, m, [&](const FilePath& x) { add(intern_string(x.empty() ? std::string() : x.resolved())); });
-      break;
+    case Kind::file: each<FilePath>(value, m, [&](const FilePath& x) { add(intern_string(texture_name(x))); }); break;
     case Kind::color: each<Color>(value, m, [&](const Color& x) { add(x ? rgb_of(*x) : Triple(0)); }); break;
     case Kind::vector3: each<Vector3>(value, m, [&](const Vector3& x) { add(Triple(x.x, x.y, x.z)); }); break;
     case Kind::point3:

@@ -108,7 +108,7 @@ void add_image_false_color(Command& image) {
   command.footer(
       "\nExamples\n"
       "  etendue image false-colour room.exr -o room.png --range 1:10000\n"
-      "  etendue image false-colour room.exr -o depth.png --channel depth --unit m --linear --map turbo");
+      "  etendue image false-colour room.exr -o depth.png --channel depth.Z --unit m --linear --map turbo");
   command.runs([options] { return show(*options); });
 }
 

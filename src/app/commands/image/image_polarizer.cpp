@@ -76,7 +76,7 @@ void add_image_polarizer(Command& image) {
       "\nExamples\n"
       "  etendue image polarizer window.exr through.exr --angle 90\n"
       "  etendue image tonemap through.exr through.png\n"
-      "  etendue image false-colour window.exr -o degree.png --channel polarization.linear --unit \"\" --linear --range 0:1");
+      "  etendue image false-colour window.exr -o degree.png --channel polarization.linear --unit degree --linear --range 0:1");
   command.runs([options] { return polarize(*options); });
 }
 

@@ -6,7 +6,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 
 #include "app/commands.h"
 #include "app/text.h"
@@ -36,8 +38,13 @@ struct SensorOptions {
 
 [[noreturn]] void reject(const char* option, const std::string& reason) { throw Error(reason, {intern(option), 0, 0}); }
 
-bool is_dng(const SensorOptions& options) { return options.out.ends_with(".dng"); }
-bool is_tiff(const SensorOptions& options) { return options.out.ends_with(".tif") || options.out.ends_with(".tiff"); }
+bool ends_in(const SensorOptions& options, std::initializer_list<const char*> endings) {
+  std::string ending = std::filesystem::path(options.out).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return std::ranges::find(endings, ending) != endings.end();
+}
+bool is_dng(const SensorOptions& options) { return ends_in(options, {".dng"}); }
+bool is_tiff(const SensorOptions& options) { return ends_in(options, {".tif", ".tiff"}); }
 
 /// What would be ignored is an error.
 void check(const SensorOptions& options) {
@@ -46,8 +53,10 @@ void check(const SensorOptions& options) {
     reject("image sensor",
            fmt::format("needs either --sensitivities or --camera; known are {}", fmt::join(sensor_names(), ", ")));
   if (!options.mosaic.empty() && !is_dng(options)) reject("--mosaic", "is for files that end in .dng");
-  if (!numbers && (is_dng(options) || is_tiff(options) || options.out.ends_with(".png")))
+  if (!numbers && (is_dng(options) || is_tiff(options) || ends_in(options, {".png"})))
     reject("--quantity", "files of this kind hold digital numbers; .npy and .exr hold electrons and volts");
+  if (ends_in(options, {".tga", ".jpg", ".jpeg", ".bmp", ".hdr"}))
+    reject("--output", "files of this kind do not hold digital numbers: .png, .tif, .dng, .npy and .exr do");
   if (!numbers && !options.white.empty()) reject("--white", "a colour picture is made of digital numbers");
   if (numbers && !options.noise)
     for (const auto& [name, value] : {std::pair("--full-well", options.full_well), std::pair("--base-iso", options.base_iso)})
@@ -94,13 +103,13 @@ Sensor sensor_of(const SensorOptions& options) {
 /// The numbers of a display format are fractions of its largest one: a 16 bit file then holds the digital numbers themselves.
 void write_numbers(Image numbers, const SensorOptions& options) {
   if (is_tiff(options)) return write_linear_tiff(numbers, 65535, options.out);
-  if (options.out.ends_with(".npy")) {
+  if (ends_in(options, {".npy"})) {
     // An NpyOutput writes X, Y and Z. Called so, the numbers are not turned from R, G, B into these.
     numbers.channels = {"X", "Y", "Z"};
     numbers.metadata["color_space"] = "xyz";
     return write_any(numbers, options.out);
   }
-  if (!options.out.ends_with(".png")) return write_any(numbers, options.out);
+  if (!ends_in(options, {".png"})) return write_any(numbers, options.out);
   const Ref<Output> png = ref_cast<Output>(Registry::instance().create("PngOutput"));
   for (double& v : numbers.values) v /= 65535;
   numbers.metadata["transfer"] = "linear";

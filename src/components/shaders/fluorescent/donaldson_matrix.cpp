@@ -107,7 +107,12 @@ float DonaldsonMatrix::value(float absorbed, float emitted) const {
 
 DonaldsonMatrix read_donaldson_matrix(const std::string& path) {
   constexpr std::uint64_t most = 64u << 20;  // bytes
-  std::istringstream stream(read_regular_file(path, most));
+  std::istringstream stream;
+  try {
+    stream.str(read_regular_file(path, most));
+  } catch (const std::exception& e) {
+    throw Error(fmt::format("cannot read matrix '{}': {}", path, e.what()));
+  }
   std::vector<float> wavelengths, values;
   size_t rows = 0;
   std::string line;
