@@ -261,8 +261,8 @@ TEST(FilmSteps, too_many_steps_and_impossible_states_are_refused) {
   Film film(*image);
   add_step(*image, film, 1);
   std::vector<std::byte> state = film.save_state();
-  // The state begins with the magic number, nine numbers of the picture and the filter's hash; then the steps follow.
-  const size_t at = 8 + 9 * 4 + 8;
+  // The state begins with the magic number, eight numbers of the picture and the filter's hash; then the steps follow.
+  const size_t at = 8 + 8 * 4 + 8;
   std::uint32_t steps = 0;
   std::memcpy(&steps, &state[at], sizeof steps);
   ASSERT_EQ(steps, 1u);

@@ -45,7 +45,8 @@ TEST(ImageLibrary, IsMissedBeforeRendering) {
   const TemporaryFolder folder, other;
   folder.write("a.etd", scene);
   for (const auto& entry : std::filesystem::directory_iterator(ETENDUE_BINARY_DIR))
-    if (entry.path().filename().string().starts_with("libetendue.so."))
+    if (const std::string name = entry.path().filename().string();
+        name.starts_with("libetendue.so.") || name == "libetendue_commands.so")
       std::filesystem::copy_file(entry.path(), other / entry.path().filename());
   const auto run = [&](std::vector<std::string> arguments, int status) {
     arguments.insert(arguments.begin(), {"LD_LIBRARY_PATH=" + other.path(), program});

@@ -225,7 +225,7 @@ class Converter {
   std::map<const Element*, GridPlace> places_;
   const Element *sun_of_sky_ = nullptr, *sky_with_sun_ = nullptr;  ///< a sun and a sky that belong together
   std::map<const Component*, Ref<Component>> turned_;              // shaders with front and back exchanged, by their originals
-  Value::List layers_;  ///< of the image
+  Value::List layers_;                                             ///< of the image
 };
 
 }  // namespace etendue::mitsuba
