@@ -15,12 +15,6 @@ class TestEmission final : public EmissionShader {
   Spectrum power(const SceneObject&, const Wavelengths&) const override { return Spectrum(1.0f); }
 };
 
-class TestShader final : public Shader {
- public:
-  const Scatter* bind(const SurfacePoint&, const Wavelengths&, Arena&) const override { return nullptr; }
-  Lobes possible_lobes() const override { return specular_transmission; }
-};
-
 Ref<SceneObject> soup(Random& random, int triangles, const AnimatedTransform& place) {
   std::vector<double> corners, indices;
   for (int i = 0; i < triangles; ++i) {
@@ -216,7 +210,7 @@ TEST(Scene, LuminairesAndInteriors) {
   EXPECT_FALSE(outer->has_interiors());
   EXPECT_NEAR(outer->radius(), std::sqrt(3.0f), 1e-4f);
   EXPECT_NEAR(sky->area(0), 4 * pi * square(outer->radius()), 1e-4f);
-  inner_lamp->shader = make<TestShader>();
+  inner_lamp->shader = ref_cast<Shader>(Registry::instance().create("Dielectric"));
   inner->prepare();
   outer->prepare();
   EXPECT_TRUE(outer->has_interiors());

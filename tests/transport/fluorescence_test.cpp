@@ -307,9 +307,11 @@ TEST(Fluorescence, SampledWavelengthsHaveTheirPdf) {
   EXPECT_NEAR(first, integral([&](double l) { return l * double(f(float(l))); }), 1e-3 * first);
 }
 
-std::string message(const std::string& shader) {
+std::string message(const std::string& shader, const std::string& definitions = {}, const std::string& objects = {}) {
   try {
-    prepare_tree(*job_of(plate(shader)));
+    prepare_tree(*job_of(objects + plate(shader), definitions));
+  } catch (const Errors& e) {
+    return e.errors.front().what();
   } catch (const Error& e) {
     return e.what();
   }
@@ -324,6 +326,9 @@ TEST(Fluorescence, WhatCannotBeIsRefusedWithItsReason) {
   };
   has(message("MixShader { first: " + fluorescent + ", second: Lambertian {} }"), "fluoresces within a MixShader");
   has(message("MaskShader { shader: " + fluorescent + " }"), "fluoresces within a MaskShader");
+  // Also where it was met before as the shader of another object.
+  has(message("MaskShader { shader: paint }", "paint = " + fluorescent + "\n", "Sphere { shader: paint }\n"),
+      "fluoresces within a MaskShader");
   has(message("FluorescentShader {}"), "dye");
   has(message("FluorescentShader { dye: Dye { absorption: 0, emission: 1 } }"), "is 0 at all wavelengths");
   has(message("FluorescentShader { dye: Dye { absorption: 1, emission: spectrum([400, 500], [-1, 1]) } }"), "negative");

@@ -11,16 +11,12 @@ namespace etendue {
 class HiddenFluorescence {
  public:
   /// Throws Error at a shader that fluoresces and stands within the given one, as a layer or a part of a mixture: only the
-  /// shader of an object itself is asked for its reradiation. Each shader is looked at once.
-  void refuse(const Shader& shader) { look(shader, shader); }
+  /// shader of an object itself is asked for its reradiation. What is within a shader is looked at once.
+  void refuse(const Shader& shader) { look_within(shader, shader); }
 
  private:
-  void look(const Component& part, const Shader& whole) {
+  void look_within(const Component& part, const Shader& whole) {
     if (!seen_.insert(&part).second) return;
-    const auto* shader = dynamic_cast<const Shader*>(&part);
-    if (shader && shader != &whole && fluorescent(shader))
-      shader->fail({}, "fluoresces within a " + whole.class_info().name +
-                           ", where its fluorescence would be lost: it must be the shader of the object itself");
     for (const Member& member : part.class_info().members)
       if (member.kind == Kind::component) look(member.get(part, member), whole);
   }
@@ -28,7 +24,13 @@ class HiddenFluorescence {
     if (const auto* list = value.as<Value::List>())
       for (const Value& each : *list) look(each, whole);
     const auto* part = value.as<Ref<Component>>();
-    if (part && *part && dynamic_cast<const Shader*>(part->get())) look(**part, whole);
+    const auto* shader = part ? dynamic_cast<const Shader*>(part->get()) : nullptr;
+    if (!shader) return;
+    // A shader may be within another and the shader of an object itself.
+    if (fluorescent(shader))
+      shader->fail({}, "fluoresces within a " + whole.class_info().name +
+                           ", where its fluorescence would be lost: it must be the shader of the object itself");
+    look_within(*shader, whole);
   }
 
   std::unordered_set<const Component*> seen_;
