@@ -257,7 +257,7 @@ TEST_P(InMedia, ABallOfDyeOnAGrid) {
 
 INSTANTIATE_TEST_SUITE_P(Fluorescence, InMedia,
                          testing::Values(Way{"PathTracer {}", 160}, Way{"GuidedPathTracer {}", 160},
-                                         Way{"LightTracer {}", 1024}),
+                                         Way{"LightTracer {}", 3072}),
                          [](const auto& info) {
                            return fmt::format("{}_{}", info.param.renderer.substr(0, info.param.renderer.find(' ')),
                                               info.index);
