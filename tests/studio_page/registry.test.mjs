@@ -45,9 +45,10 @@ const hosts = {
   ImageBuffer: ["Job", "image"],
   WavelengthSampler: ["Job", "wavelengths"],
   Output: ["Job", "outputs"],
+  ObjectGroup: ["Job", "groups"],
 };
 /** Kinds that only one class takes: that class is put into its own place first. */
-const inside = { PhaseFunction: ["HomogeneousVolume", "phase"], Mutation: ["PathSpaceMetropolis", "mutations"], TrimmingCurve: ["NurbsSurface", "trimming"], Denoiser: ["DenoisedOutput", "denoiser"] };
+const inside = { PhaseFunction: ["HomogeneousVolume", "phase"], Mutation: ["PathSpaceMetropolis", "mutations"], TrimmingCurve: ["NurbsSurface", "trimming"], Denoiser: ["DenoisedOutput", "denoiser"], Dye: ["FluorescentShader", "dye"] };
 
 const classes = JSON.parse(run("classes", "--json"));
 const byName = new Map(classes.map((c) => [c.name, c]));
