@@ -42,8 +42,10 @@ SLOW = ["BuiltIn/*", "Conform*", "Faulty*", "Conform.*", "Checkpoint*", "Verify*
         "SubdivisionSurface*", "DisplacedMesh*", "Subsurface*", "SceneStructures*", "Measured*"]
 
 
-# What is made: the library, what it loads for image files from the folder it lies in itself, the program's library, and the tests.
-LIBRARY, IMAGES, PROGRAM = "libetendue.so", "libetendue_openimageio.so", "libetendue_app.so"
+# What is made: the library, what is linked with it or loaded from the folder it lies in itself, and the tests.
+LIBRARY = "libetendue.so"
+BESIDE = ["libetendue_openimageio.so", "libetendue_formats.so", "libetendue_osl.so", "libetendue_laboratory.so", "libetendue_studio.so",
+          "libetendue_app.so", "libetendue_commands.so"]
 
 
 class Mutant:
@@ -119,7 +121,7 @@ class Build:
             made = words[words.index("-o") + 1]
             self.compile[made] = (entry["file"], words)
         self.includes = self.dependencies()
-        self.links = {name: self.link_command(name) for name in (LIBRARY, IMAGES, PROGRAM, "tests/etendue_tests")}
+        self.links = {name: self.link_command(name) for name in (LIBRARY, *BESIDE, "tests/etendue_tests")}
 
     def ninja(self, *words):
         return subprocess.run(["ninja", "-C", str(self.folder), *words], check=True, capture_output=True, text=True).stdout
@@ -208,7 +210,7 @@ class Build:
             self.run(words)
             if not name.startswith("lib"):
                 tests = out
-        if wanted[IMAGES] and not wanted[LIBRARY]:
+        if any(wanted[name] for name in BESIDE) and not wanted[LIBRARY]:
             library = (self.folder / LIBRARY).resolve()
             (place / os.readlink(self.folder / LIBRARY)).symlink_to(library)
         return tests

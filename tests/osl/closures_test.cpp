@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <random>
+#include <thread>
 
 #include "etendue/core/warp.h"
 #include "etendue/describe/color.h"
@@ -269,6 +271,33 @@ TEST(Closures, SumsReflectAtMostAllLightAtGrazingAngles) {
   // And it stays reciprocal.
   const Vector3 a = normalize(Vector3{0.9f, 0.1f, 0.12f}), b = normalize(Vector3{-0.5f, 0.3f, 0.8f});
   EXPECT_NEAR(s->evaluate(a, b)[0] / b.z, s->evaluate(b, a)[0] / a.z, 1e-4f);
+}
+
+// The BSDF of a virtual light is evaluated by all threads at once, from directions of their own.
+TEST(Closures, SumsAreTheSameForAllThreads) {
+  Place place;
+  Maker make;
+  const ClosureNode* base = make.product(Triple(0.9f), make.component("diffuse", up));
+  const ClosureNode* coat =
+      make.component("dielectric_bsdf", up, along_u, Triple(1), Triple(0), 0.4f, 0.4f, 1.5f, intern_string("ggx"));
+  const Scatter* s = place.bind(make.sum(coat, base));
+  ASSERT_TRUE(s);
+  constexpr int threads = 4, directions = 64, rounds = 400;
+  const Vector3 to_light = normalize(Vector3{0.3f, -0.2f, 0.4f});
+  const auto from = [](int i) { return normalize(Vector3{std::cos(float(i)), std::sin(float(i)), 0.05f + 0.02f * float(i)}); };
+  std::vector<Spectrum> alone;
+  for (int i = 0; i < directions; ++i) alone.push_back(s->evaluate(from(i), to_light));
+  std::atomic<int> different = 0;
+  std::vector<std::jthread> all;
+  for (int t = 0; t < threads; ++t)
+    all.emplace_back([&, t] {
+      for (int i = 0; i < rounds * directions; ++i) {
+        const int k = (i * (2 * t + 1) + t) % directions;
+        if (!(s->evaluate(from(k), to_light) - alone[size_t(k)]).black()) ++different;
+      }
+    });
+  all.clear();
+  EXPECT_EQ(different, 0);
 }
 
 TEST(Closures, ARoughWhiteBurleySurfaceReflectsAtMostAllLight) {

@@ -18,15 +18,27 @@ Spectrum smaller(const Spectrum& a, const Spectrum& b) {
   return s;
 }
 
+/// An address that no other thread has now.
+const void* this_thread() {
+  thread_local char own;
+  return &own;
+}
+
 }  // namespace
 
 Mixture::Mixture(const SurfacePoint& p, const MixturePart* parts, Seen* seen, int count, bool may_exceed)
-    : Scatter(p, lobes_of(parts, count)), parts_(parts), seen_(seen), count_(count), may_exceed_(may_exceed) {
+    : Scatter(p, lobes_of(parts, count)),
+      parts_(parts),
+      seen_(seen),
+      maker_(this_thread()),
+      count_(count),
+      may_exceed_(may_exceed) {
   // Images of normals show that of the first part.
   if (count > 0) frame_ = parts[0].scatter->frame();
 }
 
-const Spectrum& Mixture::albedo_of(int part, const Vector3& v, Lobes lobes) const {
+Spectrum Mixture::albedo_of(int part, const Vector3& v, Lobes lobes) const {
+  if (maker_ != this_thread()) return parts_[part].scatter->albedo(v, lobes);
   Seen& seen = seen_[part];
   for (int i = 0; i < 2; ++i)
     if (seen.lobes[i] == lobes && seen.from[i] == v) {

@@ -42,7 +42,8 @@ class Mixture final : public Scatter {
   static constexpr int most_parts = 32;
 
   /// The albedos of a part from the last two directions that it was seen from: a path asks the same ones several times at a
-  /// vertex. A mixture belongs to one sample, and so to one thread.
+  /// vertex. Only the thread that made the mixture keeps any: others may ask at the same time, as those that gather virtual
+  /// lights do.
   struct Seen {
     Vector3 from[2];
     Lobes lobes[2] = {no_lobes, no_lobes};  ///< none: nothing is kept
@@ -62,7 +63,7 @@ class Mixture final : public Scatter {
   Spectrum world_albedo(const Vector3& out, Lobes) const override;
 
   /// The albedo of a part's lobes, of which it has all.
-  const Spectrum& albedo_of(int part, const Vector3& v, Lobes) const;
+  Spectrum albedo_of(int part, const Vector3& v, Lobes) const;
   /// w_k T_k for light that leaves in direction v; of the layers over the part only those before `until` count.
   Spectrum factor(int part, const Vector3& v, const Cover* until = nullptr) const;
   Spectrum sum_of_albedos(const Vector3& out, Lobes) const;
@@ -77,6 +78,7 @@ class Mixture final : public Scatter {
 
   const MixturePart* parts_;
   Seen* seen_;
+  const void* maker_;  ///< names the thread that keeps albedos
   int count_;
   bool may_exceed_;
 };
