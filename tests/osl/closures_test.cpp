@@ -340,6 +340,31 @@ TEST(Closures, ReflectionAndRefractionOfOneBoundaryAreOneDielectric) {
   }
 }
 
+// From inside, where a tilted normal turns reflections to the other side of the surface: all light is scattered once.
+TEST(Closures, ReflectionAndRefractionOfOneBoundaryScatterAllLightOnce) {
+  Place place;
+  Maker make;
+  place.p.shading_normal = Normal3(normalize(Vector3{0.5f, 0.1f, 0.85f}));
+  const ClosureNode* parts =
+      make.sum(make.component("reflection", Triple(0), 1.5f), make.component("refraction", Triple(0), 1.5f));
+  const Scatter* s = place.bind(parts);
+  const Scatter* whole = place.bind(make.component("microfacet", intern_string("ggx"), Triple(0), 0.0f, 1.5f, 2));
+  ASSERT_TRUE(s && whole);
+  std::mt19937 random(5);
+  const auto number = [&] { return float(random() >> 8) / float(1 << 24); };
+  for (int i = 0; i < 40; ++i) {
+    const Vector3 out = warp::sphere({number(), number()});
+    double sum = 0, expected = 0;
+    constexpr int count = 400;
+    for (int k = 0; k < count; ++k) {
+      const float choice = (float(k) + 0.5f) / count;
+      if (const auto sample = s->sample(out, choice, {0.5f, 0.5f})) sum += double(sample->weight.average()) / count;
+      if (const auto sample = whole->sample(out, choice, {0.5f, 0.5f})) expected += double(sample->weight.average()) / count;
+    }
+    EXPECT_NEAR(sum, expected, 0.01) << out.x << ' ' << out.y << ' ' << out.z;
+  }
+}
+
 // A loop makes sums that are deeper than a stack.
 TEST(Closures, SumsMayBeDeep) {
   Place place;
